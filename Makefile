@@ -1,0 +1,59 @@
+# Everything runs from a fresh checkout with Python 3.11+, make and a package registry.
+PYTHON ?= python3
+BIN := .venv/bin
+# A stamp per set of packages: made again only when what it depends on has changed.
+BASE := .venv/.installed
+TEST := .venv/.installed-test
+NOTEBOOK := .venv/.installed-notebook
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install -c constraints.txt
+
+.PHONY: run test slow notebook bench clean
+
+run: $(BASE)
+	@$(BIN)/uq run studies/beam-lifetime.toml
+	@$(BIN)/uq plot results/beam-lifetime.nc
+	@$(BIN)/uq run studies/beam-sensitivity.toml
+	@$(BIN)/uq sensitivity results/beam-sensitivity.nc
+	@$(BIN)/uq plot results/beam-sensitivity.nc
+	@echo
+	@echo "Results: results/beam-lifetime.nc and results/beam-sensitivity.nc, figures beside them."
+	@echo "Next:    $(BIN)/uq init beam > studies/mine.toml    a study of your own to edit"
+	@echo "         $(BIN)/uq run studies/mine.toml            run it"
+	@echo "         make notebook                             open JupyterLab"
+
+test: $(TEST)
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy
+	@$(BIN)/python -m pytest -m "not slow"
+
+slow: $(TEST)
+	@$(BIN)/python -m pytest -m slow
+
+notebook: $(NOTEBOOK)
+	@$(BIN)/jupyter lab notebooks
+
+bench: $(TEST)
+	@$(BIN)/python -m benchmarks.beam
+
+clean:
+	rm -rf .venv
+
+.venv/bin/python:
+	@echo "Making .venv and installing pinned packages (about two minutes, once) ..."
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo "Python 3.11 or newer is needed; try: make PYTHON=python3.11 $(MAKECMDGOALS)"; exit 1; }
+	@$(PYTHON) -m venv .venv
+
+$(BASE): pyproject.toml constraints.txt | .venv/bin/python
+	@$(PIP) -e .
+	@touch $@
+
+$(TEST): $(BASE)
+	@$(PIP) -e ".[test]"
+	@touch $@
+
+$(NOTEBOOK): $(BASE)
+	@$(PIP) -e ".[notebook]"
+	@$(BIN)/python -m ipykernel install --prefix .venv --name vibrolife --display-name vibrolife >/dev/null
+	@touch $@

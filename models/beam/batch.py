@@ -1,0 +1,169 @@
+"""From rows of parameters to work-rates, regimes and lifetimes."""
+
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam import exact, lanes, response, wear
+from models.beam.modal import Array, Beams, beams
+from models.beam.parameters import Params, Settings
+from uq.contract import Status
+
+PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
+
+# They scale lifetimes and nothing else (eq 12): rows that differ only here share a simulation.
+_SCALES = [Params._fields.index(name) for name in ("wear_coefficient", "contact_area")]
+
+
+class Simulated(NamedTuple):
+    """The nondimensional results of n beams."""
+
+    response: response.Response
+    lives: wear.Lives
+    fundamental: Array
+
+
+def batch(
+    x: Array, seed: NDArray[np.uint64], settings: Settings
+) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
+    """Compute n beams.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n, d)
+        Parameters in the order of `Params`.
+    seed : ndarray of uint64, shape (n,)
+        Not used: the beam under a harmonic force is deterministic.
+    settings : Settings
+
+    Returns
+    -------
+    outputs : dict of str to ndarray, shape (n, ...)
+        As `models.beam.parameters.OUTPUTS` says, with ``*_censored`` beside each lifetime.
+    status : ndarray of int8, shape (n,)
+    """
+    p = Params(*np.ascontiguousarray(x.T))
+    dynamic = np.delete(x, _SCALES, axis=1)
+    _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
+    simulated = simulate_rows(Params(*np.ascontiguousarray(x[first].T)), settings)
+    return _in_units(p, _take(simulated, back.reshape(-1)), settings)
+
+
+def simulate_rows(p: Params, settings: Settings) -> Simulated:
+    """Find the settled response and the nondimensional lives of n beams.
+
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,).
+    settings : Settings
+
+    Returns
+    -------
+    Simulated
+    """
+    b = beams(p, settings)
+    propagator = PROPAGATORS[settings.propagator]
+    parts, order = [], []
+    for rows, system in propagator.groups(b, settings):
+        q = Params(*(field[rows] for field in p))
+        parts.append(_simulate_group(propagator, system, q, b.take(rows), settings))
+        order.append(rows)
+    back = np.argsort(np.concatenate(order))
+    return _take(_join(parts), back)
+
+
+def initial_gaps(p: Params) -> Array:
+    """Return the right and the left gap when new, in initial gaps, shape (n, 2)."""
+    return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
+
+
+def _simulate_group(
+    propagator: ModuleType, system: Any, p: Params, b: Beams, settings: Settings
+) -> Simulated:
+    gaps = initial_gaps(p)
+    x0 = p.initial_gap
+    state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
+    settled = response.settle(propagator, system, state, gaps)
+    share = np.stack([np.ones_like(x0), p.wear_coefficient_ratio], axis=1)
+    growths = np.asarray(settings.depths) / x0[:, None]
+    lives = wear.lives(
+        propagator, system, state, gaps, settled.work, share, growths, settings.accuracy
+    )
+    return Simulated(settled, lives, b.frequency[:, 0])
+
+
+def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
+    return Simulated(
+        response.Response(*(a[rows] for a in s.response)),
+        wear.Lives(*(a[rows] for a in s.lives)),
+        s.fundamental[rows],
+    )
+
+
+def _join(parts: list[Simulated]) -> Simulated:
+    def each(values: list[Any]) -> list[Any]:
+        return [np.concatenate(columns) for columns in zip(*values, strict=True)]
+
+    return Simulated(
+        response.Response(*each([s.response for s in parts])),
+        wear.Lives(*each([s.lives for s in parts])),
+        np.concatenate([s.fundamental for s in parts]),
+    )
+
+
+def _in_units(
+    p: Params, s: Simulated, settings: Settings
+) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
+    """Give the results their units, and apply the horizon."""
+    joule = p.contact_stiffness * p.initial_gap**2
+    to_watt = (joule * p.forcing_frequency)[:, None]
+    # Gap growth in X0 per nondimensional work at the right site (eq 9).
+    wear_rate = p.wear_coefficient / p.contact_area * p.contact_stiffness * p.initial_gap
+    to_second = 1 / (p.forcing_frequency * wear_rate)[:, None, None]
+    time, error = s.lives.time * to_second, s.lives.error * to_second
+    reached = s.lives.reached & (time <= settings.horizon)
+    never = np.isinf(s.lives.time)
+    censored = ~reached & ~never
+    time = np.where(censored, np.minimum(time, settings.horizon), time)
+    error = np.where(reached, error, np.nan)
+
+    work = s.response.work
+    force = p.contact_stiffness * p.initial_gap
+    share = np.stack([np.ones_like(wear_rate), p.wear_coefficient_ratio], axis=1)
+    fastest = (work * share).max(axis=1) * wear_rate * p.forcing_frequency
+    depths = np.asarray(settings.depths)
+    with np.errstate(divide="ignore"):
+        linear = depths / (fastest * p.initial_gap)[:, None]
+    first_reached = reached[:, 2]
+    outputs = {
+        "work_rate": work * to_watt,
+        "work_rate_error": s.response.error * to_watt,
+        "work_rate_heavy": work.max(axis=1) * to_watt[:, 0],
+        "work_rate_light": work.min(axis=1) * to_watt[:, 0],
+        "peak_contact_force": s.response.peak * force[:, None],
+        "time_to_depth": time[:, :2],
+        "time_to_depth_censored": censored[:, :2],
+        "time_to_depth_error": error[:, :2],
+        "first_time_to_depth": time[:, 2],
+        "first_time_to_depth_censored": censored[:, 2],
+        "first_time_to_depth_error": error[:, 2],
+        "linear_time_to_depth": linear,
+        "lifetime_ratio": np.divide(
+            linear,
+            time[:, 2],
+            out=np.full_like(linear, np.nan),
+            where=first_reached & np.isfinite(linear),
+        ),
+        "gap_ratio": np.where(first_reached, s.lives.ratio, np.nan),
+        "period": s.response.period,
+        "fundamental_frequency": s.fundamental / (2 * np.pi),
+    }
+    # The exact propagator gives NaN for a beam that takes too many events in one period.
+    lost = np.isnan(work).any(axis=1)
+    outputs["regime"] = np.where(lost, np.int8(-1), s.response.regime)
+    unfinished = (censored & (time < settings.horizon)).any(axis=(1, 2))
+    status = np.where(lost | unfinished, Status.OUT_OF_BUDGET, Status.OK).astype(np.int8)
+    return outputs, status

@@ -1,0 +1,414 @@
+"""The fast propagator: sixteen beams abreast, fixed steps, exact between the samples of the force.
+
+Each mode is propagated exactly under a contact force that is linear within a step; the harmonic
+force enters through the exact steady response, so modes carry only what contact does to them. A
+damped mode under a sampled force obeys a two-term recurrence, kept here in transposed direct form:
+
+    y_i <- t_i y_i + r_i + alpha_i p,    r_i <- beta_i p - d_i y_i,
+
+where t_i and d_i are trace and determinant of its propagator. The new penetration enters at once
+(sigma = sum of the modes' share of it), so that x = X + sigma p(x) is solved for x without
+iteration: p is piecewise linear. Everything is free of branches, so lanes never diverge, and a
+row's bits do not depend on its neighbours.
+
+A force that is linear within a step misses part of the impulse where it is curved, and where it
+has its kink at the beginning and the end of a contact. Both parts are known to leading order and
+are added to the sampled penetration; measured, that makes the error of a work-rate four to ten
+times smaller.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.modal import Array, Beams, Record, steady_response
+from models.beam.parameters import Settings
+from models.numerics.jit import kernel
+
+LANES = 16
+LADDER = tuple(base << k for k in range(8) for base in (64, 96))
+COMPLIANCE = 0.01
+_UNROLL = 4  # modes in the straight-line body of the inner loop
+_MODE = 6  # slots of a mode: y, r, t, d, alpha, beta
+# slots of a lane beside its modes
+_P, _RIGHT, _LEFT, _RE, _IM, _STIFF, _SIGMA, _X1, _X2 = range(9)
+_WORK_R, _WORK_L, _PEAK_R, _PEAK_L, _SUM, _HEAD = range(9, 15)
+
+
+class System(NamedTuple):
+    """n beams, prepared for steps of one size.
+
+    Attributes
+    ----------
+    modes : ndarray, shape (n, 4, m)
+        t, d, alpha, beta of each mode.
+    begin : ndarray, shape (n, 2, m)
+        The displacement after one step per unit of displacement and of velocity.
+    sigma : ndarray, shape (n,)
+        Displacement within the step per unit of its final penetration, negative.
+    modal : ndarray, shape (n, m), complex
+        Steady amplitude of each mode.
+    forcing : ndarray, shape (n,)
+        [rad s-1]
+    steps : int
+        In a forcing period.
+    """
+
+    modes: Array
+    begin: Array
+    sigma: Array
+    modal: NDArray[np.complex128]
+    forcing: Array
+    steps: int
+
+    def take(self, rows: NDArray[np.intp]) -> "System":
+        """Return the systems of some rows."""
+        return System(*(a[rows] for a in self[:-1]), self.steps)
+
+
+@kernel
+def _mode_step(w, d, h):
+    """Propagate z'' + 2 d z' + w^2 z = g over h, with g linear from g0 to g1.
+
+    Returns P11, P12, P21, P22, A1, A2, B1, B2 of s1 = P s0 + A g0 + B g1 for s = (z, z'/w): a
+    Taylor series over a small fraction of h, then doubled, accurate for any damping.
+    """
+    small = h
+    doublings = 0
+    while (w + 2 * d) * small > 0.25:
+        small *= 0.5
+        doublings += 1
+    a, b = w * small, 2 * d * small
+    # phi1 and phi2 of [[0, a], [-a, -b]] applied to (0, 1)
+    v1, v2 = 0.0, 1.0
+    f11, f12, f21, f22 = 0.0, 1.0, 0.0, 0.5
+    weight = 1.0
+    for k in range(1, 14):
+        v1, v2 = a * v2, -a * v1 - b * v2
+        weight /= k + 1
+        f11 += weight * v1
+        f12 += weight * v2
+        f21 += weight / (k + 2) * v1
+        f22 += weight / (k + 2) * v2
+    p11, p21 = 1 - a * f11, -a * f12
+    p12, p22 = a * f12, 1 - a * f11 - b * f12
+    scale = small / w
+    b1, b2 = scale * f21, scale * f22
+    a1, a2 = scale * f11 - b1, scale * f12 - b2
+    for _ in range(doublings):
+        c1, c2 = a1 + 0.5 * b1, a2 + 0.5 * b2
+        e1, e2 = 0.5 * b1, 0.5 * b2
+        a1, a2, b1, b2 = (
+            p11 * c1 + p12 * c2 + 0.5 * a1,
+            p21 * c1 + p22 * c2 + 0.5 * a2,
+            p11 * e1 + p12 * e2 + 0.5 * a1 + b1,
+            p21 * e1 + p22 * e2 + 0.5 * a2 + b2,
+        )
+        p11, p12, p21, p22 = (
+            p11 * p11 + p12 * p21,
+            p11 * p12 + p12 * p22,
+            p21 * p11 + p22 * p21,
+            p21 * p12 + p22 * p22,
+        )
+    return p11, p12, p21, p22, a1, a2, b1, b2
+
+
+@kernel
+def _prepare(forcing, frequency, decay, gain, steps, modes, begin, sigma):
+    for n in range(frequency.shape[0]):
+        h = 2 * np.pi / (forcing[n] * steps)
+        total = 0.0
+        for i in range(frequency.shape[1]):
+            w, d, b = frequency[n, i], decay[n, i], gain[n, i]
+            p11, p12, p21, p22, a1, a2, b1, b2 = _mode_step(w, d, h)
+            determinant = np.exp(-2 * d * h)
+            modes[n, 0, i] = p11 + p22
+            modes[n, 1, i] = determinant
+            modes[n, 2, i] = b * (a1 + p11 * b1 + p12 * b2)
+            modes[n, 3, i] = -b * (p22 * a1 - p12 * a2 + determinant * b1)
+            begin[n, 0, i] = p11
+            begin[n, 1, i] = p12 / w
+            total += b * b1
+        sigma[n] = total
+
+
+@kernel
+def _choose_steps(forcing, frequency, decay, gain, steps):
+    for n in range(frequency.shape[0]):
+        for candidate in LADDER:
+            h = 2 * np.pi / (forcing[n] * candidate)
+            sigma = 0.0
+            for i in range(frequency.shape[1]):
+                sigma += gain[n, i] * _mode_step(frequency[n, i], decay[n, i], h)[6]
+            steps[n] = candidate
+            if abs(sigma) <= COMPLIANCE:
+                break
+
+
+def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Prepare n beams, in groups that share a number of steps.
+
+    Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
+    gives way by no more than `COMPLIANCE` of its penetration; the error of a work-rate is then
+    about 0.1 %.
+
+    Parameters
+    ----------
+    beams : Beams
+    settings : Settings
+
+    Yields
+    ------
+    rows : ndarray of int
+        Which of the n beams are in the group.
+    system : System
+    """
+    n, m = beams.frequency.shape
+    gain = -beams.stiffness[:, None] * beams.mobility
+    steps = np.full(n, settings.steps_per_period)
+    if not settings.steps_per_period:
+        _choose_steps(beams.forcing, beams.frequency, beams.decay, gain, steps)
+    for count in np.unique(steps):
+        rows = np.flatnonzero(steps == count)
+        b = beams.take(rows)
+        modes, begin, sigma = (
+            np.empty((len(rows), 4, m)),
+            np.empty((len(rows), 2, m)),
+            gain[rows, 0],
+        )
+        _prepare(b.forcing, b.frequency, b.decay, gain[rows], int(count), modes, begin, sigma)
+        yield rows, System(modes, begin, sigma, steady_response(b), b.forcing, int(count))
+
+
+def start(system: System, displacement: Array, velocity: Array) -> Array:
+    """Return the state at phase 0 of the force, tip displaced in the shape of the first mode.
+
+    A contact that exists at the start acts from the end of the first step.
+
+    Parameters
+    ----------
+    system : System
+    displacement, velocity : ndarray, shape (n,)
+        Of the tip, in initial gaps and initial gaps per second.
+
+    Returns
+    -------
+    ndarray, shape (n, 2 m + 3)
+        y and r of each mode, then penetration, displacement and the displacement a step before.
+    """
+    n, m = system.modal.shape
+    z = -system.modal.real
+    v = system.modal.imag * system.forcing[:, None]
+    z[:, 0] += displacement
+    v[:, 0] += velocity
+    state = np.zeros((n, 2 * m + 3))
+    state[:, :m] = z
+    state[:, m : 2 * m] = system.begin[:, 0] * z + system.begin[:, 1] * v - system.modes[:, 0] * z
+    state[:, -2] = displacement
+    state[:, -1] = displacement
+    return state
+
+
+@kernel
+def _load(system_modes, sigma, response, state, gaps, first, w, head):
+    """Bring up to LANES rows from `first` on into lanes; spare lanes repeat the last row."""
+    last = state.shape[0] - 1
+    m = system_modes.shape[2]
+    w[:] = 0.0
+    head[:] = 0.0
+    for lane in range(LANES):
+        n = min(first + lane, last)
+        for i in range(m):
+            k = i * _MODE * LANES + lane
+            w[k] = state[n, i]
+            w[k + LANES] = state[n, m + i]
+            for c in range(4):
+                w[k + (2 + c) * LANES] = system_modes[n, c, i]
+        head[_P * LANES + lane] = state[n, 2 * m]
+        head[_X1 * LANES + lane] = state[n, 2 * m + 1]
+        head[_X2 * LANES + lane] = state[n, 2 * m + 2]
+        head[_RIGHT * LANES + lane] = gaps[n, 0]
+        head[_LEFT * LANES + lane] = gaps[n, 1]
+        head[_RE * LANES + lane] = response[n].real
+        head[_IM * LANES + lane] = response[n].imag
+        head[_SIGMA * LANES + lane] = sigma[n]
+        head[_STIFF * LANES + lane] = 1 / (1 - sigma[n])
+
+
+@kernel
+def _store(w, head, first, state, gaps, peak):
+    """Bring lanes back into their rows."""
+    m = (state.shape[1] - 3) // 2
+    for n in range(first, min(first + LANES, state.shape[0])):
+        lane = n - first
+        for i in range(m):
+            k = i * _MODE * LANES + lane
+            state[n, i] = w[k]
+            state[n, m + i] = w[k + LANES]
+        state[n, 2 * m] = head[_P * LANES + lane]
+        state[n, 2 * m + 1] = head[_X1 * LANES + lane]
+        state[n, 2 * m + 2] = head[_X2 * LANES + lane]
+        gaps[n, 0] = head[_RIGHT * LANES + lane]
+        gaps[n, 1] = head[_LEFT * LANES + lane]
+        peak[n, 0] = head[_PEAK_R * LANES + lane]
+        peak[n, 1] = head[_PEAK_L * LANES + lane]
+
+
+@kernel
+def _step(w, head, groups, cosine, sine):
+    """Advance all lanes by one step: the hot loop."""
+    for lane in range(LANES):
+        head[_SUM * LANES + lane] = 0.0
+    for g in range(groups):
+        for lane in range(LANES):
+            p = head[_P * LANES + lane]
+            k = g * (_UNROLL * _MODE * LANES) + lane
+            y = w[k]
+            y0 = w[k + LANES] + w[k + 2 * LANES] * y + w[k + 4 * LANES] * p
+            w[k + LANES] = w[k + 5 * LANES] * p - w[k + 3 * LANES] * y
+            w[k] = y0
+            k += _MODE * LANES
+            y = w[k]
+            y1 = w[k + LANES] + w[k + 2 * LANES] * y + w[k + 4 * LANES] * p
+            w[k + LANES] = w[k + 5 * LANES] * p - w[k + 3 * LANES] * y
+            w[k] = y1
+            k += _MODE * LANES
+            y = w[k]
+            y2 = w[k + LANES] + w[k + 2 * LANES] * y + w[k + 4 * LANES] * p
+            w[k + LANES] = w[k + 5 * LANES] * p - w[k + 3 * LANES] * y
+            w[k] = y2
+            k += _MODE * LANES
+            y = w[k]
+            y3 = w[k + LANES] + w[k + 2 * LANES] * y + w[k + 4 * LANES] * p
+            w[k + LANES] = w[k + 5 * LANES] * p - w[k + 3 * LANES] * y
+            w[k] = y3
+            head[_SUM * LANES + lane] += (y0 + y1) + (y2 + y3)
+    for lane in range(LANES):
+        right, left = head[_RIGHT * LANES + lane], head[_LEFT * LANES + lane]
+        free = (
+            head[_SUM * LANES + lane]
+            + head[_RE * LANES + lane] * cosine
+            - head[_IM * LANES + lane] * sine
+        )
+        over, under = free - right, -free - left
+        p = ((over if over > 0.0 else 0.0) - (under if under > 0.0 else 0.0)) * head[
+            _STIFF * LANES + lane
+        ]
+        x = free + head[_SIGMA * LANES + lane] * p
+        x1 = head[_X1 * LANES + lane]
+        before, after = x1 - head[_X2 * LANES + lane], x - x1
+        p1 = head[_P * LANES + lane]
+        # Two divisions in one: of the turning point's parabola, and of the crossing's position.
+        turned = (before * after < 0.0) & (p1 != 0.0)
+        side, gap = (1.0, right) if x > 0.0 else (-1.0, left)
+        d0, d = side * x1 - gap, side * x - gap
+        crossed = d0 * d < 0.0
+        curvature = after - before if turned else 1.0
+        travel = abs(d - d0) if crossed else 1.0
+        inverse = 1 / (curvature * travel)
+        # Work (eq 8) is the sum of d^2 over the extrema of the penetration d, signed outward.
+        swing = before + after
+        vertex = x1 - 0.125 * swing * swing * (inverse * travel)
+        d_right = vertex - right if turned & (p1 > 0.0) else 0.0
+        d_left = -vertex - left if turned & (p1 < 0.0) else 0.0
+        outward = 1.0 if before > 0.0 else -1.0
+        head[_WORK_R * LANES + lane] += outward * d_right * d_right
+        head[_WORK_L * LANES + lane] -= outward * d_left * d_left
+        peak_r, peak_l = head[_PEAK_R * LANES + lane], head[_PEAK_L * LANES + lane]
+        head[_PEAK_R * LANES + lane] = d_right if d_right > peak_r else peak_r
+        head[_PEAK_L * LANES + lane] = d_left if d_left > peak_l else peak_l
+        # The impulse of a force with a kink inside the step, and that of a curved one.
+        p += 0.5 * side * d0 * d * (inverse * curvature) if crossed else 0.0
+        p -= (after - before) / 12 if d > 0.0 else 0.0
+        head[_X2 * LANES + lane] = x1
+        head[_X1 * LANES + lane] = x
+        head[_P * LANES + lane] = p
+
+
+@kernel
+def _advance(system_modes, sigma, response, state, gaps, growth, cosine, sine, w, head, record):
+    work, strobe, peak, trace = record
+    n, periods, _ = work.shape
+    steps = cosine.size
+    groups = w.size // (_UNROLL * _MODE * LANES)
+    for first in range(0, n, LANES):
+        _load(system_modes, sigma, response, state, gaps, first, w, head)
+        rows = min(LANES, n - first)
+        for period in range(periods):
+            for lane in range(LANES):
+                head[_WORK_R * LANES + lane] = 0.0
+                head[_WORK_L * LANES + lane] = 0.0
+            last_but_two = np.zeros(LANES)
+            for s in range(steps):
+                if s == steps - 1:
+                    for lane in range(LANES):
+                        last_but_two[lane] = head[_X2 * LANES + lane]
+                _step(w, head, groups, cosine[s], sine[s])
+                if trace.size:
+                    for lane in range(rows):
+                        trace[first + lane, period * steps + s] = head[_X1 * LANES + lane]
+            for lane in range(rows):
+                row = first + lane
+                work[row, period, 0] = head[_WORK_R * LANES + lane]
+                work[row, period, 1] = head[_WORK_L * LANES + lane]
+                x = head[_X1 * LANES + lane]
+                strobe[row, period, 0] = x
+                strobe[row, period, 1] = (
+                    (3 * x - 4 * head[_X2 * LANES + lane] + last_but_two[lane])
+                    * steps
+                    / (4 * np.pi)
+                )
+                head[_RIGHT * LANES + lane] += growth[row, 0] * work[row, period, 0]
+                head[_LEFT * LANES + lane] += growth[row, 1] * work[row, period, 1]
+        _store(w, head, first, state, gaps, peak)
+
+
+def advance(
+    system: System, state: Array, gaps: Array, growth: Array, periods: int, trace: bool = False
+) -> Record:
+    """Advance n beams by whole periods of the force, their gaps growing with the work done.
+
+    Parameters
+    ----------
+    system : System
+    state : ndarray, shape (n, 2 m + 3)
+        Updated in place.
+    gaps : ndarray, shape (n, 2)
+        Right and left, in initial gaps; updated in place, at the end of each period.
+    growth : ndarray, shape (n, 2)
+        Gap growth per unit of nondimensional work; zero for no wear.
+    periods : int
+    trace : bool
+        Whether to keep the tip's displacement at every step.
+
+    Returns
+    -------
+    Record
+    """
+    n, _, m = system.modes.shape
+    record = Record.empty(n, periods, system.steps if trace else 0)
+    groups = -(-m // _UNROLL)
+    phase = 2 * np.pi * np.arange(1, system.steps + 1) / system.steps
+    _advance(
+        system.modes,
+        system.sigma,
+        system.modal.sum(axis=1),
+        state,
+        gaps,
+        growth,
+        np.cos(phase),
+        np.sin(phase),
+        _aligned(groups * _UNROLL * _MODE * LANES),
+        _aligned(_HEAD * LANES),
+        tuple(record),
+    )
+    return record
+
+
+def _aligned(size: int) -> Array:
+    """Return float64 zeros that start on a cache line: whole vectors then never straddle two."""
+    raw = np.zeros(size + 8)
+    skip = (-raw.ctypes.data // 8) % 8
+    return raw[skip : skip + size]

@@ -1,0 +1,129 @@
+"""The beam as the propagators see it: one oscillator per mode, coupled through the tip.
+
+With z_i = phi_i q_i / X0 the tip's displacement in initial gaps is x = sum z_i, and
+
+    z_i'' + 2 d_i z_i' + w_i^2 z_i = b_i (F cos(Omega t)/X0 - k_c p(x)),    b_i = phi_i^2,
+    2 d_i = c_m + c_k w_i^2,    p(x) = (x - x_1)+ - (-x - x_2)+             (Rayleigh damping)
+
+in real time. Nondimensional work per site is the integral of (penetration) |dx|, so that work in
+joule is k_c X0^2 times it (eqs 6 to 8 of Knudsen & Massih 2002).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.finite_element import modes
+from models.beam.parameters import Params, Settings
+
+Array = NDArray[np.float64]
+
+
+class Beams(NamedTuple):
+    """n beams in modal form.
+
+    Attributes
+    ----------
+    forcing : ndarray, shape (n,)
+        Angular forcing frequency Omega [rad s-1].
+    frequency, decay, mobility : ndarray, shape (n, m)
+        w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode.
+    force : ndarray, shape (n,)
+        F/X0 [N m-1].
+    stiffness : ndarray, shape (n,)
+        k_c [N m-1].
+    """
+
+    forcing: Array
+    frequency: Array
+    decay: Array
+    mobility: Array
+    force: Array
+    stiffness: Array
+
+    def take(self, rows: NDArray[np.intp]) -> "Beams":
+        """Return the beams of some rows."""
+        return Beams(*(a[rows] for a in self))
+
+
+def beams(p: Params, settings: Settings) -> Beams:
+    """Bring n beams into modal form.
+
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,).
+    settings : Settings
+        Its `elements` and `modes` count.
+
+    Returns
+    -------
+    Beams
+    """
+    shapes = modes(
+        p.length,
+        p.flexural_rigidity,
+        p.mass_per_length,
+        p.lateral_support_stiffness,
+        p.rotational_support_stiffness,
+        settings.elements,
+        settings.modes or None,
+    )
+    w = shapes.frequency
+    decay = 0.5 * (p.mass_damping[:, None] + p.stiffness_damping[:, None] * w**2)
+    return Beams(
+        2 * np.pi * p.forcing_frequency,
+        w,
+        decay,
+        shapes.tip**2,
+        p.force_amplitude / p.initial_gap,
+        p.contact_stiffness,
+    )
+
+
+def steady_response(b: Beams) -> NDArray[np.complex128]:
+    """Return each mode's share of the steady tip response without contact.
+
+    Parameters
+    ----------
+    b : Beams
+
+    Returns
+    -------
+    ndarray, shape (n, m), complex
+        Z_i of z_i = Re(Z_i exp(i Omega t)), in initial gaps.
+    """
+    forcing = b.forcing[:, None]
+    return b.mobility * b.force[:, None] / (b.frequency**2 - forcing**2 + 2j * b.decay * forcing)
+
+
+class Record(NamedTuple):
+    """What a propagator says of some forcing periods of n beams.
+
+    Attributes
+    ----------
+    work : ndarray, shape (n, periods, 2)
+        Nondimensional impact work at the right and the left site in each period.
+    strobe : ndarray, shape (n, periods, 2)
+        Tip x and dx/d(Omega t) at the end of each period, in initial gaps.
+    peak : ndarray, shape (n, 2)
+        Largest penetration at each site, in initial gaps.
+    trace : ndarray, shape (n, periods * steps)
+        Tip displacement at every step, in initial gaps; empty unless asked for.
+    """
+
+    work: Array
+    strobe: Array
+    peak: Array
+    trace: Array
+
+    @staticmethod
+    def empty(n: int, periods: int, steps: int = 0) -> "Record":
+        """Return a record to be filled in."""
+        return Record(
+            np.zeros((n, periods, 2)),
+            np.zeros((n, periods, 2)),
+            np.zeros((n, 2)),
+            np.zeros((n, periods * steps)),
+        )

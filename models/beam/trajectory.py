@@ -1,0 +1,49 @@
+"""One labelled time history of the beam, from its initial state at its initial gaps."""
+
+import numpy as np
+
+from models.beam.batch import PROPAGATORS, initial_gaps
+from models.beam.modal import beams
+from models.beam.parameters import Params, Settings
+from uq.contract import Trajectory
+
+PERIODS = 100
+
+
+def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
+    """Follow one beam over the first 100 periods of the force.
+
+    Parameters
+    ----------
+    params : Params
+    settings : Settings
+    seed : int
+        Not used: the beam under a harmonic force is deterministic.
+
+    Returns
+    -------
+    Trajectory
+    """
+    p = Params(*(np.array([value], float) for value in params))
+    propagator = PROPAGATORS[settings.propagator]
+    ((_, system),) = propagator.groups(beams(p, settings), settings)
+    gaps = initial_gaps(p)
+    x0 = p.initial_gap
+    state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
+    record = propagator.advance(system, state, gaps, np.zeros_like(gaps), PERIODS, trace=True)
+    x = np.concatenate([p.initial_displacement / x0, record.trace[0]])
+    time = np.arange(len(x)) / (params.forcing_frequency * (len(x) - 1) / PERIODS)
+    contact = params.contact_stiffness * params.initial_gap
+    force = params.force_amplitude * np.cos(2 * np.pi * params.forcing_frequency * time)
+    velocity = params.initial_gap * np.gradient(x, time)
+    right, left = (contact * np.maximum(d, 0.0) for d in (x - gaps[0, 0], -x - gaps[0, 1]))
+    return Trajectory(
+        time,
+        {
+            "displacement": ("m", "tip displacement", params.initial_gap * x),
+            "velocity": ("m s-1", "tip velocity", velocity),
+            "contact_force_right": ("N", "force of the right stop on the tip", right),
+            "contact_force_left": ("N", "force of the left stop on the tip", left),
+            "force": ("N", "harmonic force at the tip", force),
+        },
+    )

@@ -1,0 +1,292 @@
+"""Lifetimes: the gaps grow while the beam rattles, only many times faster than in life.
+
+Archard's law with impact work (eqs 5, 9 to 12 of Knudsen & Massih 2002) makes a gap grow by a
+constant times the work done on its site. Life lasts some 1e9 forcing periods; with the wear
+coefficient multiplied by an acceleration K it takes N periods, and the life is K times as long as
+what was simulated. K follows the running work-rate, so that the gap which grows faster grows by
+the same amount per period all along: N is known beforehand, whatever the work-rate does.
+
+The limit of infinitely slow wear is what a lifetime means. A run with 4 N periods is nearer to it
+than one with N, and the difference of the two tells how near: see `lives`.
+"""
+
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.modal import Array
+
+FIRST_LEVEL = 128  # periods for the deepest depth, quadrupled at each further level
+LEVELS = 5
+LOOKS = 32  # changes of the acceleration in N periods
+OVERTIME = 4  # a run may last this many times N periods
+_MEMORY = 0.25  # weight of the newest look in the running work-rate
+_SILENCE = 64  # periods without contact after which a beam that need not touch never will
+_EXTINCT = 1e-6  # of the first work-rate: what is left when the gaps approach the free amplitude
+
+
+class Run(NamedTuple):
+    """One accelerated life of n beams.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n, 2, D)
+        Life of each site to each growth, in forcing periods over the wear per work of the right
+        site [X0 per nondimensional work]; inf if never, else the time reached.
+    reached : ndarray of bool, shape (n, 2, D)
+    ended : ndarray of bool, shape (n,)
+        Whether wear has stopped for good: what was not reached never will be.
+    ratio : ndarray, shape (n, D)
+        Smaller gap over the larger when the first site reaches the growth, NaN if never.
+    periods : ndarray, shape (n,)
+        Forcing periods simulated.
+    """
+
+    time: Array
+    reached: NDArray[np.bool_]
+    ended: NDArray[np.bool_]
+    ratio: Array
+    periods: NDArray[np.int64]
+
+
+def run(
+    propagator: ModuleType,
+    system: Any,
+    state: Array,
+    gaps: Array,
+    work: Array,
+    share: Array,
+    growths: Array,
+    periods: int,
+) -> Run:
+    """Let the gaps of n beams grow in about `periods` forcing periods.
+
+    Parameters
+    ----------
+    propagator : module
+        `models.beam.lanes` or `models.beam.exact`.
+    system
+        What the propagator prepared.
+    state : ndarray, shape (n, k)
+        Settled at the initial gaps; not changed.
+    gaps : ndarray, shape (n, 2)
+        Initial, in X0; not changed.
+    work : ndarray, shape (n, 2)
+        Mean nondimensional work per period at the initial gaps.
+    share : ndarray, shape (n, 2)
+        Wear coefficient of each site over that of the right site.
+    growths : ndarray, shape (n, D)
+        Gap growths to reach, increasing, in X0.
+    periods : int
+        N: what the faster site takes to the last growth.
+
+    Returns
+    -------
+    Run
+    """
+    n, depths = growths.shape
+    out = Run(
+        np.zeros((n, 2, depths)),
+        np.zeros((n, 2, depths), bool),
+        np.zeros(n, bool),
+        np.full((n, depths), np.nan),
+        np.zeros(n, np.int64),
+    )
+    state, now = state.copy(), gaps.copy()
+    look = periods // LOOKS
+    head_start = growths[:, 0] / 2
+    pace = np.log1p(growths[:, -1] / head_start) / periods
+    rate = work * share
+    first = rate.max(axis=1)
+    silence = np.zeros(n, np.int64)
+    clock = np.zeros(n)
+    reach = np.abs(system.modal.sum(axis=1))
+    left = np.arange(n)
+    for _ in range(LOOKS * OVERTIME):
+        control = np.where(out.reached[left, :, -1], 0.0, rate[left]).max(axis=1)
+        before, here, x = now[left], now[left], state[left]
+        grown = (here - gaps[left]).max(axis=1)
+        step = pace[left] * (grown + head_start[left])
+        acceleration = np.divide(step, control, out=np.zeros_like(step), where=control > 0)
+        record = propagator.advance(
+            system.take(left), x, here, acceleration[:, None] * share[left], look
+        )
+        state[left], now[left] = x, here
+        _note_crossings(out, left, record.work, acceleration, share, before, gaps, growths, clock)
+        clock[left] += acceleration * look
+        out.periods[left] += look
+        mean = record.work.mean(axis=1) * share[left]
+        rate[left] += _MEMORY * (mean - rate[left])
+        quiet = (record.work == 0).all(axis=(1, 2))
+        silence[left] = np.where(quiet, silence[left] + look, 0)
+        out.ended[left] = _has_ended(silence[left], rate[left], first[left], reach[left], here)
+        left = left[~(out.ended[left] | out.reached[left, :, -1].all(axis=1))]
+        if not len(left):
+            break
+    missing = ~out.reached
+    never = out.ended[:, None, None]
+    out.time[missing] = np.where(never, np.inf, clock[:, None, None] + 0 * out.time)[missing]
+    return out
+
+
+def _has_ended(silence: Any, rate: Array, first: Array, reach: Array, gaps: Array) -> Any:
+    """Tell where no contact is left, or so little that no greater depth is ever reached.
+
+    A gap that grows towards the free amplitude comes near it like 1/t, not in finite time.
+    """
+    narrow = gaps.min(axis=1)
+    silent = (silence >= _SILENCE) & (reach < narrow)
+    fading = (rate.max(axis=1) <= _EXTINCT * first) & (reach < 1.01 * narrow)
+    return silent | fading
+
+
+def _note_crossings(
+    out: Run,
+    rows: Any,
+    work: Array,
+    acceleration: Array,
+    share: Array,
+    before: Array,
+    gaps: Array,
+    growths: Array,
+    clock: Array,
+) -> None:
+    """Note when, in the periods just simulated, a growth was reached; linear within a period."""
+    steps = (acceleration[:, None] * share[rows])[:, None, :] * work
+    grown = np.cumsum(np.concatenate([(before - gaps[rows])[:, None], steps], axis=1), axis=1)
+    for site in range(2):
+        for depth in range(growths.shape[1]):
+            goal = growths[rows, depth]
+            new = ~out.reached[rows, site, depth] & (grown[:, -1, site] >= goal)
+            if not new.any():
+                continue
+            at, path = rows[new], grown[new]
+            j = (path[:, :, site] < goal[new, None]).sum(axis=1) - 1
+            i = np.arange(len(j))
+            low, high = path[i, j, site], path[i, j + 1, site]
+            part = (goal[new] - low) / (high - low)
+            out.time[at, site, depth] = clock[at] + acceleration[new] * (j + part)
+            out.reached[at, site, depth] = True
+            first = ~out.reached[at, 1 - site, depth]
+            both = gaps[at] + path[i, j] + part[:, None] * (path[i, j + 1] - path[i, j])
+            out.ratio[at[first], depth] = (both.min(axis=1) / both.max(axis=1))[first]
+
+
+class Lives(NamedTuple):
+    """Lifetimes of n beams in the limit of slow wear, with their numerical errors.
+
+    Attributes
+    ----------
+    time : ndarray, shape (n, 3, D)
+        Right site, left site and the earlier of the two, in the unit of `Run.time`.
+    error : ndarray, shape (n, 3, D)
+        Estimated numerical error, NaN where the growth is not reached.
+    reached : ndarray of bool, shape (n, 3, D)
+        False where the time is infinite, or only the time simulated.
+    ratio : ndarray, shape (n, D)
+        As in `Run`.
+    periods : ndarray, shape (n,)
+        Forcing periods simulated.
+    """
+
+    time: Array
+    error: Array
+    reached: NDArray[np.bool_]
+    ratio: Array
+    periods: NDArray[np.int64]
+
+
+def lives(
+    propagator: ModuleType,
+    system: Any,
+    state: Array,
+    gaps: Array,
+    work: Array,
+    share: Array,
+    growths: Array,
+    accuracy: float,
+) -> Lives:
+    """Repeat the accelerated life ever more slowly until it no longer depends on the pace.
+
+    Parameters
+    ----------
+    propagator, system, state, gaps, work, share, growths
+        As in `run`.
+    accuracy : float
+        Relative error at which a beam's lives are good enough.
+
+    Returns
+    -------
+    Lives
+    """
+    n, depths = growths.shape
+    out = Lives(
+        np.zeros((n, 3, depths)),
+        np.full((n, 3, depths), np.nan),
+        np.zeros((n, 3, depths), bool),
+        np.zeros((n, depths)),
+        np.zeros(n, np.int64),
+    )
+    times = np.empty((LEVELS, n, 3, depths))
+    left = np.arange(n)
+    for level in range(LEVELS):
+        one = run(
+            propagator,
+            system.take(left),
+            state[left],
+            gaps[left],
+            work[left],
+            share[left],
+            growths[left],
+            FIRST_LEVEL * 4**level,
+        )
+        times[level, left, :2] = one.time
+        times[level, left, 2] = one.time.min(axis=1)
+        before, reached = out.reached[left], np.empty((len(left), 3, depths), bool)
+        reached[:, :2], reached[:, 2] = one.reached, one.reached.any(axis=1)
+        out.reached[left], out.ratio[left] = reached, one.ratio
+        out.periods[left] += one.periods
+        if level == 0:
+            continue
+        time, error = extrapolate(times[max(level - 2, 0) : level + 1, left])
+        out.time[left] = np.where(reached, time, times[level, left])
+        out.error[left] = np.where(reached, np.where(before, error, time), np.nan)
+        good = ((reached == before) & (~reached | (out.error[left] <= accuracy * time)))[:, 2:]
+        left = left[~good.all(axis=(1, 2))]
+        if not len(left):
+            break
+    return out
+
+
+def extrapolate(times: Array) -> tuple[Array, Array]:
+    """Estimate the life at infinitely slow wear from lives at N, 4 N and perhaps 16 N periods.
+
+    Where the response follows the gaps smoothly it lags behind by a time that does not depend on
+    the pace, so that the error falls like 1/N; through a change of branch it falls more slowly,
+    like N^(-2/3) (a slow passage); of an aperiodic response it is statistical. Three lives tell
+    these apart by the ratio of their differences, about 4, 2.5, or anything, and in the first two
+    cases the rest of the geometric series is added. Two lives do not tell: they are corrected as
+    if smooth, and the error stated is what it would be in the worse cases.
+
+    Parameters
+    ----------
+    times : ndarray, shape (2 or 3, ...)
+        Lives, the slowest wear last.
+
+    Returns
+    -------
+    time, error : ndarray, shape (...)
+    """
+    with np.errstate(invalid="ignore", divide="ignore"):
+        last = times[-1] - times[-2]
+        corrected, error = times[-1] + last / 3, np.abs(last) * 2 / 3
+        if len(times) == 3:
+            previous = times[-2] - times[-3]
+            ratio = previous / last
+            regular = (ratio > 2.0) & (ratio < 4.8)
+            corrected = times[-1] + np.where(regular, last / (ratio - 1), 0.0)
+            error = np.abs(last) * np.where(regular & (ratio > 3.4), 0.25, 0.5)
+            error = np.where(regular, error, np.maximum(error, np.abs(previous) / 4))
+    return corrected, error

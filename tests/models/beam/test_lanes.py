@@ -1,0 +1,180 @@
+"""The fast propagator: exact modes, the right order, and rows that do not see their neighbours."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from models.beam import exact, lanes
+from models.beam.modal import beams
+from models.beam.parameters import Params, Settings
+
+
+def nominal(n=1, **values):
+    fields = {**Params._field_defaults, **values}
+    return Params(*(np.broadcast_to(np.asarray(v, float), (n,)).copy() for v in fields.values()))
+
+
+def prepared(propagator, p, **settings):
+    s = Settings(**settings)
+    ((_, system),) = propagator.groups(beams(p, s), s)
+    return system
+
+
+def at_rest(propagator, system, n=1):
+    return propagator.start(system, np.zeros(n), np.zeros(n)), np.ones((n, 2))
+
+
+@pytest.mark.parametrize(
+    ("frequency", "decay", "step"),
+    [
+        (36.0, 1.0, 1e-4),
+        (36.0, 1.0, 0.05),
+        (8e4, 1e3, 5e-5),
+        (8e4, 8e4, 5e-5),  # critically damped
+        (8e4, 4e5, 5e-5),  # overdamped
+    ],
+)
+def test_a_mode_is_propagated_exactly_under_a_force_linear_in_the_step(frequency, decay, step):
+    w, d, h = frequency, decay, step
+    # z, z'/w and a force g0 + (g1 - g0) t/h as four first-order equations
+    a = np.zeros((4, 4))
+    a[0, 1], a[1, 0], a[1, 1], a[1, 2], a[2, 3] = w, -w, -2 * d, 1 / w, 1 / h
+    flow = expm(a * h)
+    p11, p12, p21, p22, a1, a2, b1, b2 = lanes._mode_step(w, d, h)
+    assert np.allclose([[p11, p12], [p21, p22]], flow[:2, :2], rtol=1e-10, atol=1e-13)
+    # a force that falls from 1 to 0 is a constant 1 less a rise from 0 to 1
+    rise = flow[:2, 3]
+    scale = np.abs(flow[:2, 2]).max()
+    assert np.allclose([b1, b2], rise, rtol=0, atol=1e-11 * scale)
+    assert np.allclose([a1, a2], flow[:2, 2] - rise, rtol=0, atol=1e-11 * scale)
+
+
+def test_without_contact_the_tip_follows_the_exact_solution_at_any_step():
+    p = nominal(force_amplitude=0.5, initial_displacement=5e-5, initial_velocity=2e-3)
+    x0 = p.initial_gap
+    traces = []
+    for propagator, steps in ((lanes, 50), (lanes, 200), (exact, 50)):
+        system = prepared(propagator, p, steps_per_period=steps)
+        state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
+        gaps = np.full((1, 2), 1e3)
+        record = propagator.advance(system, state, gaps, np.zeros((1, 2)), 20, trace=True)
+        traces.append(record.trace[0, steps // 50 - 1 :: steps // 50])
+    assert np.abs(traces[2]).max() > 0.1
+    assert np.abs(traces[0] - traces[2]).max() < 1e-9
+    assert np.abs(traces[1] - traces[2]).max() < 1e-9
+
+
+@pytest.mark.parametrize("frequency", [32.3591, 57.1042])
+def test_through_contacts_the_error_falls_with_the_square_of_the_step_or_faster(frequency):
+    p = nominal(forcing_frequency=frequency)
+    periods, coarse = 4, 200
+
+    def trace(propagator, steps):
+        system = prepared(propagator, p, steps_per_period=steps)
+        state, gaps = at_rest(propagator, system)
+        record = propagator.advance(system, state, gaps, np.zeros((1, 2)), periods, trace=True)
+        assert record.work.sum() > 1
+        return record.trace[0, steps // coarse - 1 :: steps // coarse]
+
+    truth = trace(exact, coarse)
+    errors = [np.abs(trace(lanes, steps) - truth).max() for steps in (200, 400, 800, 1600)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert errors[-1] < 2e-4 * np.abs(truth).max()
+    assert orders.mean() > 1.9
+
+
+def test_work_and_peak_of_a_period_are_those_of_the_exact_propagator():
+    p = nominal()
+    records = []
+    for propagator in (lanes, exact):
+        system = prepared(propagator, p, steps_per_period=1600)
+        state, gaps = at_rest(propagator, system)
+        records.append(propagator.advance(system, state, gaps, np.zeros((1, 2)), 4))
+    fast, truth = records
+    assert fast.work.sum() > 10
+    # the fast one books work at the turning point, so the contact under way is still to come
+    under_way = 0.5 * np.maximum(np.abs(fast.strobe[0, -1, 0]) - 1, 0) ** 2
+    assert under_way > 1
+    expected = truth.work.sum(axis=1) - [under_way if fast.strobe[0, -1, 0] > 0 else 0, 0]
+    assert np.allclose(fast.work.sum(axis=1), expected, rtol=1e-5)
+    assert np.allclose(fast.peak, truth.peak, rtol=1e-5)
+    assert np.allclose(fast.strobe[:, -1], truth.strobe[:, -1], rtol=1e-4, atol=1e-3)
+
+
+def test_gaps_grow_by_the_work_done_on_their_own_site():
+    p = nominal()
+    system = prepared(lanes, p)
+    state, gaps = at_rest(lanes, system)
+    growth = np.array([[1e-4, 3e-4]])
+    record = lanes.advance(system, state, gaps, growth, 30)
+    assert np.allclose(gaps, 1 + growth * record.work.sum(axis=1), rtol=1e-12)
+    assert (gaps > 1.005).all()
+
+
+def test_a_run_in_two_parts_is_the_run_in_one():
+    p = nominal(3, force_amplitude=[5.0, 6.0, 7.0])
+    system = prepared(lanes, p, steps_per_period=128)
+    state, gaps = at_rest(lanes, system, 3)
+    whole = lanes.advance(system, state, gaps, np.full((3, 2), 1e-4), 12)
+    again, parts = at_rest(lanes, system, 3)
+    pieces = [lanes.advance(system, again, parts, np.full((3, 2), 1e-4), k) for k in (5, 7)]
+    assert np.array_equal(whole.work, np.concatenate([r.work for r in pieces], axis=1))
+    assert np.array_equal(state, again)
+    assert np.array_equal(gaps, parts)
+
+
+def test_a_row_has_the_same_bits_alone_and_anywhere_among_others():
+    rng = np.random.default_rng(1)
+    n = 2 * lanes.LANES + 5
+    p = nominal(n, force_amplitude=rng.uniform(4, 8, n), contact_stiffness=rng.uniform(1e4, 2e4, n))
+    system = prepared(lanes, p, steps_per_period=128)
+
+    def works(rows):
+        state, gaps = at_rest(lanes, system, n)
+        part = system.take(rows)
+        record = lanes.advance(part, state[rows], gaps[rows], np.full((len(rows), 2), 1e-4), 20)
+        return record.work
+
+    order = rng.permutation(n)
+    together = works(np.arange(n))
+    assert np.array_equal(works(order), together[order])
+    for row in (0, 7, n - 1):
+        assert np.array_equal(works(np.array([row]))[0], together[row])
+
+
+def test_steps_are_as_long_as_contact_allows_and_set_by_the_row_alone():
+    p = nominal(3, contact_stiffness=[1e3, 13750.0, 2e5])
+    s = Settings()
+    chosen = {}
+    for rows, system in lanes.groups(beams(p, s), s):
+        assert (np.abs(system.sigma) <= lanes.COMPLIANCE).all()
+        chosen.update(dict.fromkeys(rows.tolist(), system.steps))
+    assert chosen[0] < chosen[1] < chosen[2]
+
+
+def test_compiled_and_plain_python_agree():
+    script = """
+import numpy as np
+from tests.models.beam.test_lanes import nominal, prepared, at_rest
+from models.beam import lanes
+system = prepared(lanes, nominal(forcing_frequency=57.0), elements=2, steps_per_period=64)
+state, gaps = at_rest(lanes, system)
+record = lanes.advance(system, state, gaps, np.full((1, 2), 1e-4), 4)
+print(repr(np.concatenate([record.work.ravel(), record.strobe.ravel(), gaps.ravel()]).tolist()))
+"""
+    results = []
+    for disable in ("0", "1"):
+        done = subprocess.run(
+            [sys.executable, "-c", script],
+            env={**os.environ, "NUMBA_DISABLE_JIT": disable},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        results.append(np.array(eval(done.stdout)))
+    assert results[0].max() > 0.1
+    assert np.allclose(results[0], results[1], rtol=1e-8, atol=1e-10)

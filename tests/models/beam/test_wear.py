@@ -1,0 +1,145 @@
+"""Lifetimes: known ones, exact scalings, the limit of slow wear, and lives that never end."""
+
+import numpy as np
+import pytest
+
+from models.beam import MODEL
+from models.beam.parameters import OUTPUTS, Params, Settings
+from models.beam.wear import extrapolate
+from uq.contract import Status
+
+NOMINAL = np.array(list(MODEL.nominal.values()))
+DEPTH = 2.5e-4  # one initial gap
+
+
+def rows(n=1, **values):
+    x = np.tile(NOMINAL, (n, 1))
+    for name, value in values.items():
+        x[:, Params._fields.index(name)] = value
+    return x
+
+
+def compute(x, **settings):
+    settings = {"depths": (DEPTH,), "accuracy": 0.1, **settings}
+    outputs, status = MODEL.batch(x, np.zeros(len(x), np.uint64), Settings(**settings))
+    return outputs, status
+
+
+def nondimensional(outputs, x):
+    """Return the paper's T of the first time to depth."""
+    p = Params(*x.T)
+    w0 = 2 * np.pi * outputs["fundamental_frequency"]
+    scale = w0 * p.wear_coefficient / p.contact_area * p.contact_stiffness * p.initial_gap
+    return outputs["first_time_to_depth"] * scale[:, None]
+
+
+@pytest.mark.parametrize(
+    ("frequency", "known", "ratio"),
+    [(54.797, 0.023937, 1.2908), (57.1042, 0.007806, 1.55)],
+)
+def test_known_lives_are_met_within_half_a_percent(frequency, known, ratio):
+    x = rows(forcing_frequency=frequency)
+    outputs, status = compute(x, accuracy=0.02)
+    assert status[0] == Status.OK
+    assert nondimensional(outputs, x)[0, 0] == pytest.approx(known, rel=5e-3)
+    assert outputs["lifetime_ratio"][0, 0] == pytest.approx(ratio, rel=5e-3)
+    error = outputs["first_time_to_depth_error"] / outputs["first_time_to_depth"]
+    assert 0 < error[0, 0] <= 0.02
+
+
+def test_the_gap_ratio_of_the_second_case_falls_as_published():
+    outputs, _ = compute(rows(), depths=(1.63 * DEPTH,), accuracy=0.02)
+    assert outputs["gap_ratio"][0, 0] == pytest.approx(0.68, abs=0.01)
+
+
+@pytest.mark.slow
+def test_the_life_through_changes_of_branch_is_met_within_two_percent():
+    x = rows(forcing_frequency=32.3591)
+    outputs, _ = compute(x, accuracy=0.02)
+    assert nondimensional(outputs, x)[0, 0] == pytest.approx(0.380, rel=0.02)
+    assert outputs["lifetime_ratio"][0, 0] == pytest.approx(1 / 1.49, rel=0.02)
+
+
+def test_life_scales_exactly_with_area_over_wear_coefficient_and_shares_one_simulation():
+    x = rows(3, wear_coefficient=[1e-14, 3e-15, 1e-14], contact_area=[4e-6, 4e-6, 1e-6])
+    together, _ = compute(x)
+    life = together["first_time_to_depth"][:, 0]
+    assert life[1] / life[0] == pytest.approx(1 / 0.3, rel=1e-12)
+    assert life[2] / life[0] == pytest.approx(0.25, rel=1e-12)
+    for i in range(3):
+        alone, _ = compute(x[i : i + 1])
+        assert all(np.array_equal(alone[k][0], together[k][i], equal_nan=True) for k in alone)
+
+
+def test_the_site_with_the_larger_wear_coefficient_wears_first():
+    x = rows(2, forcing_frequency=54.797, wear_coefficient_ratio=[2.0, 0.5])
+    x[1, Params._fields.index("wear_coefficient")] *= 2
+    outputs, _ = compute(x)
+    right, left = outputs["time_to_depth"][0, :, 0]
+    assert left < 0.7 * right
+    assert outputs["first_time_to_depth"][0, 0] == left
+    # the mirror image: coefficients exchanged between the sites
+    assert outputs["time_to_depth"][1, ::-1, 0] == pytest.approx([right, left], rel=0.03)
+
+
+def test_without_contact_the_rod_never_wears_through():
+    outputs, status = compute(rows(force_amplitude=0.05))
+    assert status[0] == Status.OK
+    for name in ("time_to_depth", "first_time_to_depth", "linear_time_to_depth"):
+        assert np.isposinf(outputs[name]).all()
+    assert not outputs["first_time_to_depth_censored"].any()
+    assert np.isnan(outputs["lifetime_ratio"]).all() and np.isnan(outputs["gap_ratio"]).all()
+
+
+def test_wear_that_ends_by_itself_never_reaches_the_greater_depth():
+    # far below resonance the gaps open until the tip no longer reaches them
+    p = {"forcing_frequency": 3.0, "force_amplitude": 0.15, "mass_damping": 30.0}
+    outputs, status = compute(rows(contact_stiffness=1e3, **p), depths=(1e-5, 1e-3))
+    assert status[0] == Status.OK
+    assert np.isfinite(outputs["first_time_to_depth"][0, 0])
+    assert np.isposinf(outputs["first_time_to_depth"][0, 1])
+    assert np.isfinite(outputs["linear_time_to_depth"]).all()
+
+
+def test_beyond_the_horizon_a_life_is_censored():
+    free, _ = compute(rows(), depths=(DEPTH / 2, DEPTH))
+    lives = free["first_time_to_depth"][0]
+    horizon = float(lives.mean())
+    outputs, status = compute(rows(), depths=(DEPTH / 2, DEPTH), horizon=horizon)
+    assert status[0] == Status.OK
+    assert outputs["first_time_to_depth"][0].tolist() == [lives[0], horizon]
+    assert outputs["first_time_to_depth_censored"][0].tolist() == [False, True]
+    assert np.isnan(outputs["lifetime_ratio"][0, 1])
+    assert np.array_equal(outputs["linear_time_to_depth"], free["linear_time_to_depth"])
+
+
+def test_a_life_in_one_row_does_not_depend_on_the_others():
+    rng = np.random.default_rng(3)
+    x = rows(20, force_amplitude=rng.uniform(5, 7, 20), contact_stiffness=rng.uniform(9e3, 2e4, 20))
+    together, _ = compute(x)
+    some = [17, 2, 9]
+    apart, _ = compute(x[some])
+    for name in OUTPUTS:
+        assert np.array_equal(apart[name], together[name][some], equal_nan=True), name
+
+
+@pytest.mark.parametrize(("order", "within"), [(1.0, 0.25), (2 / 3, 0.5)])
+def test_three_lives_with_one_power_law_of_error_are_extrapolated_to_its_limit(order, within):
+    n = np.array([1.0, 4.0, 16.0])
+    times = (1.0 + 0.2 * n**-order)[:, None]
+    time, error = extrapolate(times)
+    assert time == pytest.approx([1.0], abs=1e-9)
+    assert error == pytest.approx(within * (times[1] - times[2]))
+
+
+def test_two_lives_are_corrected_and_their_error_covers_the_slower_law():
+    for order in (1.0, 2 / 3):
+        times = 1.0 + 0.2 * np.array([1.0, 4.0])[:, None] ** -order
+        time, error = extrapolate(times)
+        assert abs(time[0] - 1.0) <= error[0]
+
+
+def test_scattered_lives_are_not_extrapolated():
+    time, error = extrapolate(np.array([[1.0], [1.1], [1.05]]))
+    assert time[0] == 1.05
+    assert error[0] == pytest.approx(0.025)

@@ -1,0 +1,232 @@
+"""What a model declares: the one module of ``uq`` that a model may import.
+
+For model authors
+-----------------
+Write one ``NamedTuple`` of floats (the parameters), one frozen dataclass (the numerical
+settings), a dict of `Output` and two functions, ``batch`` and ``simulate``; put them into a
+`Model` and name it in the entry-point group ``vibrolife.models``. Nothing in ``uq`` changes.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from enum import IntEnum
+from typing import Any, Literal, NamedTuple, get_args, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+Kind = Literal["value", "lifetime", "angle", "category"]
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A physical input of a model, as written beside its field.
+
+    Attributes
+    ----------
+    symbol : str
+        The symbol of the source paper.
+    unit : str
+        CF unit string, ``"1"`` for a pure number.
+    meaning : str
+        One line that a reader of a result understands.
+    bounds : tuple of float
+        What is admissible (not what is plausible), both ends included.
+    source : str
+        Where the nominal value comes from, and whether it is given, inferred, fitted or assumed.
+    """
+
+    symbol: str
+    unit: str
+    meaning: str
+    bounds: tuple[float, float]
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A numerical choice of a model: a tolerance, a mesh, a horizon; never random.
+
+    Attributes
+    ----------
+    meaning : str
+    unit : str
+        ``"1"`` for a pure number.
+    bounds : tuple of float, optional
+        Both ends included; for a list of numbers they hold for each.
+    choices : tuple of str
+        The allowed words of a setting that is a word.
+    """
+
+    meaning: str
+    unit: str = "1"
+    bounds: tuple[float, float] | None = None
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """One result of a model.
+
+    Attributes
+    ----------
+    unit : str
+    meaning : str
+    kind : {"value", "lifetime", "angle", "category"}
+        A ``lifetime`` is +inf where it is never reached and has, unless `may_be_censored` is
+        false, a companion ``<name>_censored`` (bool) in what ``batch`` returns. An ``angle`` is
+        compared with thresholds by its magnitude. A ``category`` is an index into `categories`.
+    dims : tuple of str
+        Names of the dimensions beyond the row; their coordinates come from `Model.coordinates`.
+    may_be_undefined : bool
+        Whether NaN is a legitimate value: no meaning in this row's regime.
+    may_be_censored : bool
+        For lifetimes only.
+    categories : tuple of str
+        For categories only.
+    """
+
+    unit: str
+    meaning: str
+    kind: Kind = "value"
+    dims: tuple[str, ...] = ()
+    may_be_undefined: bool = False
+    may_be_censored: bool = True
+    categories: tuple[str, ...] = ()
+
+    @property
+    def has_censored_flag(self) -> bool:
+        """Whether ``batch`` returns ``<name>_censored`` beside this output."""
+        return self.kind == "lifetime" and self.may_be_censored
+
+
+class Status(IntEnum):
+    """How a row ended. The names, in lower case with hyphens, are part of the result's schema."""
+
+    OK = 0
+    OUT_OF_BUDGET = 1
+    NON_FINITE = 2
+    RAISED = 3
+    BAD_SHAPE = 4
+    CRASHED = 5
+    TIMED_OUT = 6
+
+    @property
+    def label(self) -> str:
+        """The name used in files and tables, such as ``out-of-budget``."""
+        return self.name.lower().replace("_", "-")
+
+    @property
+    def meaning(self) -> str:
+        """One sentence for a reader."""
+        return _STATUS_MEANING[self]
+
+
+_STATUS_MEANING = {
+    Status.OK: "The row was computed.",
+    Status.OUT_OF_BUDGET: "The model's step budget ended before the row was finished.",
+    Status.NON_FINITE: "The model returned a value that is not finite where it must be.",
+    Status.RAISED: "The model raised an exception on this row.",
+    Status.BAD_SHAPE: "The model returned an array of the wrong shape for this row.",
+    Status.CRASHED: "The row killed the worker process that computed it.",
+    Status.TIMED_OUT: "The row outlived its time limit and was stopped from outside.",
+}
+
+
+class Trajectory(NamedTuple):
+    """One labelled time history, as ``simulate`` returns it.
+
+    Attributes
+    ----------
+    time : ndarray, shape (k,)
+        [s]
+    quantities : dict of str to tuple
+        Name -> (unit, meaning, values of shape (k,)).
+    """
+
+    time: NDArray[np.float64]
+    quantities: Mapping[str, tuple[str, str, NDArray[np.float64]]]
+
+
+Batch = Callable[
+    [NDArray[np.float64], NDArray[np.uint64], Any],
+    tuple[Mapping[str, NDArray[Any]], NDArray[np.int8]],
+]
+"""``batch(x, seed, settings)``: x (n, d) in declared order, seed (n,), a settings object ->
+({output name: (n, *dims)}, status (n,) int8). Row i depends on x[i], seed[i] and settings alone."""
+
+
+def _no_coordinates(settings: Any) -> Mapping[str, Sequence[Any]]:
+    return {}
+
+
+@dataclass(frozen=True)
+class Model:
+    """A machine as the platform sees it.
+
+    Attributes
+    ----------
+    name : str
+    title : str
+        One line.
+    version : str
+        Changes whenever the same input may give another number; part of a study's identity.
+    parameters : type
+        A NamedTuple class; each field ``Annotated[float, Parameter(...)] = nominal``.
+    settings : type
+        A frozen dataclass; each field ``Annotated[type, Setting(...)] = default``.
+    outputs : dict of str to Output
+    batch : callable
+        See `Batch`.
+    simulate : callable, optional
+        ``simulate(params, settings, seed=0) -> Trajectory``.
+    coordinates : callable
+        ``coordinates(settings) -> {dimension: values}`` for every dimension the outputs name.
+    block : int
+        Rows that the kernel advances together; a chunk shorter than this wastes work.
+    references : tuple of str
+        What to cite.
+    """
+
+    name: str
+    title: str
+    version: str
+    parameters: type
+    settings: type
+    outputs: Mapping[str, Output]
+    batch: Batch
+    simulate: Callable[..., Trajectory] | None = None
+    coordinates: Callable[[Any], Mapping[str, Sequence[Any]]] = field(default=_no_coordinates)
+    block: int = 1
+    references: tuple[str, ...] = ()
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """Names in declared order: the columns of ``x``."""
+        return self.parameters._fields  # type: ignore[attr-defined]
+
+    @property
+    def nominal(self) -> dict[str, float]:
+        """Nominal value of every parameter, in declared order."""
+        return dict(self.parameters._field_defaults)  # type: ignore[attr-defined]
+
+    def parameter(self, name: str) -> Parameter:
+        """Return the declaration of one parameter."""
+        return _declaration(self.parameters, name, Parameter)
+
+    def setting(self, name: str) -> Setting:
+        """Return the declaration of one setting."""
+        return _declaration(self.settings, name, Setting)
+
+    @property
+    def setting_names(self) -> tuple[str, ...]:
+        """Names of the settings in declared order."""
+        return tuple(f.name for f in fields(self.settings))
+
+
+def _declaration(owner: type, name: str, kind: type) -> Any:
+    hint = get_type_hints(owner, include_extras=True)[name]
+    for extra in get_args(hint)[1:]:
+        if isinstance(extra, kind):
+            return extra
+    raise TypeError(f"{owner.__name__}.{name} is declared without a {kind.__name__}")
