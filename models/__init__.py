@@ -1,0 +1,1 @@
+"""The machines: they know nothing of sampling, dask, files or xarray."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from models.beam import exact, lanes, response, wear
 from models.beam.modal import Array, Beams, beams
-from models.beam.parameters import Params, Settings
+from models.beam.parameters import Params, Rows, Settings
 from uq.contract import Status
 
 PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
@@ -44,14 +44,14 @@ def batch(
         As `models.beam.parameters.OUTPUTS` says, with ``*_censored`` beside each lifetime.
     status : ndarray of int8, shape (n,)
     """
-    p = Params(*np.ascontiguousarray(x.T))
+    p: Rows = Params._make(np.ascontiguousarray(x.T))
     dynamic = np.delete(x, _SCALES, axis=1)
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
-    simulated = simulate_rows(Params(*np.ascontiguousarray(x[first].T)), settings)
+    simulated = simulate_rows(Params._make(np.ascontiguousarray(x[first].T)), settings)
     return _in_units(p, _take(simulated, back.reshape(-1)), settings)
 
 
-def simulate_rows(p: Params, settings: Settings) -> Simulated:
+def simulate_rows(p: Rows, settings: Settings) -> Simulated:
     """Find the settled response and the nondimensional lives of n beams.
 
     Parameters
@@ -68,20 +68,20 @@ def simulate_rows(p: Params, settings: Settings) -> Simulated:
     propagator = PROPAGATORS[settings.propagator]
     parts, order = [], []
     for rows, system in propagator.groups(b, settings):
-        q = Params(*(field[rows] for field in p))
+        q = Params._make(field[rows] for field in p)
         parts.append(_simulate_group(propagator, system, q, b.take(rows), settings))
         order.append(rows)
     back = np.argsort(np.concatenate(order))
     return _take(_join(parts), back)
 
 
-def initial_gaps(p: Params) -> Array:
+def initial_gaps(p: Rows) -> Array:
     """Return the right and the left gap when new, in initial gaps, shape (n, 2)."""
     return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
 
 
 def _simulate_group(
-    propagator: ModuleType, system: Any, p: Params, b: Beams, settings: Settings
+    propagator: ModuleType, system: Any, p: Rows, b: Beams, settings: Settings
 ) -> Simulated:
     gaps = initial_gaps(p)
     x0 = p.initial_gap
@@ -97,8 +97,8 @@ def _simulate_group(
 
 def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
     return Simulated(
-        response.Response(*(a[rows] for a in s.response)),
-        wear.Lives(*(a[rows] for a in s.lives)),
+        response.Response._make(a[rows] for a in s.response),
+        wear.Lives._make(a[rows] for a in s.lives),
         s.fundamental[rows],
     )
 
@@ -108,14 +108,14 @@ def _join(parts: list[Simulated]) -> Simulated:
         return [np.concatenate(columns) for columns in zip(*values, strict=True)]
 
     return Simulated(
-        response.Response(*each([s.response for s in parts])),
-        wear.Lives(*each([s.lives for s in parts])),
+        response.Response._make(each([s.response for s in parts])),
+        wear.Lives._make(each([s.lives for s in parts])),
         np.concatenate([s.fundamental for s in parts]),
     )
 
 
 def _in_units(
-    p: Params, s: Simulated, settings: Settings
+    p: Rows, s: Simulated, settings: Settings
 ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
     """Give the results their units, and apply the horizon."""
     joule = p.contact_stiffness * p.initial_gap**2

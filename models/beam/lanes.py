@@ -65,7 +65,7 @@ class System(NamedTuple):
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return the systems of some rows."""
-        return System(*(a[rows] for a in self[:-1]), self.steps)
+        return System._make([*(a[rows] for a in self[:-1]), self.steps])
 
 
 @kernel

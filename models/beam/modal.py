@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.finite_element import modes
-from models.beam.parameters import Params, Settings
+from models.beam.parameters import Rows, Settings
 
 Array = NDArray[np.float64]
 
@@ -44,10 +44,10 @@ class Beams(NamedTuple):
 
     def take(self, rows: NDArray[np.intp]) -> "Beams":
         """Return the beams of some rows."""
-        return Beams(*(a[rows] for a in self))
+        return Beams._make(a[rows] for a in self)
 
 
-def beams(p: Params, settings: Settings) -> Beams:
+def beams(p: Rows, settings: Settings) -> Beams:
     """Bring n beams into modal form.
 
     Parameters
@@ -95,7 +95,8 @@ def steady_response(b: Beams) -> NDArray[np.complex128]:
         Z_i of z_i = Re(Z_i exp(i Omega t)), in initial gaps.
     """
     forcing = b.forcing[:, None]
-    return b.mobility * b.force[:, None] / (b.frequency**2 - forcing**2 + 2j * b.decay * forcing)
+    stiffness = np.asarray(b.frequency**2 - forcing**2 + 2j * b.decay * forcing, complex)
+    return b.mobility * b.force[:, None] / stiffness
 
 
 class Record(NamedTuple):

@@ -170,6 +170,10 @@ class Params(NamedTuple):
     ] = 0.0
 
 
+Rows = Any
+"""n beams at once: a `Params` whose fields are arrays of shape (n,)."""
+
+
 @dataclass(frozen=True)
 class Settings:
     """Numerical choices of the beam."""

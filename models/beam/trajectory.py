@@ -4,7 +4,7 @@ import numpy as np
 
 from models.beam.batch import PROPAGATORS, initial_gaps
 from models.beam.modal import beams
-from models.beam.parameters import Params, Settings
+from models.beam.parameters import Params, Rows, Settings
 from uq.contract import Trajectory
 
 PERIODS = 100
@@ -24,7 +24,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     -------
     Trajectory
     """
-    p = Params(*(np.array([value], float) for value in params))
+    p: Rows = Params._make(np.array([value], float) for value in params)
     propagator = PROPAGATORS[settings.propagator]
     ((_, system),) = propagator.groups(beams(p, settings), settings)
     gaps = initial_gaps(p)

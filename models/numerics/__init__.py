@@ -1,0 +1,1 @@
+"""What two machines share; knows no machine."""

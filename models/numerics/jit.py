@@ -31,8 +31,8 @@ def _ask_for_full_width_vectors() -> None:
         return
     from llvmlite import binding
 
-    features = binding.get_host_cpu_features()
-    flat = features.flatten() if isinstance(features, dict) else str(features)
+    features: Any = binding.get_host_cpu_features()
+    flat = features.flatten()
     if features.get("avx512f") and "numba" not in sys.modules:
         flat += ",-prefer-256-bit"
     os.environ["NUMBA_CPU_NAME"] = binding.get_host_cpu_name()
@@ -79,12 +79,12 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 @contextmanager
 def _our_cache_folder():
     """Point numba at our folder while a function is decorated, and leave the user's be."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(CACHE_FOLDER)
+    config: Any = numba.config
+    before, config.CACHE_DIR = config.CACHE_DIR, str(CACHE_FOLDER)
     try:
         yield
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before
 
 
 def kernel(function: Function) -> Function:
@@ -94,6 +94,7 @@ def kernel(function: Function) -> Function:
     contraction and the sign of zero are given away, so no sum is reassociated.
     """
     with _our_cache_folder():
-        return numba.njit(
+        compiled: Any = numba.njit(
             cache=True, nogil=True, error_model="numpy", fastmath={"contract", "nsz"}
         )(function)
+    return compiled
