@@ -32,7 +32,7 @@ MODEL = Model(
     batch=_batch,
     simulate=_simulate,
     coordinates=coordinates,
-    block=16,
+    block=256,
     references=(
         "J. Knudsen, A. R. Massih, Impact work-rate and wear of a loosely supported beam subject "
         "to harmonic excitation, ASME IMECE 2002",

@@ -68,7 +68,7 @@ class Params(NamedTuple):
             "k_c",
             "N m-1",
             "stiffness of each elastic stop",
-            (4e2, 4.2e5),
+            (1e2, 1e7),
             f"{PAPER}: inferred, printed without its leading digit",
         ),
     ] = 13750.0

@@ -10,6 +10,7 @@ The limit of infinitely slow wear is what a lifetime means. A run with 4 N perio
 than one with N, and the difference of the two tells how near: see `lives`.
 """
 
+import math
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -18,8 +19,8 @@ from numpy.typing import NDArray
 
 from models.beam.modal import Array
 
-FIRST_LEVEL = 128  # periods for the deepest depth, quadrupled at each further level
-LEVELS = 5
+SHORTEST = 128  # N of the first run; each further one lasts four times as long
+LONGEST = 660  # over the accuracy: N of the last run at most
 LOOKS = 32  # changes of the acceleration in N periods
 OVERTIME = 4  # a run may last this many times N periods
 _MEMORY = 0.25  # weight of the newest look in the running work-rate
@@ -215,7 +216,8 @@ def lives(
     propagator, system, state, gaps, work, share, growths
         As in `run`.
     accuracy : float
-        Relative error at which a beam's lives are good enough.
+        Relative error at which a beam's lives are good enough. It also sets the longest run: where
+        that does not suffice, the error says so.
 
     Returns
     -------
@@ -229,9 +231,10 @@ def lives(
         np.zeros((n, depths)),
         np.zeros(n, np.int64),
     )
-    times = np.empty((LEVELS, n, 3, depths))
+    levels = max(2, 1 + int(math.log(LONGEST / (SHORTEST * accuracy), 4)))
+    times = np.empty((levels, n, 3, depths))
     left = np.arange(n)
-    for level in range(LEVELS):
+    for level in range(levels):
         one = run(
             propagator,
             system.take(left),
@@ -240,7 +243,7 @@ def lives(
             work[left],
             share[left],
             growths[left],
-            FIRST_LEVEL * 4**level,
+            SHORTEST * 4**level,
         )
         times[level, left, :2] = one.time
         times[level, left, 2] = one.time.min(axis=1)

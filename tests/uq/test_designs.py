@@ -1,0 +1,138 @@
+"""Points of the unit cube: the promises every design makes, and those that tell them apart."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from SALib.sample import sobol as salib_sobol
+from scipy.stats import qmc
+
+from uq.designs import DESIGNS, block_names, replicate_seed
+
+SIZE = 64
+
+
+def points(method, start=0, stop=SIZE, *, samples=SIZE, seed=5, replicates=2, d=3, **more):
+    return DESIGNS[method].unit_rows(
+        seed=seed,
+        replicates=replicates,
+        d=d,
+        samples=samples,
+        second_order=more.get("second_order", False),
+        start=start,
+        stop=stop,
+    )
+
+
+@pytest.mark.parametrize("method", DESIGNS)
+def test_points_lie_inside_the_open_cube(method):
+    cube = points(method)
+    assert cube.shape == (SIZE, 2, DESIGNS[method].blocks(3, False), 3)
+    assert np.all((cube > 0) & (cube < 1))
+
+
+@given(
+    method=st.sampled_from(sorted(DESIGNS)),
+    cuts=st.lists(st.integers(0, SIZE), max_size=4),
+    second_order=st.booleans(),
+)
+def test_any_cutting_gives_the_same_bits(method, cuts, second_order):
+    edges = [0, *sorted(cuts), SIZE]
+    parts = [
+        points(method, start, stop, second_order=second_order)
+        for start, stop in zip(edges, edges[1:], strict=False)
+    ]
+    whole = points(method, second_order=second_order)
+    assert np.concatenate(parts).tobytes() == whole.tobytes()
+
+
+@pytest.mark.parametrize("method", DESIGNS)
+def test_more_samples_append_where_the_design_says_so(method):
+    first, again = points(method), points(method, 0, SIZE, samples=4 * SIZE)
+    assert np.array_equal(first, again) == DESIGNS[method].append_only
+
+
+def test_only_the_latin_hypercube_cannot_be_extended():
+    fixed = {name for name, design in DESIGNS.items() if not design.append_only}
+    assert fixed == {"latin-hypercube"}
+
+
+@pytest.mark.parametrize("method", DESIGNS)
+def test_replicates_and_seeds_have_nothing_in_common(method):
+    cube, other = points(method, replicates=3), points(method, seed=6)
+    groups = [cube[:, 0, 0], cube[:, 1, 0], cube[:, 2, 0], other[:, 0, 0], other[:, 1, 0]]
+    assert len({value for group in groups for value in group.ravel()}) == 5 * SIZE * 3
+
+
+@pytest.mark.parametrize("method", DESIGNS)
+def test_a_replicate_does_not_depend_on_how_many_there_are(method):
+    few, many = points(method, replicates=2), points(method, replicates=5)
+    np.testing.assert_array_equal(few, many[:, :2])
+
+
+def test_replicates_draw_from_the_streams_numpy_calls_independent():
+    spawned = np.random.SeedSequence(2026).spawn(3)
+    for replicate, seed in enumerate(spawned):
+        ours = replicate_seed(2026, replicate).generate_state(8)
+        np.testing.assert_array_equal(ours, seed.generate_state(8))
+
+
+def test_means_of_replicates_scatter_as_independent_ones():
+    means = points("monte-carlo", 0, 200, samples=200, replicates=400, d=1).mean(axis=0).ravel()
+    # Standard error of a mean of 200 uniform numbers, and of that scatter among 400: 3.5 %.
+    assert means.std(ddof=1) == pytest.approx(np.sqrt(1 / 12 / 200), rel=0.15)
+
+
+@pytest.mark.parametrize("second_order", [False, True])
+def test_saltelli_rows_are_those_of_salib(second_order):
+    problem = {"num_vars": 3, "names": ["a", "b", "c"], "bounds": [[0.0, 1.0]] * 3}
+    cube = points("saltelli", second_order=second_order)
+    for replicate in range(2):
+        theirs = salib_sobol.sample(
+            problem,
+            SIZE,
+            calc_second_order=second_order,
+            seed=np.random.default_rng(replicate_seed(5, replicate)),
+        )
+        np.testing.assert_array_equal(cube[:, replicate].reshape(-1, 3), theirs)
+
+
+def test_blocks_are_named_in_row_order():
+    names = block_names(DESIGNS["saltelli"], ("p", "q"), second_order=True)
+    assert names == ("A", "AB_p", "AB_q", "BA_p", "BA_q", "B")
+    a, ab_p, ab_q, ba_p, ba_q, b = points("saltelli", d=2, second_order=True)[0, 0]
+    assert (ab_p[0], ab_p[1]) == (b[0], a[1])
+    assert (ab_q[0], ab_q[1]) == (a[0], b[1])
+    assert (ba_p[0], ba_p[1]) == (a[0], b[1])
+    assert (ba_q[0], ba_q[1]) == (b[0], a[1])
+
+
+def test_blocks_of_a_plain_design_are_samples():
+    assert block_names(DESIGNS["halton"], ("p", "q"), second_order=False) == ("sample",)
+
+
+@pytest.mark.parametrize("method", ["latin-hypercube", "sobol"])
+def test_stratified_designs_fill_each_slice_once(method):
+    for replicate in range(2):
+        slices = np.floor(points(method)[:, replicate, 0] * SIZE).astype(int)
+        np.testing.assert_array_equal(np.sort(slices, axis=0), np.tile(np.arange(SIZE), (3, 1)).T)
+
+
+def test_a_halton_design_is_more_even_than_chance():
+    even = qmc.discrepancy(points("halton", 0, 256, samples=256)[:, 0, 0])
+    chance = qmc.discrepancy(points("monte-carlo", 0, 256, samples=256)[:, 0, 0])
+    assert even < chance / 5
+
+
+@pytest.mark.parametrize("method", ["sobol", "saltelli"])
+@pytest.mark.parametrize(("samples", "following"), [(3, 4), (1000, 1024), (1025, 2048)])
+def test_the_next_legal_size_is_told(method, samples, following):
+    problem = DESIGNS[method].size_problem(samples)
+    assert problem == f"must be a power of two; the next is {following}"
+    assert DESIGNS[method].size_problem(following) is None
+
+
+@pytest.mark.parametrize("method", ["monte-carlo", "latin-hypercube", "halton"])
+def test_other_designs_take_any_size(method):
+    assert DESIGNS[method].size_problem(1000) is None
+    assert DESIGNS[method].size_problem(0) == "must be between 1 and 1073741824"

@@ -1,0 +1,111 @@
+"""Every law has the moments and quantiles that its name and arguments promise."""
+
+from math import exp, gamma, log, sqrt
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from uq.study_file import LAW, LAWS
+
+# name -> arguments, mean, standard deviation in closed form
+MOMENTS = {
+    "uniform": ({"lower": 2.0, "upper": 5.0}, 3.5, 3 / sqrt(12)),
+    "loguniform": (
+        {"lower": 2.0, "upper": 5.0},
+        3 / log(2.5),
+        sqrt((25 - 4) / (2 * log(2.5)) - (3 / log(2.5)) ** 2),
+    ),
+    "normal": ({"mean": 3.0, "sd": 0.5}, 3.0, 0.5),
+    # The classical half normal: mean + sd sqrt(2/pi), variance sd^2 (1 - 2/pi).
+    "truncated-normal": (
+        {"mean": 3.0, "sd": 0.5, "lower": 3.0, "upper": 300.0},
+        3 + 0.5 * sqrt(2 / np.pi),
+        0.5 * sqrt(1 - 2 / np.pi),
+    ),
+    "lognormal": ({"mean": 13750.0, "cv": 0.15}, 13750.0, 0.15 * 13750.0),
+    "triangular": (
+        {"lower": 1.0, "mode": 2.0, "upper": 6.0},
+        3.0,
+        sqrt((1 + 4 + 36 - 2 - 6 - 12) / 18),
+    ),
+    "beta": (
+        {"alpha": 2.0, "beta": 3.0, "lower": 1.0, "upper": 6.0},
+        1 + 5 * 0.4,
+        5 * sqrt(2 * 3 / (25 * 6)),
+    ),
+    "weibull": (
+        {"shape": 2.0, "scale": 3.0},
+        3 * gamma(1.5),
+        3 * sqrt(gamma(2) - gamma(1.5) ** 2),
+    ),
+    "gamma": ({"shape": 2.5, "scale": 3.0}, 7.5, 3 * sqrt(2.5)),
+}
+
+
+def law(distribution, **arguments):
+    return LAW.validate_python({"distribution": distribution, **arguments})
+
+
+def test_every_law_has_its_moments_stated():
+    assert set(MOMENTS) == set(LAWS)
+
+
+@pytest.mark.parametrize("name", MOMENTS)
+def test_mean_and_standard_deviation(name):
+    arguments, mean, sd = MOMENTS[name]
+    frozen = law(name, **arguments).frozen()
+    assert frozen.mean() == pytest.approx(mean, rel=1e-10)
+    assert frozen.std() == pytest.approx(sd, rel=1e-10)
+
+
+@pytest.mark.parametrize("cv", [1e-3, 0.15, 1.0, 10.0])
+def test_a_lognormal_has_exactly_the_mean_and_cv_asked_for(cv):
+    frozen = law("lognormal", mean=2e-14, cv=cv).frozen()
+    assert frozen.mean() == pytest.approx(2e-14, rel=1e-12)
+    assert frozen.std() / frozen.mean() == pytest.approx(cv, rel=1e-12)
+
+
+def test_the_two_ways_to_write_a_lognormal_agree():
+    one = law("lognormal", median=3.0, sigma=0.4).frozen()
+    mean, cv = 3.0 * exp(0.08), sqrt(exp(0.16) - 1)
+    other = law("lognormal", mean=mean, cv=cv).frozen()
+    u = np.linspace(0.01, 0.99, 25)
+    np.testing.assert_allclose(one.ppf(u), other.ppf(u), rtol=1e-12)
+    assert one.median() == pytest.approx(3.0)
+
+
+def test_the_survival_of_a_weibull_is_the_one_documented():
+    frozen = law("weibull", shape=1.5, scale=3.0).frozen()
+    assert frozen.sf(2.0) == pytest.approx(exp(-((2 / 3) ** 1.5)))
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("uniform", {"lower": 1.0, "upper": 1.0}),
+        ("uniform", {"lower": 2.0, "upper": 1.0}),
+        ("loguniform", {"lower": 0.0, "upper": 1.0}),
+        ("loguniform", {"lower": 2.0, "upper": 1.0}),
+        ("normal", {"mean": 1.0, "sd": 0.0}),
+        ("normal", {"mean": float("nan"), "sd": 1.0}),
+        ("truncated-normal", {"mean": 1.0, "sd": 1.0, "lower": 2.0, "upper": 1.0}),
+        ("lognormal", {"mean": 1.0}),
+        ("lognormal", {"mean": 1.0, "sigma": 1.0}),
+        ("lognormal", {"mean": 1.0, "cv": 0.1, "median": 1.0, "sigma": 0.1}),
+        ("lognormal", {"mean": -1.0, "cv": 0.1}),
+        ("triangular", {"lower": 1.0, "mode": 3.0, "upper": 2.0}),
+        ("triangular", {"lower": 1.0, "mode": 1.0, "upper": 1.0}),
+        ("beta", {"alpha": 0.0, "beta": 1.0, "lower": 0.0, "upper": 1.0}),
+        ("beta", {"alpha": 1.0, "beta": 1.0, "lower": 1.0, "upper": 0.0}),
+        ("weibull", {"shape": -1.0, "scale": 1.0}),
+        ("gamma", {"shape": 1.0, "scale": 0.0}),
+    ],
+)
+def test_arguments_that_make_no_law_are_refused(name, arguments):
+    with pytest.raises(ValidationError):
+        law(name, **arguments)
+
+
+def test_the_ends_of_a_triangle_may_carry_its_mode():
+    assert law("triangular", lower=1.0, mode=1.0, upper=4.0).frozen().mean() == pytest.approx(2.0)

@@ -1,0 +1,65 @@
+import sys
+from importlib.metadata import EntryPoint
+
+import pytest
+
+from models.analytic import LINEAR
+from uq import registry
+from uq.contract import Model
+from uq.errors import InputError
+from uq.registry import find_model, model_names
+
+
+def message(reference):
+    with pytest.raises(InputError) as caught:
+        find_model(reference)
+    (line,) = caught.value.lines
+    return line
+
+
+def test_the_models_with_known_answers_are_installed():
+    names = {"ishigami", "g-function", "linear", "exponential-wear"}
+    assert names <= set(model_names())
+    for name in names:
+        assert find_model(name).name == name
+
+
+def test_a_wrong_name_gets_the_nearest_right_one():
+    assert "no such model 'linaer'; did you mean 'linear'?" in message("linaer")
+
+
+def test_a_model_is_found_where_it_lives():
+    assert find_model("models.analytic:LINEAR") is LINEAR
+
+
+def test_a_model_in_the_working_folder_is_found(tmp_path, monkeypatch):
+    (tmp_path / "toy_model.py").write_text("from models.analytic import LINEAR as TOY\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    assert find_model("toy_model:TOY") is LINEAR
+
+
+@pytest.mark.parametrize(
+    ("reference", "said"),
+    [
+        ("models.analytic:", "package.module:ATTRIBUTE"),
+        (":LINEAR", "package.module:ATTRIBUTE"),
+        ("no_such_package:MODEL", "ModuleNotFoundError: No module named 'no_such_package'"),
+        ("models.analytic:NOTHING", "AttributeError"),
+        ("models.analytic:linear", "is a function, not a uq.contract.Model"),
+        ("..:x", "cannot be imported"),
+    ],
+)
+def test_a_reference_that_leads_nowhere_says_why(reference, said):
+    assert said in message(reference)
+
+
+def test_a_broken_model_is_one_line_and_leaves_the_others_alone(tmp_path, monkeypatch):
+    (tmp_path / "broken_model.py").write_text("import sys\nsys.exit('no licence\\nfound')\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    broken = EntryPoint("broken", "broken_model:MODEL", registry.GROUP)
+    installed = registry._entry_points() | {"broken": broken}
+    monkeypatch.setattr(registry, "_entry_points", lambda: installed)
+    assert "broken" in model_names()
+    assert "SystemExit: no licence found" in message("broken")
+    assert isinstance(find_model("linear"), Model)

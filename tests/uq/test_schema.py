@@ -1,0 +1,131 @@
+"""The JSON Schema accepts good studies and points at the entries of bad ones."""
+
+import json
+import tomllib
+
+import pytest
+from jsonschema import Draft7Validator
+from study_text import UNIFORM, study_text
+
+from uq.registry import find_model, model_names
+from uq.schema import json_schema
+from uq.study_file import LAWS, AnalysisTable, DesignTable
+from uq.template import template
+
+
+@pytest.fixture(scope="module")
+def validator():
+    schema = json.loads(json.dumps(json_schema(), allow_nan=False))
+    Draft7Validator.check_schema(schema)
+    return Draft7Validator(schema)
+
+
+def faults(validator, changes=None, text=None):
+    data = tomllib.loads(study_text(changes) if text is None else text)
+    return {"/".join(map(str, error.absolute_path)) for error in validator.iter_errors(data)}
+
+
+def test_a_good_study_is_valid(validator):
+    assert faults(validator) == set()
+
+
+@pytest.mark.parametrize("name", model_names())
+def test_the_template_of_every_model_is_valid(validator, name):
+    assert faults(validator, text=template(find_model(name))) == set()
+
+
+@pytest.mark.parametrize(
+    ("changes", "place"),
+    [
+        ({"study": {"model": "ishigmi"}}, "study/model"),
+        ({"study": {"name": None}}, "study"),
+        ({"study": {"modle": "x"}}, "study"),
+        ({"desing": {"seed": 1}}, ""),
+        ({"design": {"method": "monte_carlo"}}, "design/method"),
+        ({"design": {"method": "sobol", "samples": 1000}}, "design/samples"),
+        ({"design": {"method": "saltelli", "samples": 1000}}, "design/samples"),
+        ({"design": {"samples": 1.5}}, "design/samples"),
+        ({"design": {"samples": True}}, "design/samples"),
+        ({"design": {"second_order": True}}, "design/second_order"),
+        ({"uncertain": {"x4": UNIFORM}}, "uncertain"),
+        ({"uncertain": {"x3": {**UNIFORM, "meen": 1}}}, "uncertain/x3"),
+        ({"uncertain": {"x3": {"distribution": "normal", "mean": 0}}}, "uncertain/x3"),
+        (
+            {"uncertain": {"x3": {"distribution": "lognormal", "mean": 1, "sigma": 1}}},
+            "uncertain/x3",
+        ),
+        ({"uncertain": {"x1": None, "x2": None, "x3": None}}, "uncertain"),
+        ({"fixed": {"x4": 1.0}}, "fixed"),
+        ({"fixed": {"x3": 5.0}}, "fixed/x3"),
+        ({"settings": {"depth": 1}}, "settings"),
+        ({"analysis": {"outputs": ["z"]}}, "analysis/outputs/0"),
+        ({"analysis": {"thresholds": {"z": 1.0}}}, "analysis/thresholds"),
+        ({"analysis": {"quantiles": [0.5, 2]}}, "analysis/quantiles/1"),
+        (
+            {
+                "design": {"method": "halton"},
+                "analysis": {"tolerance": {"coverage": 0.9, "confidence": 0.9}},
+            },
+            "analysis/tolerance",
+        ),
+        ({"analysis": {"tolerance": {"coverage": 0.9}}}, "analysis/tolerance"),
+        ({"analysis": {"sensitivity": ["sobol"]}}, "analysis/sensitivity/0"),
+    ],
+)
+def test_the_fault_is_where_it_is(validator, changes, place):
+    assert faults(validator, changes) == {place}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"design": {"method": "saltelli", "second_order": True, "samples": 1024}},
+        {"analysis": {"tolerance": {"coverage": 0.9, "confidence": 0.9}}},
+        {"analysis": {"thresholds": {"y": [1, 2.5]}, "sensitivity": ["pawn"]}},
+        {"uncertain": {"x3": {"distribution": "lognormal", "median": 1, "sigma": 0.1}}},
+        {"settings": {}, "fixed": {}},
+    ],
+)
+def test_what_a_study_may_say_is_valid(validator, changes):
+    assert faults(validator, changes) == set()
+
+
+def test_settings_of_a_model_carry_their_choices(validator):
+    linear = {
+        "study": {"model": "linear"},
+        "uncertain": {"x2": None, "x3": None, "x1": {**UNIFORM, "lower": 0, "upper": 1}},
+    }
+    assert faults(validator, linear | {"settings": {"fail_how": "nan"}}) == set()
+    assert faults(validator, linear | {"settings": {"fail_how": "no"}}) == {"settings/fail_how"}
+    assert faults(validator, linear | {"settings": {"fail_above": "x"}}) == {"settings/fail_above"}
+
+
+def test_an_editor_can_explain_every_key(validator):
+    for table in (DesignTable, AnalysisTable):
+        for key, entry in validator.schema["definitions"][table.__name__]["properties"].items():
+            assert entry.get("description"), key
+    models = {
+        rule["if"]["properties"]["study"]["properties"]["model"]["const"]: rule["then"]
+        for rule in validator.schema["allOf"]
+        if "study" in rule["if"]["properties"]
+    }
+    assert set(models) == set(model_names())
+    for model_name, then in models.items():
+        model = find_model(model_name)
+        for wanted in ("fixed", "uncertain"):
+            entries = then["properties"][wanted]["properties"]
+            assert tuple(entries) == model.parameter_names
+            for parameter, entry in entries.items():
+                assert model.parameter(parameter).unit in entry["title"]
+                assert model.parameter(parameter).meaning in entry["description"]
+        assert tuple(then["properties"]["settings"]["properties"]) == model.setting_names
+
+
+def test_nothing_may_be_null(validator):
+    assert "null" not in json.dumps(validator.schema)
+    assert set(LAWS) == {
+        validator.schema["definitions"][reference["$ref"].rpartition("/")[2]]["properties"][
+            "distribution"
+        ]["const"]
+        for reference in validator.schema["definitions"]["Law"]["oneOf"]
+    }

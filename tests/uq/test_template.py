@@ -1,0 +1,44 @@
+"""The study file of ``uq init`` runs as it is, and with every default written out."""
+
+import re
+import tomllib
+
+import numpy as np
+import pytest
+
+from uq.registry import find_model, model_names
+from uq.sampling import row_block
+from uq.study import study_from_text
+from uq.template import template
+
+
+@pytest.mark.parametrize("name", model_names())
+def test_a_template_is_a_study(name):
+    model = find_model(name)
+    study = study_from_text(template(model))
+    assert study.model is model
+    assert study.settings == model.settings()
+    assert 1 <= len(study.uncertain) <= 3
+    x = row_block(study, 0, 100).x
+    varying = [name in study.uncertain for name in model.parameter_names]
+    np.testing.assert_array_equal(np.ptp(x, axis=0) > 0, varying)
+
+
+@pytest.mark.parametrize("name", model_names())
+def test_every_commented_entry_is_a_default(name):
+    model = find_model(name)
+    text = re.sub(r"^#(\w+ = )", r"\1", template(model), flags=re.MULTILINE)
+    study = study_from_text(text)
+    data = tomllib.loads(text)
+    assert data["fixed"].keys() | data["uncertain"].keys() == set(model.parameter_names)
+    assert set(data["settings"]) == set(model.setting_names)
+    assert study.identity == study_from_text(template(model)).identity
+
+
+@pytest.mark.parametrize("name", model_names())
+def test_every_parameter_is_explained(name):
+    model = find_model(name)
+    for parameter in model.parameter_names:
+        declared = model.parameter(parameter)
+        assert declared.meaning in template(model)
+        assert f"[{declared.unit}]" in template(model)

@@ -1,0 +1,110 @@
+"""What a study file asks of its model and of its design, beyond its shape."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from uq.conditioning import law_problem
+from uq.contract import Model
+from uq.designs import DESIGNS
+from uq.faults import Fault
+from uq.study_file import LAW
+from uq.values import parameter_problem, read_settings, unknown_name
+
+Tables = Mapping[str, Mapping[str, Any]]
+"""The sound entries of a study file: table -> key -> value, as parsed."""
+
+
+def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Iterator[Fault]:
+    """Yield what does not suit the model.
+
+    Parameters
+    ----------
+    model : Model
+    data : dict
+        The whole file as parsed: names are checked even where their values are unsound.
+    tables : dict
+        Its sound entries.
+
+    Yields
+    ------
+    Fault
+    """
+    yield from _name_faults(model, data)
+    for name, value in tables["fixed"].items():
+        if name in model.parameter_names and (problem := parameter_problem(model, name, value)):
+            yield Fault(("fixed", name), problem, value)
+    for name, table in tables["uncertain"].items():
+        if name in model.parameter_names:
+            law = LAW.validate_python(table)
+            if unsuited := law_problem(law, model.parameter(name)):
+                yield Fault(("uncertain", name, *unsuited.argument), unsuited.text, unsuited.value)
+    given = tables["settings"]
+    for name, text in read_settings(model, given)[1].items():
+        yield Fault(("settings", name), text, given[name]) if name else Fault(("settings",), text)
+    yield from _output_faults(model, tables["analysis"])
+
+
+def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
+    names = {
+        table: tuple(data[table]) if isinstance(data.get(table), dict) else ()
+        for table in ("fixed", "uncertain")
+    }
+    for table, given in names.items():
+        for name in given:
+            if name not in model.parameter_names:
+                problem = unknown_name("parameter", name, model, model.parameter_names)
+                yield Fault((table, name), problem, data[table][name])
+    for name in names["uncertain"]:
+        if name in names["fixed"]:
+            yield Fault(("uncertain", name), "is in [fixed] too; keep one of the two")
+    if isinstance(data.get("uncertain"), dict) and not data["uncertain"]:
+        yield Fault(("uncertain",), "nothing varies; give at least one parameter a law")
+
+
+def _output_faults(model: Model, analysis: Mapping[str, Any]) -> Iterator[Fault]:
+    known = tuple(model.outputs)
+    for name in analysis.get("outputs", ()):
+        if name not in known:
+            problem = unknown_name("output", name, model, known)
+            yield Fault(("analysis", "outputs"), problem, name)
+    for name, value in analysis.get("thresholds", {}).items():
+        path = ("analysis", "thresholds", name)
+        if name not in known:
+            yield Fault(path, unknown_name("output", name, model, known), value)
+        elif model.outputs[name].kind == "category":
+            yield Fault(path, "is a category: it has shares, not thresholds", value)
+
+
+def design_faults(tables: Tables) -> Iterator[Fault]:
+    """Yield what the design cannot serve."""
+    table, analysis = tables["design"], tables["analysis"]
+    if "method" not in table:
+        return
+    method = table["method"]
+    design = DESIGNS[method]
+    if "samples" in table and (problem := design.size_problem(table["samples"])):
+        yield Fault(("design", "samples"), f"{problem} for '{method}'", table["samples"])
+    if table.get("second_order") and not design.crossed:
+        able = _names(name for name, other in DESIGNS.items() if other.crossed)
+        yield Fault(("design", "second_order"), f"only for method = {able}", True)
+    if "tolerance" in analysis and not design.independent:
+        able = _names(name for name, other in DESIGNS.items() if other.independent)
+        yield Fault(
+            ("analysis", "tolerance"),
+            f"refused: its confidence holds for independent rows, and those of '{method}' are not;"
+            f" use method = {able}, or leave the bound out",
+            analysis["tolerance"],
+        )
+    for name in analysis.get("sensitivity", ()):
+        if name not in design.feeds:
+            able = _names(key for key, other in DESIGNS.items() if name in other.feeds)
+            yield Fault(
+                ("analysis", "sensitivity"),
+                f"a '{method}' design cannot feed it, method = {able} can;"
+                f" '{method}' feeds {_names(design.feeds)}",
+                name,
+            )
+
+
+def _names(names: Iterable[str]) -> str:
+    return " or ".join(f"'{name}'" for name in names)

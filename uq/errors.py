@@ -1,0 +1,49 @@
+"""What a user is told when the input is wrong: plain lines, never a traceback."""
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class InputError(Exception):
+    """Bad input, explained.
+
+    Parameters
+    ----------
+    *lines : str
+        One complete sentence per fault: where, which value, what is allowed.
+    """
+
+    def __init__(self, *lines: str):
+        super().__init__(*lines)
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The faults, one line each."""
+        return self.args
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+
+class RunError(Exception):
+    """A run that cannot give a result though its input is right: one plain sentence."""
+
+
+def nearest(name: str, choices: Iterable[str]) -> str:
+    """Return ``"; did you mean 'x'?"`` for the choice most like `name`, or ``""``.
+
+    Parameters
+    ----------
+    name : str
+        What was given.
+    choices : iterable of str
+        What is allowed.
+
+    Returns
+    -------
+    str
+        To be appended to an error line.
+    """
+    by_lower = {choice.lower(): choice for choice in choices}
+    found = get_close_matches(name.lower(), by_lower, n=1)
+    return f"; did you mean '{by_lower[found[0]]}'?" if found else ""

@@ -1,0 +1,40 @@
+"""One fault of a study file, and the line that tells it."""
+
+from typing import Any, NamedTuple
+
+from uq.literals import key, shown
+
+
+class Fault(NamedTuple):
+    """Something wrong with one entry of a study file.
+
+    Attributes
+    ----------
+    path : tuple of str or int
+        Where it stands: table, key, place in a list.
+    problem : str
+        What is wrong, what is allowed, what to do.
+    value : object
+        As it stands in the file; None if it is not worth showing.
+    """
+
+    path: tuple[str | int, ...]
+    problem: str
+    value: Any = None
+
+    @property
+    def line(self) -> str:
+        """The fault as ``[table] key = value: problem``."""
+        depth = 2 if self.path[0] == "uncertain" else 1
+        table, entry = _dotted(self.path[:depth]), _dotted(self.path[depth:])
+        equals = "" if self.value is None else f" = {shown(self.value)}"
+        if entry:
+            return f"[{table}] {entry}{equals}: {self.problem}"
+        if self.value is None or isinstance(self.value, dict):
+            return f"[{table}]: {self.problem}"
+        return f"{table}{equals}: {self.problem}"
+
+
+def _dotted(path: tuple[str | int, ...]) -> str:
+    parts = [f"[{part}]" if isinstance(part, int) else f".{key(part)}" for part in path]
+    return "".join(parts).removeprefix(".")

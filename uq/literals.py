@@ -1,0 +1,40 @@
+"""Values as they are written in a TOML file."""
+
+import json
+import re
+from collections.abc import Mapping
+from typing import Any
+
+
+def toml(value: Any) -> str:
+    """Return a value as a TOML literal on one line; numbers with full precision."""
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case str():
+            return _quoted(value)
+        case list() | tuple():
+            return f"[{', '.join(map(toml, value))}]"
+        case Mapping():
+            inside = ", ".join(f"{key(name)} = {toml(item)}" for name, item in value.items())
+            return f"{{{inside}}}"
+        case _:
+            return str(value)
+
+
+def key(name: str) -> str:
+    """Return the name of an entry as TOML writes it: in quotes where it must be."""
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _quoted(name)
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def shown(value: Any, width: int = 60) -> str:
+    """Return a value for an error line: as a TOML literal, cut to `width` characters."""
+    try:
+        text = toml(value)
+    except (ValueError, RecursionError):  # thousands of digits, or of brackets
+        return "..."
+    return text if len(text) <= width else f"{text[: width - 3]}..."

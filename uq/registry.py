@@ -1,0 +1,71 @@
+"""The models this installation knows, found through entry points."""
+
+import importlib
+import os
+import sys
+from importlib.metadata import EntryPoint, entry_points
+
+from uq.contract import Model
+from uq.errors import InputError, nearest
+
+GROUP = "vibrolife.models"
+
+
+def model_names() -> tuple[str, ...]:
+    """Return the names of all installed models, sorted, without importing any of them."""
+    return tuple(sorted(_entry_points()))
+
+
+def find_model(reference: str) -> Model:
+    """Return a model by its name or, while it is being written, by where it lives.
+
+    Parameters
+    ----------
+    reference : str
+        The name of an installed model, or ``"package.module:ATTRIBUTE"``.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    InputError
+        There is no such model, or its package cannot be imported. A model that is broken does not
+        stand in the way of the others.
+    """
+    if ":" in reference:
+        # A model under development usually lies in the folder one works in, which an installed
+        # command does not search.
+        if os.getcwd() not in sys.path:
+            sys.path.append(os.getcwd())
+        return _load(EntryPoint(reference, reference, GROUP), f"--model {reference}")
+    installed = _entry_points()
+    if reference not in installed:
+        names = ", ".join(sorted(installed)) or "none"
+        raise InputError(
+            f"no such model '{reference}'{nearest(reference, installed)} (installed: {names})"
+        )
+    return _load(installed[reference], f"model '{reference}'")
+
+
+def _entry_points() -> dict[str, EntryPoint]:
+    return {point.name: point for point in entry_points(group=GROUP)}
+
+
+def _load(point: EntryPoint, label: str) -> Model:
+    module_name, _, attribute = point.value.partition(":")
+    if not module_name or not attribute:
+        raise InputError(f"{label}: write it as package.module:ATTRIBUTE")
+    try:
+        found = getattr(importlib.import_module(module_name), attribute)
+    except (Exception, SystemExit) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(
+            f"{label} cannot be imported from {point.value}: {type(error).__name__}: {reason}"
+        ) from error
+    if not isinstance(found, Model):
+        raise InputError(
+            f"{label}: {point.value} is a {type(found).__name__}, not a uq.contract.Model"
+        )
+    return found

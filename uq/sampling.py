@@ -1,0 +1,128 @@
+"""Rows of a study: from the unit cube to physical inputs, any range of them, always the same bits.
+
+Rows are numbered so that more samples append: row = (j * replicates + r) * blocks + b for base
+point j, replicate r and block b of its group.
+"""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.conditioning import ppf_within
+from uq.designs import DESIGNS
+
+if TYPE_CHECKING:
+    from uq.study import Study
+
+
+class Rows(NamedTuple):
+    """Some rows of a study.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n, d)
+        All parameters of the model, uncertain or not, in declared order; C-contiguous.
+    seed : ndarray of uint64, shape (n,)
+        For models that draw random numbers of their own.
+    replicate : ndarray of int32, shape (n,)
+    group : ndarray of int64, shape (n,)
+        Base point of the replicate's design.
+    block : ndarray of int16, shape (n,)
+        Place in the group.
+    """
+
+    x: NDArray[np.float64]
+    seed: NDArray[np.uint64]
+    replicate: NDArray[np.int32]
+    group: NDArray[np.int64]
+    block: NDArray[np.int16]
+
+
+def group_size(study: "Study") -> int:
+    """Return how many rows stand or fall together in the indices: 1 for plain designs."""
+    design = DESIGNS[study.design.method]
+    return design.blocks(len(study.uncertain), study.design.second_order)
+
+
+def rows(study: "Study") -> int:
+    """Return the number of rows of a study."""
+    return study.design.samples * study.design.replicates * group_size(study)
+
+
+def row_block(study: "Study", start: int, stop: int) -> Rows:
+    """Return the rows start..stop of a study.
+
+    Parameters
+    ----------
+    study : Study
+    start, stop : int
+        Any range within 0..rows(study); it need not respect groups.
+
+    Returns
+    -------
+    Rows
+        Row i depends on the study and i alone: not on the range, to the bit.
+    """
+    table, blocks = study.design, group_size(study)
+    number = np.arange(start, stop)
+    place, block = np.divmod(number, blocks)
+    group, replicate = np.divmod(place, table.replicates)
+
+    per_group = table.replicates * blocks
+    first, last = start // per_group, -(-stop // per_group)
+    cube = DESIGNS[table.method].unit_rows(
+        seed=table.seed,
+        replicates=table.replicates,
+        d=len(study.uncertain),
+        samples=table.samples,
+        second_order=table.second_order,
+        start=first,
+        stop=max(first, last),
+    )
+    offset = first * per_group
+    unit = cube.reshape(-1, cube.shape[-1])[start - offset : stop - offset]
+
+    names = study.model.parameter_names
+    x = np.empty((stop - start, len(names)))
+    x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
+    for column, (name, law) in zip(unit.T, study.uncertain.items(), strict=True):
+        bounds = study.model.parameter(name).bounds
+        # A contiguous copy: on strided data numpy may take another path, with other last bits.
+        x[:, names.index(name)] = ppf_within(law, np.ascontiguousarray(column), bounds)
+    return Rows(
+        x,
+        row_seeds(table.seed, replicate, group, block),
+        replicate.astype(np.int32),
+        group,
+        block.astype(np.int16),
+    )
+
+
+def row_seeds(seed: int, *keys: NDArray[np.int64]) -> NDArray[np.uint64]:
+    """Hash a study's seed and the keys of rows into one seed per row.
+
+    Parameters
+    ----------
+    seed : int
+        0 to 2^63 - 1.
+    *keys : ndarray of int, shape (n,)
+        What tells rows apart.
+
+    Returns
+    -------
+    ndarray of uint64, shape (n,)
+    """
+    state = np.full(len(keys[0]), seed, np.uint64)
+    for key in keys:
+        state = _splitmix64(state) ^ key.astype(np.uint64)
+    return _splitmix64(state)
+
+
+def _splitmix64(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    # One step of SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number generators",
+    # OOPSLA 2014, 453-472, constants as in java.util.SplittableRandom.
+    z = z + np.uint64(0x9E3779B97F4A7C15)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return z ^ (z >> np.uint64(31))

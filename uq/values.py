@@ -1,0 +1,124 @@
+"""Values given by name, for a model's parameters and settings: the same checks for every road in.
+
+A study file, ``uq simulate --set`` and the Python API all come through here.
+"""
+
+from collections.abc import Mapping
+from typing import Any, get_args, get_type_hints
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+
+from uq.contract import Model, Parameter
+from uq.errors import nearest
+
+
+def unknown_name(kind: str, name: str, model: Model, known: tuple[str, ...]) -> str:
+    """Say that a model has no such parameter, setting or output."""
+    allowed = f" (allowed: {', '.join(known)})" if known else ", which has none"
+    return f"no such {kind} of model '{model.name}'{nearest(name, known) or allowed}"
+
+
+def parameter_problem(model: Model, name: str, value: Any) -> str | None:
+    """Say why a parameter cannot have this value, or return None.
+
+    Parameters
+    ----------
+    model : Model
+    name : str
+        Known or not.
+    value : object
+        As it was given.
+
+    Returns
+    -------
+    str or None
+    """
+    if name not in model.parameter_names:
+        return unknown_name("parameter", name, model, model.parameter_names)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return "must be a number"
+    parameter = model.parameter(name)
+    low, high = parameter.bounds
+    if not low <= value <= high:
+        return f"must lie within {bounds_of(parameter)}"
+    return None
+
+
+def bounds_of(parameter: Parameter) -> str:
+    """Return a parameter's bounds for an error line."""
+    low, high = parameter.bounds
+    return f"{low!r} to {high!r} [{parameter.unit}]"
+
+
+def setting_types(model: Model) -> dict[str, Any]:
+    """Return the plain type of each setting, without its declaration."""
+    hints = get_type_hints(model.settings, include_extras=True)
+    return {name: get_args(hints[name])[0] for name in model.setting_names}
+
+
+def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str, str]]:
+    """Build the settings of a model.
+
+    Parameters
+    ----------
+    model : Model
+    given : dict
+        Setting -> value as it stands in a file.
+
+    Returns
+    -------
+    settings : object or None
+        None if anything is wrong.
+    problems : dict of str to str
+        Setting -> what is wrong with it; under ``""`` what is wrong with them together.
+    """
+    types = setting_types(model)
+    values, problems = {}, {}
+    for name, value in given.items():
+        if name not in types:
+            problems[name] = unknown_name("setting", name, model, model.setting_names)
+            continue
+        try:
+            values[name] = _coerced(types[name], value)
+        except ValidationError:
+            problems[name] = f"must be {_type_in_words(model, name, types[name])}"
+            continue
+        if not _allowed(model, name, values[name]):
+            problems[name] = f"must be {_type_in_words(model, name, types[name])}"
+    if problems:
+        return None, problems
+    try:
+        return model.settings(**values), {}
+    except ValueError as error:  # what the model says about several settings together
+        return None, {"": " ".join(str(error).split())}
+
+
+def _coerced(kind: Any, value: Any) -> Any:
+    strict: TypeAdapter[Any] = TypeAdapter(kind, config=ConfigDict(strict=True))
+    return strict.validate_python(tuple(value) if isinstance(value, list) else value)
+
+
+def _allowed(model: Model, name: str, value: Any) -> bool:
+    declared = model.setting(name)
+    if declared.choices:
+        return value in declared.choices
+    numbers = value if isinstance(value, tuple) else (value,)
+    if declared.bounds is not None:
+        low, high = declared.bounds
+        return all(low <= number <= high for number in numbers)
+    return all(number == number for number in numbers)  # nan is never meant
+
+
+def _type_in_words(model: Model, name: str, kind: Any) -> str:
+    declared = model.setting(name)
+    if declared.choices:
+        return f"one of {', '.join(declared.choices)}"
+    one = {int: "a whole number", float: "a number", bool: "true or false", str: "a text"}
+    if kind in one:
+        words = one[kind]
+    else:
+        words = f"a list, each {one.get((get_args(kind) or (None,))[0], 'of the right type')}"
+    if declared.bounds is not None:
+        low, high = declared.bounds
+        words += f" within {low!r} to {high!r}"
+    return words if declared.unit == "1" else f"{words} [{declared.unit}]"
