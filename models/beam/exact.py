@@ -293,13 +293,13 @@ def _touch(phase, weight, power, side, gap, near, slow, to_end):
 
 
 @kernel
-def _sample(phase, weight, power, theta, s, trace):
-    """Set what of a period's trace falls after theta, up to theta + s."""
+def _sample(phase, weight, power, theta, until, trace):
+    """Set what of a period's trace falls after theta, up to `until`."""
     step = 2 * math.pi / len(trace)
-    for k in range(math.ceil(theta / step), len(trace) + 1):
-        since = min(k * step, 2 * math.pi) - theta
-        if 0 < since <= s and k > 0:
-            trace[k - 1] = _tip(phase, weight, len(phase.speed), since, power).x
+    for k in range(len(trace)):
+        at = min((k + 1) * step, 2 * math.pi)
+        if theta < at <= until:
+            trace[k] = _tip(phase, weight, len(phase.speed), at - theta, power).x
 
 
 @kernel
@@ -342,8 +342,9 @@ def _run(free, contact, state, gaps, growth, record):
             if evaluations >= EVALUATIONS_PER_PERIOD:
                 state[:] = work[period:] = strobe[period:] = trace[period * steps :] = math.nan
                 return
+            until = theta + s if s < to_end else 2 * math.pi
             if steps:
-                _sample(phase, weight, power, theta, s, trace[period * steps :][:steps])
+                _sample(phase, weight, power, theta, until, trace[period * steps :][:steps])
             join(phase, coefficient, s, power, y)
-            theta = theta + s if s < to_end else 2 * math.pi
+            theta = until
         strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()

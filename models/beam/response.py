@@ -80,21 +80,21 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
     distance = np.full((n, LONGEST_PERIOD), np.inf)
     left = np.arange(n)
     for segment in range(BUDGET):
+        if not len(left):
+            break
         now, here = state[left], gaps[left].copy()
         record = propagator.advance(system.take(left), now, here, np.zeros_like(here), SEGMENT)
         state[left] = now
         batches[left, segment] = record.work.mean(axis=1)
+        if segment >= TRANSIENT:
+            out.peak[left] = np.maximum(out.peak[left], record.peak)
         silent = never_touches[left] & (record.work == 0).all(axis=(1, 2))
         before, distance[left] = distance[left], _distances(record.strobe)
         period = _period(before, distance[left], record.strobe)
         period[silent] = 1
         _note_periodic(out, left, period, silent, record)
-        last = segment == BUDGET - 1
-        if last:
-            _note_aperiodic(out, left[period == 0], batches, record.peak[period == 0])
         left = left[period == 0]
-        if not len(left):
-            break
+    _note_aperiodic(out, left, batches)
     return out
 
 
@@ -142,8 +142,11 @@ def _note_periodic(out: Response, rows: Any, period: Any, silent: Any, record: A
             out.regime[rows[chosen]] = PERIODIC
 
 
-def _note_aperiodic(out: Response, rows: Any, batches: Array, peak: Array) -> None:
+def _note_aperiodic(out: Response, rows: Any, batches: Array) -> None:
     kept = batches[rows, TRANSIENT:]
     out.work[rows] = kept.mean(axis=1)
-    out.error[rows] = kept.std(axis=1, ddof=1) / np.sqrt(kept.shape[1])
-    out.peak[rows] = peak
+    # Longer batches see slower changes: the largest of their errors is the one to believe.
+    for length in (1, 2, 4):
+        means = kept.reshape(len(rows), kept.shape[1] // length, length, 2).mean(axis=2)
+        error = means.std(axis=1, ddof=1) / np.sqrt(means.shape[1])
+        out.error[rows] = np.maximum(out.error[rows], error)

@@ -1,0 +1,1 @@
+"""Speed and accuracy beside what one would use instead; run with ``python -m benchmarks.NAME``."""
