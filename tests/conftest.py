@@ -1,0 +1,84 @@
+"""What many tests need: a folder of their own, study files, and the command line."""
+
+import os
+import signal
+import sys
+from typing import NamedTuple
+
+import pytest
+
+from uq.cli import main
+
+
+class Ended(NamedTuple):
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Return an empty folder that the test works in."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def uq(folder, monkeypatch, capsys):
+    """Return a function that runs ``uq ARGUMENTS`` in this process."""
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "80")
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    environment = dict(os.environ)
+
+    def call(*arguments):
+        monkeypatch.setattr(sys, "argv", ["uq", *map(str, arguments)])
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return Ended(ended.value.code, *capsys.readouterr())
+
+    yield call
+    os.environ.clear()
+    os.environ.update(environment)
+    for number, handler in handlers.items():
+        signal.signal(number, handler)
+
+
+@pytest.fixture
+def write_study(folder):
+    """Return a function that writes a small study file and returns its path."""
+
+    def write(
+        model="ishigami",
+        method="monte-carlo",
+        samples=64,
+        replicates=1,
+        second_order=False,
+        seed=5,
+        uncertain=("x1", "x2", "x3"),
+        law='distribution = "uniform", lower = 0.1, upper = 0.9',
+        more="",
+        name="small",
+    ):
+        lines = [
+            "[study]",
+            f'name = "{name}"',
+            f'model = "{model}"',
+            "[design]",
+            f'method = "{method}"',
+            f"samples = {samples}",
+            f"replicates = {replicates}",
+            f"second_order = {str(second_order).lower()}",
+            f"seed = {seed}",
+            "[uncertain]",
+            *(f"{parameter} = {{{law}}}" for parameter in uncertain),
+            more,
+        ]
+        path = folder / f"{name}.toml"
+        path.write_text("\n".join(lines) + "\n")
+        return path
+
+    return write

@@ -1,0 +1,158 @@
+"""What every model promises, held against every model that is installed."""
+
+import pickle
+from dataclasses import FrozenInstanceError, fields
+from typing import get_args
+
+import numpy as np
+import pytest
+
+from uq.columns import censored_name
+from uq.contract import Kind, Parameter, Setting, Status
+from uq.evaluate import evaluate
+from uq.registry import find_model, model_names
+from uq.values import read_settings
+
+RESERVED = {"sample", "replicate", "group", "block", "status", "trajectory", "time", "quantity"}
+TIME_UNITS = {"days", "hours", "minutes", "seconds", "milliseconds", "microseconds", "nanoseconds"}
+"""Units that plain xarray would turn into calendar arithmetic."""
+
+
+@pytest.fixture(scope="module", params=model_names())
+def model(request):
+    return find_model(request.param)
+
+
+@pytest.fixture(scope="module")
+def settings(model):
+    return model.settings()
+
+
+def near_nominal(model, rows, seed=1):
+    """Return rows within a fifth of the nominal values, the first one nominal."""
+    rng = np.random.default_rng(seed)
+    nominal = np.array(list(model.nominal.values()))
+    x = nominal * rng.uniform(0.8, 1.2, (rows, len(nominal)))
+    x[0] = nominal
+    low, high = np.transpose([model.parameter(name).bounds for name in model.parameter_names])
+    return np.clip(x, low, high), rng.integers(0, 2**63, rows, dtype=np.uint64)
+
+
+def run(model, settings, x, seed):
+    """Return what a batch gives, contract checked, as one dict of arrays."""
+    chunk = evaluate(model, settings, x, seed)
+    return chunk.columns | {"status": chunk.status}
+
+
+def bits(columns):
+    return {name: column.tobytes() for name, column in columns.items()}
+
+
+def test_the_model_introduces_itself(model):
+    assert model.name in model_names()
+    assert find_model(model.name) is model
+    assert model.title and "\n" not in model.title
+    assert model.version
+    assert model.block >= 1
+
+
+def test_names_are_words_and_belong_to_one_thing(model):
+    names = [*model.parameter_names, *model.outputs]
+    names += [censored_name(name) for name in model.outputs]
+    names += {dim for output in model.outputs.values() for dim in output.dims}
+    assert all(name.isidentifier() and name == name.lower() for name in names)
+    assert len(names) == len(set(names))
+    assert not RESERVED & set(names)
+
+
+def test_parameters_are_documented(model):
+    for name in model.parameter_names:
+        parameter = model.parameter(name)
+        assert isinstance(parameter, Parameter)
+        for text in (parameter.symbol, parameter.unit, parameter.meaning, parameter.source):
+            assert text.strip() and "\n" not in text, name
+        assert parameter.unit not in TIME_UNITS, name
+
+
+def test_nominal_values_lie_within_bounds_that_leave_room(model):
+    for name, nominal in model.nominal.items():
+        low, high = model.parameter(name).bounds
+        assert np.isfinite([low, high]).all(), name
+        assert low <= nominal <= high, name
+        assert low < high, name
+        # The analytic functions are defined on a box; a physical quantity may be 30 times other.
+        if low > 0:
+            assert low <= nominal / 30 * (1 + 1e-9) and high >= 30 * nominal * (1 - 1e-9), name
+
+
+def test_settings_are_documented_frozen_and_travel(model, settings):
+    for name in model.setting_names:
+        setting = model.setting(name)
+        assert isinstance(setting, Setting)
+        assert setting.meaning.strip() and setting.unit.strip(), name
+    defaults = {field.name: getattr(settings, field.name) for field in fields(settings)}
+    assert read_settings(model, defaults) == (settings, {})
+    assert pickle.loads(pickle.dumps(settings)) == settings
+    for name in model.setting_names:
+        with pytest.raises(FrozenInstanceError):
+            setattr(settings, name, None)
+
+
+def test_outputs_are_documented(model, settings):
+    coordinates = model.coordinates(settings)
+    assert model.outputs
+    for name, output in model.outputs.items():
+        assert output.unit.strip() and output.meaning.strip() and "\n" not in output.meaning, name
+        assert output.unit not in TIME_UNITS, name
+        assert output.kind in get_args(Kind), name
+        assert (output.kind == "category") == bool(output.categories), name
+        assert len(set(output.categories)) == len(output.categories), name
+        assert not any(" " in label or label == "none" for label in output.categories), name
+        for dim in output.dims:
+            values = list(coordinates[dim])
+            assert values and len(set(values)) == len(values), dim
+
+
+def test_the_nominal_row_is_sound(model, settings):
+    x, seed = near_nominal(model, 1)
+    assert run(model, settings, x, seed)["status"] == [Status.OK]
+
+
+def test_a_row_does_not_depend_on_its_neighbours(model, settings):
+    x, seed = near_nominal(model, 7)
+    whole = run(model, settings, x, seed)
+    for i in (0, 3, 6):
+        alone = run(model, settings, x[i : i + 1], seed[i : i + 1])
+        assert bits(alone) == bits({name: column[i : i + 1] for name, column in whole.items()})
+
+
+def test_permuted_rows_permute_the_results(model, settings):
+    x, seed = near_nominal(model, 2 * min(model.block, 16) + 3, seed=2)
+    order = np.random.default_rng(3).permutation(len(x))
+    whole = run(model, settings, x, seed)
+    mixed = run(model, settings, x[order], seed[order])
+    assert bits(mixed) == bits({name: column[order] for name, column in whole.items()})
+
+
+def test_the_same_rows_give_the_same_bits_again(model, settings):
+    x, seed = near_nominal(model, 3)
+    assert bits(run(model, settings, x, seed)) == bits(run(model, settings, x, seed))
+
+
+def test_every_corner_of_the_bounds_ends_with_a_status(model, settings):
+    rng = np.random.default_rng(4)
+    bounds = np.array([model.parameter(name).bounds for name in model.parameter_names])
+    x = np.where(rng.random((16, len(bounds))) < 0.5, bounds[:, 0], bounds[:, 1])
+    status = run(model, settings, x, np.arange(16, dtype=np.uint64))["status"]
+    assert not np.isin(status, [Status.RAISED, Status.BAD_SHAPE]).any()
+
+
+def test_a_trajectory_is_labelled_and_finite(model, settings):
+    if model.simulate is None:
+        pytest.skip("gives no trajectory")
+    time, quantities = model.simulate(model.parameters(), settings, seed=0)
+    assert np.all(np.diff(time) > 0)
+    assert quantities
+    for name, (unit, meaning, values) in quantities.items():
+        assert unit.strip() and meaning.strip(), name
+        assert values.shape == time.shape and np.isfinite(values).all(), name

@@ -1,0 +1,198 @@
+"""Models for the tests of the platform: slow ones, broken ones, one of every kind of output."""
+
+import math
+import os
+import time
+import zlib
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, NamedTuple
+
+import numba
+import numpy as np
+
+from uq.contract import Model, Output, Parameter, Setting, Status, Trajectory
+
+
+class Parameters(NamedTuple):
+    x1: Annotated[float, Parameter("x_1", "m", "first input", (0.0, 1.0), "made up")] = 0.25
+    x2: Annotated[float, Parameter("x_2", "s", "second input", (0.0, 1.0), "made up")] = 0.5
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Numerical choices."""
+
+    seconds: Annotated[float, Setting("time a row takes", "s", bounds=(0.0, 100.0))] = 0.0
+
+
+SIDES = ("left", "right")
+DEPTHS = (0.5, 1.5)
+
+
+def kinds(x, seed, settings):
+    """Rows with small x1 never end, with large x1 are censored; with small x2 have no angle."""
+    n = len(x)
+    x1, x2 = np.ascontiguousarray(x.T)
+    life = np.stack([np.stack([x1 + d for d in DEPTHS], axis=-1)] * 2, axis=1)
+    censored = np.repeat(x1 > 0.8, 4).reshape(n, 2, 2)
+    life[x1 < 0.2] = np.inf
+    outputs = {
+        "work": np.stack([x1, x1 + 1e-3 * (seed % 7)], axis=-1),
+        "life": life,
+        "life_censored": censored,
+        "angle": np.where(x2 < 0.2, np.nan, x2),
+        "regime": (x1 > 0.5).astype(np.int8),
+    }
+    status = np.where(x1 > 0.95, Status.OUT_OF_BUDGET, Status.OK).astype(np.int8)
+    return outputs, status
+
+
+def history(params, settings, seed=0):
+    t = np.linspace(0.0, 1.0, 11)
+    return Trajectory(t, {"x": ("m", "place", params.x1 * t), "v": ("m s-1", "speed", t * 0.0)})
+
+
+KINDS = Model(
+    name="kinds",
+    title="One output of every kind",
+    version="1",
+    parameters=Parameters,
+    settings=Settings,
+    outputs={
+        "work": Output("W", "work rate", dims=("side",)),
+        "life": Output("s", "time to a depth", kind="lifetime", dims=("side", "depth")),
+        "angle": Output("rad", "an angle", kind="angle", may_be_undefined=True),
+        "regime": Output("1", "which regime", kind="category", categories=("slow", "fast")),
+    },
+    batch=kinds,
+    simulate=history,
+    coordinates=lambda settings: {"side": SIDES, "depth": DEPTHS},
+    references=("Nobody, Nowhere (1900)",),
+)
+
+
+def _simple(name, batch, **more):
+    declared = {
+        "title": "For a test",
+        "version": "1",
+        "parameters": Parameters,
+        "settings": Settings,
+        "outputs": {"y": Output("1", "some number")},
+    }
+    return Model(name=name, batch=batch, **(declared | more))
+
+
+def ok(n):
+    return np.zeros(n, dtype=np.int8)
+
+
+def _mark():
+    """Tell whoever watches that a row is being computed."""
+    if place := os.environ.get("UQ_TEST_MARK"):
+        Path(place).touch()
+
+
+def _sleep(x, seed, settings):
+    _mark()
+    time.sleep(settings.seconds * len(x))
+    return {"y": x[:, 0].copy()}, ok(len(x))
+
+
+SLEEPING = _simple("sleeping", _sleep)
+
+
+@numba.njit(nogil=True)
+def _count(steps):
+    z = np.uint64(1)
+    for _ in range(steps):
+        z ^= z << np.uint64(13)
+        z ^= z >> np.uint64(7)
+        z ^= z << np.uint64(17)
+    return z
+
+
+def _spin(x, seed, settings):
+    _mark()
+    # One kernel call that does not return to Python: about a second per 4e8 steps.
+    z = _count(int(settings.seconds * 4e8) * len(x))
+    return {"y": x[:, 0] + 0.0 * float(z)}, ok(len(x))
+
+
+SPINNING = _simple("spinning", _spin)
+
+
+def _compile(x, seed, settings):
+    _mark()
+    lines = [f"    z += math.sin(z * {i}.5) + math.exp(-z / {i + 1})" for i in range(3000)]
+    names = {}
+    exec("\n".join(["def f(z):", *lines, "    return z"]), {"math": math}, names)
+    return {"y": x[:, 0] + 0.0 * numba.njit(names["f"])(1.0)}, ok(len(x))
+
+
+COMPILING = _simple("compiling", _compile)
+"""Spends half a minute or more in the compiler."""
+
+
+def _process(x, seed, settings):
+    return {"y": np.full(len(x), float(os.getpid()))}, ok(len(x))
+
+
+PROCESS = _simple("process", _process)
+"""Says which process computed a row."""
+
+VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "UQ_TEST")
+
+
+def _environment(x, seed, settings):
+    import numba.core.codegen as codegen
+    from numba import config
+
+    here = [os.environ.get(name) for name in VARIABLES]
+    here += [config.CACHE_DIR, config.CPU_FEATURES or codegen.get_host_cpu_features()]
+    return {"y": np.full(len(x), float(hash_of(repr(here))))}, ok(len(x))
+
+
+def hash_of(text):
+    return zlib.crc32(text.encode())
+
+
+ENVIRONMENT = _simple("environment", _environment)
+"""Tells one environment from another."""
+
+
+def _dying(x, seed, settings):
+    if np.any(x[:, 0] > 0.8) and os.environ["UQ_TEST_SURVIVOR"] != str(os.getpid()):
+        os._exit(1)
+    return {"y": x[:, 0].copy()}, ok(len(x))
+
+
+DYING = _simple("dying", _dying)
+"""Kills its process at large x1, unless that is the survivor."""
+
+WRONG_NAME = _simple("wrong-name", lambda x, seed, settings: ({"z": x[:, 0]}, ok(len(x))))
+WRONG_DTYPE = _simple(
+    "wrong-dtype", lambda x, seed, settings: ({"y": x[:, 0].astype(np.float32)}, ok(len(x)))
+)
+WRONG_SHAPE = _simple("wrong-shape", lambda x, seed, settings: ({"y": x.copy()}, ok(len(x))))
+WRONG_STATUS = _simple(
+    "wrong-status", lambda x, seed, settings: ({"y": x[:, 0].copy()}, ok(len(x)) + np.int8(99))
+)
+NO_TUPLE = _simple("no-tuple", lambda x, seed, settings: {"y": x[:, 0].copy()})
+A_LIST = _simple("a-list", lambda x, seed, settings: ({"y": list(x[:, 0])}, ok(len(x))))
+WRONG_CATEGORY = replace(
+    _simple(
+        "wrong-category", lambda x, seed, settings: ({"y": ok(len(x)) + np.int8(2)}, ok(len(x)))
+    ),
+    outputs={"y": Output("1", "kind", kind="category", categories=("a", "b"))},
+)
+
+
+def _mutating(x, seed, settings):
+    y = x[:, 0].copy()
+    x[:] = -1.0
+    return {"y": y}, ok(len(x))
+
+
+MUTATING = _simple("mutating", _mutating)
+"""Writes into its input."""

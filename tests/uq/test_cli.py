@@ -1,0 +1,355 @@
+"""The command line: what it prints, what it refuses, how it ends."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import uq as api
+from uq.cli.printing import duration, print_json
+from uq.cli.progress import sentence
+from uq.job import Progress
+from uq.registry import model_names
+
+
+def everything(folder):
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*"))
+
+
+def strict_json(text):
+    def refuse(constant):
+        raise ValueError(constant)
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_no_argument_is_a_call_for_help(uq):
+    ended = uq()
+    assert ended.code == 0
+    verbs = "models simulate init check schema run summary sensitivity plot".split()
+    listed = ended.out.partition("Commands:\n")[2]
+    assert [line.split()[0] for line in listed.splitlines() if line.strip()] == verbs
+    assert "..." not in listed
+    assert uq("--help") == ended
+
+
+def test_models_are_listed(uq):
+    ended = uq("models")
+    assert ended.code == 0
+    listed = strict_json(uq("models", "--json").out)
+    assert {"name", "version", "title"} == set(listed[0])
+    for entry in listed:
+        assert f"\n{entry['name']} " in ended.out
+    assert {"beam", "ishigami", "g-function", "linear", "exponential-wear"} <= {
+        entry["name"] for entry in listed
+    }
+
+
+def test_one_model_is_shown_in_full(uq):
+    shown = uq("models", "linear").out
+    for words in ("x_1 = 0.5, 0 to 1", "fail_how", "one of nan, inf, raise, shape", "y"):
+        assert words in shown
+    described = strict_json(uq("models", "linear", "--json").out)
+    assert described["parameters"]["x1"] == {
+        "nominal": 0.5,
+        "symbol": "x_1",
+        "unit": "1",
+        "meaning": "independent input",
+        "bounds": [0.0, 1.0],
+        "source": "definition of the function",
+    }
+    assert described["settings"]["fail_how"]["default"] == "nan"
+    assert described["outputs"]["y"]["unit"] == "1"
+    assert uq("models", "liner").err.startswith("no such model 'liner'; did you mean 'linear'?")
+
+
+@pytest.mark.parametrize("name", model_names())
+def test_every_model_can_be_told_as_json(uq, name):
+    described = strict_json(uq("models", name, "--json").out)
+    assert described["name"] == name
+    assert list(described) == [
+        "name",
+        "version",
+        "title",
+        "parameters",
+        "settings",
+        "outputs",
+        "coordinates",
+        "references",
+    ]
+
+
+def test_simulate_prints_values_with_units_and_meaning(uq):
+    ended = uq("simulate", "exponential-wear", "--set", "depth=1e-3")
+    assert ended.code == 0
+    for words in ("life [s]", "time until the depth is reached", "4e+06", "46.3 days"):
+        assert words in ended.out
+    assert "never" in uq("simulate", "exponential-wear", "--set", "threshold=1").out
+
+
+def simulate(uq, *arguments):
+    ended = uq("simulate", "sample_models:KINDS", "--json", *arguments)
+    return ended.code, strict_json(ended.out)
+
+
+def test_simulate_as_json(uq):
+    code, found = simulate(uq, "--set", "x1=0.1", "--set", "x2=0.1")
+    assert code == 0
+    assert found == {
+        "model": "kinds",
+        "inputs": {"x1": 0.1, "x2": 0.1},
+        "outputs": {
+            "work": [0.1, 0.1],
+            "life": [[None, None], [None, None]],
+            "angle": None,
+            "regime": "slow",
+        },
+        "status": {"code": "ok", "meaning": "The row was computed."},
+        "never": [f"life[side={s},depth={d}]" for s in ("left", "right") for d in (0.5, 1.5)],
+        "censored": [],
+        "undefined": ["angle"],
+    }
+    code, found = simulate(uq, "--set", f"x1={1 / 1.1!r}")
+    assert code == 0
+    assert found["outputs"]["life"][0][0] == 1 / 1.1 + 0.5
+    assert len(found["censored"]) == 4
+    assert found["never"] == found["undefined"] == []
+
+
+def test_a_failed_row_is_told(uq):
+    faults = ("--set", "x1=0.9", "--setting", "fail_above=0.5", "--setting", "fail_how=raise")
+    ended = uq("simulate", "linear", *faults)
+    assert ended.code == 1
+    assert "raised" in ended.out
+    assert "ValueError: x1 is above fail_above = 0.5" in ended.out
+    found = strict_json(uq("simulate", "linear", "--json", *faults).out)
+    assert found["outputs"] == {"y": None}
+    assert found["undefined"] == []
+    assert found["status"] == {
+        "code": "raised",
+        "meaning": "ValueError: x1 is above fail_above = 0.5",
+    }
+
+
+def test_a_trajectory_is_written_and_drawn(uq, folder):
+    ended = uq("simulate", "sample_models:KINDS", "-o", "t.nc", "--plot", "t.png")
+    assert ended.code == 0
+    with xr.open_dataset("t.nc") as ds:
+        assert ds["trajectory"].dims == ("time", "quantity")
+    assert Path("t.png").read_bytes().startswith(b"\x89PNG")
+    assert everything(folder) == ["t.nc", "t.png"]
+
+
+def test_a_trajectory_does_not_overwrite_a_study(uq, write_study):
+    uq("run", write_study(), "-o", "out.nc", "--quiet")
+    before = Path("out.nc").read_bytes()
+    ended = uq("simulate", "sample_models:KINDS", "-o", "out.nc")
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err == "out.nc: holds the result of a study; choose another name\n"
+    assert Path("out.nc").read_bytes() == before
+
+
+def test_init_gives_a_study_that_checks_and_runs(uq, folder):
+    Path("linear.toml").write_text(uq("init", "linear").out)
+    ended = uq("check", "linear.toml")
+    assert ended.code == 0
+    assert ended.out.startswith("linear.toml: in order")
+    assert everything(folder) == ["linear.toml"]
+
+
+def test_check_says_what_would_run(uq, write_study):
+    path = write_study(method="saltelli", samples=16, replicates=3)
+    ended = uq("check", path)
+    assert ended.code == 0
+    assert "240 = 16 samples x 3 replicates x 5 rows each" in ended.out
+    assert "uniform(lower = 0.1, upper = 0.9)" in ended.out
+
+
+def test_the_schema_is_json(uq):
+    schema = strict_json(uq("schema").out)
+    assert {"study", "design", "uncertain", "analysis"} <= set(schema["properties"])
+
+
+def test_run_ends_with_the_summary_and_what_to_type_next(uq, write_study, folder):
+    path = write_study(samples=300)
+    first = uq("run", path)
+    assert (first.code, first.err) == (0, "")
+    assert "results/small.nc: 300 rows in" in first.out
+    assert "uq sensitivity results/small.nc" in first.out
+    shown = uq("summary", "results/small.nc").out
+    assert shown in first.out
+    again = uq("run", path)
+    assert again.code == 0
+    assert "complete already" in again.out
+    assert shown in again.out
+    assert everything(folder) == ["results", "results/small.nc", "small.toml"]
+
+
+def test_quiet_means_quiet(uq, write_study):
+    ended = uq("run", write_study(), "--quiet")
+    assert ended == (0, "", "")
+
+
+def test_samples_can_be_set_for_one_run(uq, write_study):
+    path = write_study(method="sobol", samples=8)
+    assert uq("run", path, "--samples", "32", "-o", "out.nc", "--quiet").code == 0
+    assert api.open_result("out.nc").sizes["sample"] == 32
+    ended = uq("run", path, "--samples", "33", "-o", "out.nc")
+    assert ended.code == 2
+    assert "must be a power of two; the next is 64" in ended.err
+
+
+def test_too_many_failed_rows_are_an_exit_code_and_a_sentence(uq, write_study, folder):
+    def ended(how, share):
+        path = write_study(
+            model="linear",
+            samples=400,
+            more=f'[settings]\nfail_above = 0.5\nfail_how = "{how}"\n'
+            f"[analysis]\nmax_failed = {share}",
+        )
+        return uq("run", path, "--fresh")
+
+    bad = ended("raise", 0.1)
+    assert bad.code == 1
+    assert bad.err.count("\n") == 1
+    assert "of 400 rows failed, more than max_failed = 0.1 allows (raised: row " in bad.err
+    assert Path("results/small.nc").exists()
+    assert ended("nan", 0.9).code == 0
+
+
+def test_summary_and_sensitivity_as_json(uq, write_study):
+    uq("run", write_study(method="saltelli", samples=16, replicates=4), "-o", "out.nc", "--quiet")
+    summary = strict_json(uq("summary", "out.nc", "--json").out)
+    assert summary["samples"] == 320
+    assert set(summary["outputs"]["y"]["quantiles"]) == {"0.05", "0.5", "0.95"}
+    indices = strict_json(uq("sensitivity", "out.nc", "--json").out)
+    assert indices["method"] == "sobol"
+    assert set(indices["outputs"]["y"]["ST"]) == {"x1", "x2", "x3"}
+    shown = uq("sensitivity", "out.nc")
+    assert shown.code == 0
+    assert "Sensitivity by sobol" in shown.out
+
+
+def test_plot_draws_beside_the_result(uq, write_study, folder):
+    uq("run", write_study(), "-o", "out.nc", "--quiet")
+    ended = uq("plot", "out.nc")
+    assert ended.code == 0
+    drawn = ended.out.splitlines()
+    assert drawn
+    for name in drawn:
+        assert (folder / name).is_relative_to(folder / "out")
+        assert Path(name).stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    "verb", [("models", "beam"), ("check",), ("summary",), ("sensitivity",), ("simulate", "beam")]
+)
+def test_tables_fit_in_80_columns(uq, write_study, verb):
+    if verb[0] in ("check", "summary", "sensitivity"):
+        path = write_study(
+            model="kinds", method="saltelli", replicates=4, uncertain=("x1", "x2"), samples=16
+        )
+        api.run(api.load_study(path, "sample_models:KINDS"), "out.nc")
+        verb += (path, "--model", "sample_models:KINDS") if verb[0] == "check" else ("out.nc",)
+    ended = uq(*verb)
+    assert ended.code == 0
+    assert max(map(len, ended.out.splitlines())) <= 80
+    assert "\x1b" not in ended.out
+
+
+MISTAKES = {
+    "sumary": "uq: No such command 'sumary'. Did you mean 'summary'?",
+    "run": "uq: Missing argument 'STUDY'.",
+    "run a.toml --sampels 3": "uq: No such option: --sampels; did you mean '--samples'?",
+    "run a.toml --workers -1": "uq: Invalid value for '--workers': ",
+    "run a.toml --samples many": "uq: Invalid value for '--samples': ",
+    "run absent.toml": "absent.toml: no such file",
+    "run .": ".: is a directory",
+    "run broken.toml": "broken.toml: not valid TOML: ",
+    "run small.toml --model nowhere:M": "--model nowhere:M cannot be imported",
+    "run small.toml -o folder": "folder: is a folder; give the name of a file in it",
+    "run small.toml -o /proc/x.nc": "/proc/x.nc: cannot write in /proc: ",
+    "run small.toml -o broken.toml": "broken.toml: not a readable netCDF file; ",
+    "run small.toml --workers 1 --scheduler tcp://x:1": "workers and scheduler exclude each other",
+    "simulate ishigamy": "no such model 'ishigamy'; did you mean 'ishigami'?",
+    "simulate linear --set x1": "--set x1: write it as NAME=VALUE with a number",
+    "simulate linear --set x1=much": "--set x1=much: write it as NAME=VALUE with a number",
+    "simulate linear --set x1=nan": "x1 = nan: ",
+    "simulate linear --set x5=1": "x5 = 1.0: no such parameter of model 'linear'",
+    "simulate linear --setting fail_how": "--setting fail_how: write it as NAME=VALUE",
+    "simulate linear --setting fail_how=3": "setting fail_how = 3: must be one of nan, inf",
+    "simulate linear --plot f.png": "model 'linear' gives no trajectory",
+    "simulate sample_models:KINDS -o folder": "folder: is a folder",
+    "simulate sample_models:KINDS --plot /proc/f.png": "/proc/f.png: cannot write in /proc: ",
+    "simulate sample_models:KINDS --plot f.xyz": "f.xyz: Format 'xyz' is not supported",
+    "models nothing": "no such model 'nothing'",
+    "init nothing": "no such model 'nothing'",
+    "check absent.toml": "absent.toml: no such file",
+    "summary absent.nc": "absent.nc: no such file",
+    "summary small.toml": "small.toml: not a readable netCDF file",
+    "sensitivity folder": "folder: is a folder, not a result",
+    "plot absent.nc": "absent.nc: no such file",
+}
+
+
+@pytest.mark.parametrize("line", MISTAKES)
+def test_a_mistake_is_one_line_and_leaves_nothing_behind(uq, write_study, folder, line):
+    write_study()
+    (folder / "folder").mkdir()
+    (folder / "broken.toml").write_text("[study\n")
+    ended = uq(*line.split())
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err.startswith(MISTAKES[line])
+    assert ended.err.count("\n") == 1
+    assert everything(folder) == ["broken.toml", "folder", "small.toml"]
+
+
+def test_a_wrong_model_of_ones_own_is_one_line(uq, write_study, folder):
+    path = write_study(model="x", uncertain=("x1",))
+    ended = uq("run", path, "--model", "sample_models:WRONG_DTYPE")
+    assert ended.code == 2
+    assert ended.err == "model 'wrong-dtype': 'y' is float32, expected float64\n"
+    assert everything(folder) == ["small.toml"]
+
+
+def test_a_reader_that_has_enough_is_no_error():
+    command = Path(sys.executable).with_name("uq")
+    nobody, pipe = os.pipe()
+    os.close(nobody)
+    ended = subprocess.run(
+        [command, "schema"], stdout=pipe, stderr=subprocess.PIPE, text=True, timeout=60
+    )
+    os.close(pipe)
+    assert (ended.returncode, ended.stderr) == (1, "")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (None, ""),
+        (3599.0, ""),
+        (7200.0, "2 hours"),
+        (-7200.0, "-2 hours"),
+        (86400.0 * 3, "3 days"),
+        (86400.0 * 365.25 * 40, "40 years"),
+        (float("inf"), ""),
+    ],
+)
+def test_times_in_words(seconds, words):
+    assert duration(seconds) == words
+
+
+def test_json_knows_only_finite_numbers():
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        print_json({"a": float("nan")})
+
+
+def test_progress_is_a_sentence():
+    assert sentence(Progress(100, 400, 3), 2.0) == (
+        "100 of 400 rows, 50 rows/s, 0:06 left, 3 failed"
+    )
+    assert sentence(Progress(1, 3601, 0), 1.0).endswith("1:00:00 left, 0 failed")

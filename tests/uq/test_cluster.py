@@ -1,0 +1,180 @@
+"""Worker processes compute the same bits, need no care, and leave nothing behind."""
+
+import asyncio
+import contextlib
+import os
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import psutil
+import pytest
+import sample_models
+
+import uq
+from uq import cluster, runner
+from uq.errors import InputError, RunError
+from uq.job import evaluate_rows
+from uq.study import load_study
+
+
+@pytest.fixture
+def tidy(folder, monkeypatch):
+    """Check that neither processes nor temporary files outlive the test."""
+    temporary = folder / "temporary"
+    temporary.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
+    yield
+    assert not any(temporary.iterdir())
+    assert not [place for place in sys.path if place.startswith(str(temporary))]
+    assert not [child for child in psutil.Process().children() if "uq.worker" in child.cmdline()]
+
+
+@pytest.mark.parametrize(
+    ("model", "parameters", "workers"),
+    [("ishigami", ("x1", "x2", "x3"), 1), ("sample_models:KINDS", ("x1",), 2)],
+)
+def test_workers_give_the_bits_of_this_process(write_study, tidy, model, parameters, workers):
+    path = write_study(method="saltelli", samples=128, replicates=2, uncertain=parameters)
+    study = load_study(path, model)
+    here = runner.compute(study, workers=0)
+    assert runner.compute(study, workers=workers, chunk_rows=100).identical(here)
+
+
+def test_all_workers_work(write_study, tidy):
+    study = load_study(write_study(uncertain=("x1",), samples=400), "sample_models:PROCESS")
+    ds = runner.compute(study, workers=2, chunk_rows=2)
+    processes = set(ds["y"].values) - {float(os.getpid())}
+    assert len(processes) == 2
+
+
+def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeypatch):
+    monkeypatch.setenv("UQ_TEST", "1")
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
+    # Numba has read its settings: what the environment says now must not reach the workers.
+    monkeypatch.setenv("NUMBA_CPU_FEATURES", "+sse2")
+    monkeypatch.setattr(sample_models.numba.config, "CACHE_DIR", "some folder")
+    study = load_study(write_study(uncertain=("x1",)), "sample_models:ENVIRONMENT")
+    ds = runner.compute(study, workers=1, chunk_rows=1)
+    assert len(set(ds["y"].values)) == 1
+    monkeypatch.setenv("UQ_TEST", "2")
+    assert runner.compute(study, workers=0)["y"].values[0] != ds["y"].values[0]
+
+
+def test_workers_are_not_started_for_a_few_seconds_of_work(write_study, monkeypatch):
+    study = load_study(write_study(uncertain=("x1",), samples=10_000), "sample_models:PROCESS")
+    assert set(runner.compute(study)["y"].values) == {os.getpid()}
+
+
+def test_a_longer_study_is_given_to_workers(write_study, tidy, monkeypatch):
+    monkeypatch.setattr(runner, "IN_PROCESS_SECONDS", 0.5)
+    path = write_study(uncertain=("x1",), samples=64, more="[settings]\nseconds = 0.03")
+    seen = []
+    study = load_study(path, "sample_models:SLEEPING")
+    ds = runner.compute(study, progress=seen.append)
+    assert np.array_equal(ds["y"], ds["x1"])
+    assert seen[-1].done == 64
+
+
+def test_an_existing_cluster_is_used(write_study, tidy):
+    study = load_study(write_study(uncertain=("x1",), samples=100), "sample_models:PROCESS")
+    with cluster.local(1) as crew:
+        address = crew.client.scheduler.address
+        ds = runner.compute(study, scheduler=address, chunk_rows=5)
+        assert address.startswith("tcp://127.0.0.1:")
+        assert crew.threads == 1
+    assert len(set(ds["y"].values)) == 2
+
+
+def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
+    monkeypatch.setattr(cluster, "_REMOTE_SECONDS", 1)
+    study = load_study(write_study())
+    for address in ("tcp://127.0.0.1:9", "nonsense://x"):
+        with pytest.raises(InputError, match=rf"^--scheduler {address}: cannot connect: .+$"):
+            runner.compute(study, scheduler=address)
+    with cluster.LocalCluster(n_workers=0, dashboard_address=None) as empty:
+        address = empty.scheduler_address
+        with pytest.raises(InputError, match=rf"^--scheduler {address}: .* no workers$"):
+            runner.compute(study, scheduler=address)
+    with cluster.local(1) as crew:
+        with pytest.raises(InputError, match=r"^there: worker .* has vibrolife .*, this .* 0\.0$"):
+            cluster._check_packages(crew.client, "there", "0.0")
+        monkeypatch.setattr(cluster, "_PACKAGE", "no-such-package")
+        with pytest.raises(InputError, match=r"^there: worker .* lacks no-such-package, this"):
+            cluster._check_packages(crew.client, "there", "0.0")
+
+
+def test_rows_that_kill_their_worker_end_the_run_with_a_sentence(write_study, tidy, monkeypatch):
+    monkeypatch.setenv("UQ_TEST_SURVIVOR", str(os.getpid()))
+    path = write_study(uncertain=("x1",), law='distribution = "uniform", lower = 0.0, upper = 1.0')
+    study = load_study(path, "sample_models:DYING")
+    with pytest.raises(RunError, match=r"^rows \d+ to \d+ killed the worker processes"):
+        runner.compute(study, workers=1, chunk_rows=8)
+
+
+def test_a_worker_with_another_version_of_the_model_is_refused():
+    x, seed = np.full((2, 3), 0.5), np.zeros(2, np.uint64)
+    with pytest.raises(InputError, match="a worker has version 1 of model 'ishigami'.* has 2"):
+        evaluate_rows("ishigami", "2", {}, x, seed, 0)
+
+
+def test_a_script_needs_no_main_guard(write_study, folder):
+    path = write_study(samples=200)
+    temporary = folder / "temporary"
+    temporary.mkdir()
+    script = folder / "script.py"
+    script.write_text(
+        "print('once')\n"
+        "import uq\n"
+        f"ds = uq.run({str(path)!r}, 'out.nc', workers=2, chunk_rows=20)\n"
+        "print(ds.sizes['sample'])\n"
+    )
+    ended = subprocess.run(
+        [sys.executable, script],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"TMPDIR": str(temporary)},
+        timeout=60,
+    )
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "once\n200\n", "")
+    assert not any(temporary.iterdir())
+    assert {entry.name for entry in folder.iterdir()} == {
+        path.name,
+        "out.nc",
+        "script.py",
+        "temporary",
+    }
+
+
+def test_a_notebook_with_a_running_event_loop_can_use_workers(write_study, tidy):
+    path = write_study(samples=200)
+
+    async def cell():
+        return uq.run(path, "out.nc", workers=1, chunk_rows=20)
+
+    assert asyncio.run(cell()).identical(uq.open_result("out.nc"))
+
+
+def test_a_worker_ends_with_its_parent(folder):
+    program = (
+        "import os, time\n"
+        "from uq import cluster\n"
+        "context = cluster.local(1)\n"
+        "crew = context.__enter__()\n"
+        "print(*crew.client.run(os.getpid).values(), flush=True)\n"
+        "os.kill(os.getpid(), 9)\n"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"TMPDIR": str(folder)},
+        timeout=60,
+    )
+    worker = int(ended.stdout)
+    with contextlib.suppress(psutil.NoSuchProcess):
+        psutil.Process(worker).wait(30)
+    assert not psutil.pid_exists(worker)
+    assert not any(folder.iterdir())

@@ -1,0 +1,180 @@
+"""Ctrl-C ends a run at once, whatever it is doing, and leaves nothing behind."""
+
+import contextlib
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+import sample_models
+
+PATIENCE = 30.0
+"""How long a busy machine may take for what should take a moment [s]."""
+
+COMMAND = Path(sys.executable).with_name("uq")
+
+
+@pytest.fixture
+def started(write_study, folder):
+    """Return a function that starts ``uq run`` in a process group of its own."""
+    temporary = folder / "temporary"
+    temporary.mkdir()
+    mark = folder / "temporary.mark"
+    processes = []
+
+    def start(model, *options, seconds=0.0, program=None, stderr=subprocess.PIPE):
+        path = write_study(
+            uncertain=("x1",), samples=10_000, more=f"[settings]\nseconds = {seconds}"
+        )
+        command = [COMMAND, "run", path, "--model", f"sample_models:{model}", *options]
+        processes.append(
+            subprocess.Popen(
+                [sys.executable, "-c", program] if program else command,
+                stdout=subprocess.PIPE,
+                stderr=stderr,
+                text=True,
+                start_new_session=True,
+                env=os.environ
+                | {
+                    "TMPDIR": str(temporary),
+                    "PYTHONPATH": str(Path(sample_models.__file__).parent),
+                    "UQ_TEST_MARK": str(mark),
+                },
+            )
+        )
+        return processes[-1], mark
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.communicate()
+    assert not any(temporary.iterdir())
+    for process in psutil.process_iter(["cmdline"]):
+        assert str(temporary) not in " ".join(process.info["cmdline"] or [])
+    mark.unlink(missing_ok=True)
+    assert sorted(entry.name for entry in folder.iterdir()) == ["small.toml", "temporary"]
+
+
+def wait_until(condition):
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.02)
+
+
+def workers_of(process):
+    return [
+        child
+        for child in psutil.Process(process.pid).children()
+        if "uq.worker" in " ".join(child.cmdline())
+    ]
+
+
+def to_process(process):
+    process.send_signal(signal.SIGINT)
+
+
+def to_group(process):
+    os.killpg(process.pid, signal.SIGINT)
+
+
+def check_ended(process, sentence):
+    out, err = process.communicate(timeout=PATIENCE)
+    assert (process.returncode, out) == (130, "")
+    assert err.count("\n") == 1
+    assert err.startswith(sentence)
+
+
+@pytest.mark.parametrize("send", [to_process, to_group])
+def test_while_a_kernel_runs(started, send):
+    process, mark = started("SPINNING", "--workers", "0", seconds=100.0)
+    wait_until(mark.exists)
+    time.sleep(1.0)  # compiled and running
+    send(process)
+    check_ended(process, "interrupted; nothing was written")
+
+
+def test_while_a_kernel_compiles(started):
+    process, mark = started("COMPILING", "--workers", "0")
+    wait_until(mark.exists)
+    time.sleep(0.5)
+    to_group(process)
+    check_ended(process, "interrupted; nothing was written")
+
+
+@pytest.mark.parametrize("send", [to_process, to_group])
+def test_while_workers_work(started, send):
+    process, _ = started("SLEEPING", "--workers", "2", "--chunk-rows", "4", seconds=0.05)
+    wait_until(lambda: len(workers_of(process)) == 2)
+    time.sleep(2.0)
+    workers = workers_of(process)
+    send(process)
+    check_ended(process, "interrupted after ")
+    psutil.wait_procs(workers, timeout=PATIENCE)
+    assert not any(worker.is_running() for worker in workers)
+
+
+def test_while_workers_start(started):
+    process, _ = started("SLEEPING", "--workers", "2", "--chunk-rows", "1", seconds=0.05)
+    wait_until(lambda: workers_of(process))
+    to_group(process)
+    check_ended(process, "interrupted after ")
+
+
+@pytest.mark.parametrize("delay", [0.2, 0.5, 0.8, 1.2, 1.6])
+def test_while_modules_are_loaded(started, delay):
+    process, _ = started("SLEEPING", "--workers", "0", seconds=1.0)
+    time.sleep(delay)
+    to_group(process)
+    check_ended(process, "interrupted")
+
+
+def test_a_request_to_terminate_is_obeyed_too(started):
+    process, mark = started("SLEEPING", "--workers", "0", seconds=1.0)
+    wait_until(mark.exists)
+    process.terminate()
+    _, err = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 143
+    assert err.startswith("interrupted")
+
+
+def test_in_a_script_it_is_the_exception_of_python(started):
+    program = (
+        "import uq\n"
+        "study = uq.load_study('small.toml', 'sample_models:SLEEPING')\n"
+        "try:\n"
+        "    uq.run(study, workers=2, chunk_rows=4)\n"
+        "except KeyboardInterrupt:\n"
+        "    print('stopped')\n"
+    )
+    process, _ = started("SLEEPING", seconds=0.05, program=program)
+    wait_until(lambda: workers_of(process))
+    time.sleep(2.0)
+    to_process(process)
+    assert process.communicate(timeout=PATIENCE) == ("stopped\n", "")
+    assert process.returncode == 0
+
+
+def test_a_terminal_shows_progress_and_gets_its_cursor_back(started):
+    ours, theirs = pty.openpty()
+    process, _ = started("SLEEPING", "--workers", "0", seconds=0.05, stderr=theirs)
+    os.close(theirs)
+    shown = b""
+    while b" of 10000 rows, " not in shown:
+        shown += os.read(ours, 10_000)
+    to_process(process)
+    process.wait(PATIENCE)
+    with contextlib.suppress(OSError):  # how a terminal says that nobody writes to it any more
+        while more := os.read(ours, 10_000):
+            shown += more
+    os.close(ours)
+    hidden, visible = b"\x1b[?25l", b"\x1b[?25h"
+    assert shown.count(hidden) == shown.count(visible) == 1
+    assert shown.rindex(visible) > shown.rindex(hidden)
+    assert b"interrupted after " in shown.rpartition(visible)[2]
+    assert b" rows/s, " in shown and b" left, 0 failed" in shown

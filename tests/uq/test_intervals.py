@@ -1,0 +1,153 @@
+import numpy as np
+import pytest
+from scipy import stats
+
+from uq import intervals
+from uq.intervals import (
+    mean_interval,
+    quantile,
+    quantile_interval,
+    rows_needed,
+    share_interval,
+    tolerance_bounds,
+)
+
+RNG = np.random.default_rng(3)
+VALUES = RNG.lognormal(size=200)
+REPLICATE = np.arange(200) % 8
+
+
+def test_mean_of_independent_rows_is_students_interval():
+    scale = VALUES.std(ddof=1) / np.sqrt(200)
+    expected = stats.t.interval(0.95, 199, loc=VALUES.mean(), scale=scale)
+    assert mean_interval(VALUES) == pytest.approx(expected)
+
+
+def test_mean_of_replicates_is_students_interval_of_their_means():
+    means = [VALUES[REPLICATE == r].mean() for r in range(8)]
+    expected = stats.t.interval(0.95, 7, loc=VALUES.mean(), scale=stats.sem(means))
+    assert mean_interval(VALUES, REPLICATE) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("hits", [0, 1, 17, 40])
+def test_share_of_independent_rows_is_wilsons_interval(hits):
+    ours = share_interval(np.arange(40) < hits)
+    scipys = stats.binomtest(hits, 40).proportion_ci(0.95, method="wilson")
+    assert ours == pytest.approx((scipys.low, scipys.high), abs=1e-15)
+    assert (ours.low == 0) == (hits == 0) and (ours.high == 1) == (hits == 40)
+
+
+def test_share_of_replicates_comes_from_their_scatter():
+    # The same rows, dealt out so that replicates agree or differ.
+    hits = np.arange(200) < 80
+    agreeing = share_interval(hits, (np.arange(200) * 8 - (np.arange(200) == 0)) % 7)
+    differing = share_interval(hits, np.arange(200) // 25)
+    assert np.diff(agreeing) < 0.05
+    assert np.diff(differing) > 0.5
+    assert agreeing.low < 0.4 < agreeing.high
+
+
+def test_share_of_replicates_stays_within_zero_and_one():
+    hits = np.zeros(800, dtype=bool)
+    hits[0] = True
+    low, high = share_interval(hits, np.arange(800) % 8)
+    assert 0 < low < 1 / 800 < high < 1
+
+
+@pytest.mark.parametrize("probability", [0.05, 0.3, 0.5, 0.95])
+def test_quantile_of_independent_rows_is_an_order_statistic(probability):
+    ours = quantile_interval(VALUES, probability)
+    scipys = stats.quantile_test(VALUES, p=probability).confidence_interval(0.95)
+    assert ours == (scipys.low, scipys.high)
+
+
+def test_quantile_has_no_bound_where_rows_are_too_few():
+    low, high = quantile_interval(VALUES[:20], 0.01)
+    assert np.isnan(low) and high in VALUES
+    low, high = quantile_interval(VALUES[:20], 0.99)
+    assert low in VALUES and np.isnan(high)
+    assert np.isnan(quantile_interval(VALUES, 0.001, REPLICATE).low)
+    assert np.isnan(quantile_interval(VALUES, 0.999, REPLICATE).high)
+
+
+def test_quantile_is_numpys_median_unbiased_one_and_knows_infinity():
+    expected = np.quantile(VALUES, 0.37, method="median_unbiased")
+    assert quantile(VALUES, 0.37) == expected
+    assert quantile(np.array([1.0, 2.0, 3.0, np.inf, np.inf]), 0.5) == 3.0
+    assert quantile(np.array([1.0, 2.0, np.inf, np.inf]), 0.5) == np.inf
+    assert quantile(np.full(3, np.inf), 0.1) == np.inf
+    assert np.isnan(quantile(np.array([]), 0.5))
+
+
+def test_interval_of_a_quantile_may_end_in_never():
+    values = np.where(np.arange(200) < 104, VALUES, np.inf)
+    for replicate in (None, RNG.permutation(REPLICATE)):
+        low, high = quantile_interval(values, 0.5, replicate)
+        assert np.isfinite(low) and high == np.inf
+        low, high = quantile_interval(values, 0.9, replicate)
+        assert low == np.inf and (high == np.inf or np.isnan(high))
+
+
+def test_no_interval_without_evidence():
+    unknown = pytest.approx((np.nan, np.nan), nan_ok=True)
+    same = np.zeros(200, dtype=int)
+    hits = VALUES > 1
+    assert mean_interval(VALUES, same) == unknown
+    assert share_interval(hits, same) == unknown
+    assert quantile_interval(VALUES, 0.5, same) == unknown
+    assert mean_interval(np.full(200, 0.1)) == unknown
+    assert mean_interval(np.full(200, 0.1), REPLICATE) == unknown
+    assert mean_interval(VALUES[:1]) == unknown
+    assert mean_interval(VALUES[:0]) == unknown
+    assert share_interval(hits[:0]) == unknown
+    assert quantile_interval(VALUES[:0], 0.5) == unknown
+    # Replicates that agree to the last bit say nothing about the error.
+    assert share_interval(np.arange(200) < 80, REPLICATE) == unknown
+    assert mean_interval(np.repeat(VALUES[:25], 8), REPLICATE) == unknown
+    assert share_interval(np.zeros(200, dtype=bool), REPLICATE) == unknown
+
+
+def test_a_replicate_without_rows_does_not_count():
+    gone = REPLICATE != 3
+    shifted = np.where(REPLICATE > 3, REPLICATE - 1, REPLICATE)
+    assert mean_interval(VALUES[gone], REPLICATE[gone]) == mean_interval(
+        VALUES[gone], shifted[gone]
+    )
+
+
+@pytest.mark.parametrize(
+    ("coverage", "confidence", "failed", "rows"),
+    [(0.95, 0.95, 0, 59), (0.95, 0.95, 1, 93), (0.95, 0.95, 2, 124), (0.99, 0.95, 0, 299),
+     (0.95, 0.99, 0, 90), (0.9, 0.95, 0, 29)],
+)  # fmt: skip
+def test_tolerance_needs_the_numbers_of_rows_that_textbooks_list(
+    coverage, confidence, failed, rows
+):
+    assert rows_needed(coverage, confidence, failed) == rows
+    values = np.arange(float(rows - failed))
+    enough = tolerance_bounds(values, failed, coverage, confidence)
+    assert enough == (0.0, values[-1])
+    short = tolerance_bounds(values[1:], failed, coverage, confidence)
+    assert short == pytest.approx((np.nan, np.nan), nan_ok=True)
+
+
+def test_tolerance_takes_the_innermost_order_statistic_that_will_do():
+    n = 400
+    low, high = tolerance_bounds(np.arange(1.0, n + 1), 0, 0.95, 0.95)
+    for rank in (low, n + 1 - high):
+        assert stats.beta.cdf(0.05, rank, n + 1 - rank) >= 0.95
+        assert stats.beta.cdf(0.05, rank + 1, n - rank) < 0.95
+
+
+def test_failed_rows_count_as_the_worst_on_each_side():
+    values = RNG.permutation(np.arange(300.0))
+    low, high = tolerance_bounds(values, 4, 0.95, 0.95)
+    assert low == tolerance_bounds(np.r_[values, np.full(4, -1.0)], 0, 0.95, 0.95).low
+    assert high == tolerance_bounds(np.r_[values, np.full(4, 999.0)], 0, 0.95, 0.95).high
+
+
+def test_constant_means_constant_up_to_rounding():
+    third = np.array([0.1 + 0.2, 0.3])
+    assert intervals.is_constant(third)
+    assert not intervals.is_constant(np.array([0.3, 0.3 + 1e-12]))
+    assert not intervals.is_constant(np.array([0.0, 1e-300]))

@@ -1,0 +1,193 @@
+"""The schema of a result, as a reader finds it."""
+
+import hashlib
+import platform
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+
+from uq import results, runner, store
+from uq.contract import Status
+from uq.errors import InputError
+from uq.simulation import simulate
+from uq.study import load_study
+
+
+@pytest.fixture
+def kinds(write_study):
+    """Return a small saltelli result with one output of every kind, read back from its file."""
+    path = write_study(
+        model="kinds",
+        method="saltelli",
+        samples=8,
+        replicates=2,
+        uncertain=("x2",),
+        law='distribution = "uniform", lower = 0.0, upper = 1.0, source = "a guess"',
+        more="[fixed]\nx1 = 0.125",
+    )
+    study = load_study(path, "sample_models:KINDS")
+    runner.run(study, "kinds.nc", workers=0)
+    return study, "kinds.nc"
+
+
+def test_a_result_opens_with_plain_xarray_and_describes_itself(kinds):
+    study, path = kinds
+    with xr.open_dataset(path) as ds:
+        assert ds.sizes == {"sample": 48, "side": 2, "depth": 2}
+        assert list(ds["side"].values) == ["left", "right"]
+        assert list(ds["depth"].values) == [0.5, 1.5]
+        assert ds["x2"].dims == ("sample",)
+        assert ds["x2"].attrs == {
+            "role": "input",
+            "units": "s",
+            "long_name": "second input",
+            "symbol": "x_2",
+            "source": "a guess",
+        }
+        assert ds["x1"].dims == ()
+        assert ds["x1"].item() == 0.125
+        assert ds["x1"].attrs["role"] == "fixed"
+        assert ds["x1"].attrs["source"] == "made up"
+        assert ds["life"].dims == ("sample", "side", "depth")
+        assert ds["life"].attrs == {
+            "role": "output",
+            "kind": "lifetime",
+            "units": "s",
+            "long_name": "time to a depth",
+            "may_be_undefined": 0,
+        }
+        assert ds["life_censored"].dtype == np.int8
+        assert ds["life_censored"].attrs["role"] == "censored"
+        assert ds["angle"].attrs["may_be_undefined"] == 1
+        assert ds.attrs["title"] == "small"
+        assert ds.attrs["source"] == "kinds 1"
+        assert ds.attrs["study"] == study.text
+        assert ds.attrs["study_sha256"] == hashlib.sha256(study.text.encode()).hexdigest()
+        assert ds.attrs["study_identity"] == study.identity
+        assert ds.attrs["python"] == platform.python_version()
+        assert ds.attrs["numpy"] == np.__version__
+        assert ds.attrs["cpu"]
+        facts = ("design", "samples", "replicates", "second_order", "seed", "schema_version")
+        assert [ds.attrs[name] for name in facts] == ["saltelli", 8, 2, 0, 5, 1]
+
+
+def test_flags_are_integers_without_fill_value(kinds):
+    _, path = kinds
+    with netCDF4.Dataset(path) as file:
+        assert file.data_model == "NETCDF4"
+        for variable in file.variables.values():
+            assert "_FillValue" not in variable.ncattrs()
+        for name, meanings in {
+            "status": [status.label for status in Status],
+            "regime": ["none", "slow", "fast"],
+            "block": ["A", "AB_x2", "B"],
+        }.items():
+            variable = file[name]
+            assert variable.flag_meanings.split() == meanings
+            assert variable.flag_values.dtype == variable.dtype
+            assert set(variable[:]) <= set(variable.flag_values)
+        assert list(file["regime"].flag_values) == [-1, 0, 1]
+
+
+def test_rows_know_their_place_in_the_design(kinds):
+    _, path = kinds
+    ds = results.open_result(path)
+    row = np.arange(48)
+    assert np.array_equal(ds["sample"], row)
+    assert np.array_equal(ds["block"], row % 3)
+    assert np.array_equal(ds["replicate"], row // 3 % 2)
+    assert np.array_equal(ds["group"], row // 6)
+    assert set(ds.coords) >= {"replicate", "group", "block"}
+    a, ab, b = (ds["x2"].values[ds["block"] == block] for block in range(3))
+    assert np.array_equal(ab, b)
+    assert not np.array_equal(a, b)
+
+
+def test_an_example_stands_beside_each_failing_status(write_study):
+    path = write_study(
+        model="linear",
+        uncertain=("x1", "x2"),
+        more='[settings]\nfail_above = 0.5\nfail_how = "raise"',
+    )
+    ds = runner.compute(load_study(path), workers=0, chunk_rows=7)
+    first = int(np.flatnonzero(ds["x1"] > 0.5)[0])
+    assert ds["status"].attrs["example_raised"] == (
+        f"row {first}: ValueError: x1 is above fail_above = 0.5"
+    )
+    assert np.array_equal(ds["status"] == Status.RAISED, ds["x1"] > 0.5)
+
+
+def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):
+    _, path = kinds
+    (folder / "notes.txt").write_text("no netCDF at all")
+    xr.Dataset({"a": 1}).to_netcdf("other.nc")
+    store.write(simulate("linear"), folder / "single.nc")
+    results.open_result(path).assign_attrs(schema_version=99).to_netcdf("future.nc")
+    for name, words in {
+        "missing.nc": "no such file",
+        ".": "is a folder",
+        "notes.txt": "not a readable netCDF file",
+        "other.nc": "not a result of 'uq run'",
+        "single.nc": "not a result of 'uq run'",
+        "future.nc": "written with schema version 99; this version of vibrolife reads 1",
+    }.items():
+        with pytest.raises(InputError) as refused:
+            results.open_result(name)
+        assert refused.value.lines[0].startswith(f"{name}: {words}")
+        assert len(refused.value.lines) == 1
+
+
+def test_elements_are_named_by_their_coordinates(kinds):
+    _, path = kinds
+    ds = results.open_result(path)
+    named = dict(results.elements(ds["life"]))
+    assert list(named) == [
+        f"life[side={side},depth={depth}]" for side in ("left", "right") for depth in (0.5, 1.5)
+    ]
+    assert np.array_equal(named["life[side=right,depth=0.5]"], ds["life"].values[:, 1, 0])
+    assert [name for name, _ in results.elements(ds["angle"])] == ["angle"]
+
+
+def test_a_row_out_of_budget_failed_only_where_an_output_is_lacking(kinds):
+    _, path = kinds
+    ds = results.open_result(path)
+    assert not results.failed(ds).any()
+    ds["status"].values[:4] = Status.OUT_OF_BUDGET
+    ds["status"].values[4] = Status.RAISED
+    ds["work"].values[0, 1] = np.nan
+    ds["regime"].values[1] = -1
+    ds["angle"].values[2] = np.nan
+    assert list(np.flatnonzero(results.failed(ds))) == [0, 1, 4]
+
+
+def test_new_text_of_the_same_study_replaces_the_old(kinds, write_study):
+    study, path = kinds
+    renamed = load_study(
+        write_study(
+            model="kinds",
+            method="saltelli",
+            samples=8,
+            replicates=2,
+            uncertain=("x2",),
+            law='distribution = "uniform", lower = 0.0, upper = 1.0, source = "a test"',
+            more="[fixed]\nx1 = 0.125\n[analysis]\nquantiles = [0.1]",
+        ),
+        "sample_models:KINDS",
+    )
+    assert renamed.identity == study.identity
+    ds = runner.run(renamed, path)
+    assert ds.attrs["study"] == renamed.text
+    assert ds["x2"].attrs["source"] == "a test"
+    assert results.open_result(path).identical(ds)
+
+
+def test_a_file_holds_what_memory_holds(kinds):
+    study, path = kinds
+    ds = runner.compute(study, workers=0)
+    assert results.open_result(path).identical(ds)
+    again = Path("again.nc")
+    store.write(ds, again)
+    assert again.read_bytes() == Path(path).read_bytes()

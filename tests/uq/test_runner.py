@@ -1,0 +1,180 @@
+"""The same study gives the same bits however it is cut, and a finished one is not run again."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import uq
+from uq import runner
+from uq.contract import Status
+from uq.errors import InputError
+from uq.evaluate import KernelError, evaluate
+from uq.job import Progress
+from uq.sampling import row_block
+from uq.store import Store
+from uq.study import load_study
+
+
+@pytest.mark.parametrize(
+    "design",
+    [
+        {"method": "monte-carlo", "samples": 101, "replicates": 2},
+        {"method": "latin-hypercube", "samples": 50, "replicates": 3},
+        {"method": "sobol", "samples": 64},
+        {"method": "halton", "samples": 77},
+        {"method": "saltelli", "samples": 16, "replicates": 2, "second_order": True},
+    ],
+    ids=lambda design: design["method"],
+)
+def test_every_design_gives_the_same_bits_for_any_chunk_size(write_study, design):
+    study = load_study(write_study(**design))
+    whole = runner.compute(study, workers=0)
+    for chunk_rows in (1, 7, 1000):
+        assert whole.identical(runner.compute(study, workers=0, chunk_rows=chunk_rows))
+
+
+@settings(
+    max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(chunk_rows=st.integers(1, 200))
+def test_failures_do_not_depend_on_chunks(write_study, chunk_rows):
+    path = write_study(
+        model="linear",
+        uncertain=("x1", "x2"),
+        more='[settings]\nfail_above = 0.7\nfail_how = "raise"',
+    )
+    study = load_study(path)
+    assert runner.compute(study, 0, chunk_rows=chunk_rows).identical(runner.compute(study, 0))
+
+
+def test_chunks_may_arrive_in_any_order(write_study):
+    path = write_study(
+        model="linear",
+        samples=100,
+        uncertain=("x1", "x2"),
+        more='[settings]\nfail_above = 0.7\nfail_how = "raise"',
+    )
+    study = load_study(path)
+    store = Store(study, 100)
+    for start in (60, 0, 80, 20, 40):
+        some = row_block(study, start, start + 20)
+        chunk = evaluate(study.model, study.settings, some.x, some.seed, start)
+        store.add(start, some, chunk)
+    assert store.dataset().identical(runner.compute(study, workers=0))
+
+
+def test_chunks_are_whole_groups_and_full_blocks(write_study):
+    seen = []
+    study = load_study(write_study(method="saltelli", samples=64, replicates=2))
+    runner.compute(study, workers=0, chunk_rows=11, progress=seen.append)
+    done = np.array([progress.done for progress in seen])
+    assert np.all(np.diff(done)[:-1] == 15)
+    assert seen[-1] == Progress(640, 640, 0)
+
+
+def test_chunks_fill_the_blocks_of_a_kernel_where_that_is_cheap(write_study):
+    study = load_study(write_study(uncertain=("x1",), samples=320), "sample_models:KINDS")
+    for block, size in {16: 32, 64: 20}.items():
+        seen = []
+        blocked = replace(study, model=replace(study.model, block=block))
+        runner.compute(blocked, workers=0, chunk_rows=20, progress=seen.append)
+        done = [progress.done for progress in seen]
+        assert np.diff(done)[-2] == size
+
+
+def test_progress_counts_rows_and_failures(write_study):
+    path = write_study(model="linear", more="[settings]\nfail_above = 0.5", samples=200)
+    seen = []
+    ds = runner.compute(load_study(path), workers=0, chunk_rows=20, progress=seen.append)
+    assert [progress.done for progress in seen] == list(range(20, 201, 20))
+    assert seen[-1].failed == int((ds["status"] != 0).sum()) > 0
+
+
+def test_run_writes_what_it_returns_and_shows_it_the_second_time(write_study, folder):
+    path = write_study()
+    ds = uq.run(path)
+    file = folder / "results" / "small.nc"
+    assert uq.open_result(file).identical(ds)
+    before = file.stat()
+    computed = []
+    again = runner.run(load_study(path), progress=computed.append)
+    assert again.identical(ds)
+    assert not computed
+    assert file.stat().st_mtime_ns == before.st_mtime_ns
+    assert file.stat().st_ino == before.st_ino
+    assert runner.run(path, fresh=True, progress=computed.append).identical(ds)
+    assert computed
+
+
+def test_the_result_of_something_else_is_kept(write_study, folder):
+    path = write_study()
+    ds = runner.run(path, "out.nc")
+    for change, words in {
+        "seed": "holds the result of another study",
+        "samples": "holds this study with samples = 64, not 128",
+    }.items():
+        other = write_study(**{change: 128})
+        with pytest.raises(InputError, match=f"^out.nc: {words}.*--fresh"):
+            runner.run(other, "out.nc")
+    Path("text.nc").write_text("my notes")
+    with pytest.raises(InputError, match=r"text\.nc: not a readable netCDF file; .*--fresh"):
+        runner.run(path, "text.nc")
+    assert Path("text.nc").read_text() == "my notes"
+    assert uq.open_result("out.nc").identical(ds)
+    assert runner.run(other, "out.nc", fresh=True).attrs["samples"] == 128
+
+
+def test_the_output_is_checked_before_anything_is_computed(write_study, folder):
+    computed = []
+    with pytest.raises(InputError, match="is a folder"):
+        runner.run(write_study(), folder, workers=0, progress=computed.append)
+    assert not computed
+
+
+def test_a_model_wrong_for_every_row_is_refused(write_study):
+    study = load_study(write_study(model="x", uncertain=("x1",)), "sample_models:WRONG_SHAPE")
+    with pytest.raises(KernelError) as refused:
+        runner.compute(study, workers=0)
+    assert refused.value.lines == (
+        "model 'wrong-shape': every row is wrong: 'y' has shape (1, 2), expected (1,)",
+    )
+
+
+def test_a_first_row_of_a_wrong_shape_does_not_blame_the_model(write_study):
+    study = load_study(write_study(model="linear", more="[settings]\nfail_above = 0.5"))
+    first = row_block(study, 0, 1).x[0, 0]
+    path = write_study(
+        model="linear",
+        more=f'[settings]\nfail_above = {first - 1e-9}\nfail_how = "shape"',
+    )
+    study = load_study(path)
+    study = replace(study, model=replace(study.model, block=1))
+    ds = runner.compute(study, workers=0, chunk_rows=1)
+    assert ds["status"].values[0] == Status.BAD_SHAPE
+    assert np.array_equal(ds["status"] == Status.BAD_SHAPE, ds["x1"] >= first)
+    assert (ds["status"] == Status.OK).any()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"workers": -1}, "workers must not be negative: -1"),
+        ({"chunk_rows": 0}, "chunk_rows must be at least 1: 0"),
+        ({"workers": 1, "scheduler": "tcp://x:1"}, "workers and scheduler exclude each other"),
+    ],
+)
+def test_impossible_options_are_refused(write_study, options, words):
+    with pytest.raises(InputError, match=words):
+        runner.compute(load_study(write_study()), **options)
+
+
+def test_a_result_keeps_no_file_open(write_study):
+    ds = runner.run(write_study(), "out.nc")
+    Path("out.nc").unlink()
+    assert isinstance(ds["y"].values.sum(), np.float64)
+    assert isinstance(ds, xr.Dataset)

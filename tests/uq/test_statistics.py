@@ -1,0 +1,246 @@
+import json
+
+import numpy as np
+import pytest
+from computed import asking, kinds, linear, with_output, with_status
+
+import uq
+from uq.contract import Status
+from uq.statistics import summarise
+
+THRESHOLDS = {"y": [2.0, 6.0]}
+
+
+def described(ds, name="y"):
+    """Return what is said about one element; JSON without any number that is not finite."""
+    return json.loads(json.dumps(summarise(ds), allow_nan=False))["outputs"][name]
+
+
+def test_moments_quantiles_and_shares_of_a_plain_sample():
+    ds = linear(samples=200, analysis={"thresholds": THRESHOLDS, "quantiles": [0.25]})
+    y, entry = ds["y"].values, described(ds)
+    assert entry["mean"] == pytest.approx(y.mean())
+    assert entry["sd"] == pytest.approx(y.std(ddof=1))
+    assert entry["mean_interval"]["low"] < y.mean() < entry["mean_interval"]["high"]
+    quantile = entry["quantiles"]["0.25"]
+    assert quantile["low"] in y and quantile["high"] in y
+    assert quantile["low"] < quantile["value"] < quantile["high"]
+    above, below = entry["thresholds"]["6.0"]["above"], entry["thresholds"]["6.0"]["below"]
+    assert above["value"] == (y > 6).mean() and below["value"] == (y < 6).mean()
+    assert above["low"] < above["value"] < above["high"]
+    assert entry["thresholds"]["6.0"]["undefined"] == 0
+    assert [entry[count] for count in ("never", "censored", "undefined", "failed")] == [0] * 4
+    assert entry["tolerance"] is None
+
+
+def test_replicates_of_a_plain_sample_are_just_rows():
+    parts = described(linear(samples=50, replicates=4))
+    assert parts["quantiles"]["0.5"]["low"] in linear(samples=50, replicates=4)["y"].values
+
+
+def test_saltelli_is_described_by_its_independent_rows_and_counted_by_all():
+    ds = linear("saltelli", samples=32, replicates=4, settings={"fail_above": 0.9})
+    found = summarise(ds)
+    ends = ds.isel(sample=np.isin(ds["block"], [0, 5]))
+    assert found["samples"] == 32 * 4 * 6 and found["rows_used"] == 32 * 4 * 2
+    assert found["outputs"]["y"]["mean"] == pytest.approx(float(ends["y"].mean()))
+    assert found["outputs"]["y"]["failed"] == int(ends["y"].isnull().sum())
+    assert found["status"]["non-finite"] == int(ds["y"].isnull().sum())
+    assert sum(found["status"].values()) == ds.sizes["sample"]
+
+
+@pytest.mark.parametrize("method", ["latin-hypercube", "sobol", "halton", "saltelli"])
+def test_designs_that_are_not_independent_need_replicates(method):
+    analysis = {"thresholds": {"y": 6.0}}
+    alone = summarise(linear(method, samples=64, analysis=analysis))
+    (note,) = alone["notes"]
+    assert method in note and "replicates" in note
+    entry = alone["outputs"]["y"]
+    assert entry["mean"] is not None and entry["mean_interval"] == {"low": None, "high": None}
+    assert entry["quantiles"]["0.5"]["low"] is None
+    assert entry["thresholds"]["6.0"]["above"]["low"] is None
+
+    several = summarise(linear(method, samples=64, replicates=8, analysis=analysis))
+    assert several["notes"] == []
+    entry = several["outputs"]["y"]
+    assert entry["mean_interval"]["low"] < 5 < entry["mean_interval"]["high"]
+    assert entry["quantiles"]["0.5"]["low"] < 5 < entry["quantiles"]["0.5"]["high"]
+    assert entry["thresholds"]["6.0"]["above"]["low"] is not None
+
+
+def test_intervals_follow_the_design_not_the_rows():
+    # The independent-rows interval of a Sobol' design would be several times too wide.
+    sobol = described(linear("sobol", samples=128, replicates=8))["quantiles"]["0.5"]
+    plain = described(linear("monte-carlo", samples=128, replicates=8))["quantiles"]["0.5"]
+    assert sobol["high"] - sobol["low"] < 0.7 * (plain["high"] - plain["low"])
+
+
+@pytest.mark.parametrize("how", ["nan", "inf", "raise", "shape"])
+def test_failed_rows_are_counted_and_left_out(how):
+    settings = {"fail_above": 0.75, "fail_how": how}
+    ds = linear(samples=200, settings=settings, analysis={"thresholds": {"y": 5.0}})
+    sound = ds["x1"].values <= 0.75
+    entry = described(ds)
+    assert entry["failed"] == (~sound).sum() > 0
+    assert entry["undefined"] == 0
+    assert entry["mean"] == pytest.approx(ds["y"].values[sound].mean())
+    assert entry["thresholds"]["5.0"]["above"]["value"] == (ds["y"].values[sound] > 5).mean()
+
+
+def test_a_study_of_which_every_row_failed_has_no_numbers():
+    for method, replicates in (("monte-carlo", 1), ("sobol", 4)):
+        settings = {"fail_above": -1.0}
+        analysis = {"thresholds": {"y": 5.0}}
+        ds = linear(method, 16, replicates, settings=settings, analysis=analysis)
+        entry = described(ds)
+        assert entry["failed"] == 16 * replicates
+        assert entry["mean"] is entry["sd"] is entry["quantiles"]["0.5"]["value"] is None
+        assert "never" not in entry["quantiles"]["0.5"]
+        nothing = dict.fromkeys(("value", "low", "high"))
+        assert entry["thresholds"]["5.0"]["above"] == nothing
+        assert uq.summary(ds)["failed"].item() == 16 * replicates
+
+
+def test_tolerance_counts_failed_rows_as_the_worst():
+    analysis = {"tolerance": {"coverage": 0.95, "confidence": 0.95}}
+    entry = described(linear(samples=59, analysis=analysis))
+    y = np.sort(linear(samples=59, analysis=analysis)["y"].values)
+    assert entry["tolerance"] == {"lower": y[0], "upper": y[-1], "rows_needed": 59}
+    entry = described(linear(samples=58, analysis=analysis))
+    assert entry["tolerance"] == {"lower": None, "upper": None, "rows_needed": 59}
+    ds = linear(samples=124, analysis=analysis)
+    y = np.sort(ds["y"].values)
+    assert described(ds)["tolerance"]["lower"] == y[2]
+    ds["y"][ds["y"].argsort()[60]] = np.nan
+    failed = with_status(ds, np.isnan(ds["y"].values), Status.RAISED)
+    assert described(failed)["tolerance"] == {"lower": y[1], "upper": y[-2], "rows_needed": 93}
+
+
+# Lifetimes ---------------------------------------------------------------------------------------
+
+
+def lifetimes(values, censored=None, analysis=None):
+    ds = with_output(linear(samples=len(values)), "life", values, "lifetime", censored)
+    return asking(ds, **(analysis or {}))
+
+
+def test_never_makes_quantiles_infinite_and_the_mean_meaningless():
+    values = np.r_[np.arange(1.0, 61.0), np.full(40, np.inf)]
+    analysis = {"quantiles": [0.1, 0.55, 0.9], "thresholds": {"life": 30.5}}
+    entry = described(lifetimes(values, analysis=analysis), "life")
+    assert entry["never"] == 40 and entry["mean"] is entry["sd"] is None
+    early, middle, late = entry["quantiles"].values()
+    assert early["low"] < early["value"] < early["high"] and "never" not in early
+    assert middle["value"] == pytest.approx(55.4, abs=0.2)
+    assert middle["low"] > 40 and middle["high"] is None and middle["high_never"] is True
+    nothing = dict.fromkeys(("value", "low", "high"))
+    assert late == nothing | {"never": True, "low_never": True, "high_never": True}
+    assert entry["thresholds"]["30.5"]["above"]["value"] == 0.7
+    assert entry["thresholds"]["30.5"]["below"]["value"] == 0.3
+
+
+def test_censored_rows_give_bounds_where_they_give_no_values():
+    values = np.minimum(np.arange(1.0, 101.0), 60.0)
+    censored = values == 60.0
+    analysis = {"quantiles": [0.1, 0.55, 0.9], "thresholds": {"life": [30.0, 60.0, 80.0]}}
+    entry = described(lifetimes(values, censored, analysis), "life")
+    assert entry["censored"] == 41 and entry["never"] == 0 and entry["mean"] is None
+    early, middle, late = entry["quantiles"].values()
+    assert early["value"] == pytest.approx(10, abs=0.5) and "censored" not in early
+    assert middle["value"] is not None
+    assert middle["high"] is None and middle["high_censored"] is True
+    assert late["value"] is None and late["censored"] is True
+    assert late["low"] == 60.0  # it lives at least that long
+    assert late["high"] is None and "never" not in late
+    before, at, beyond = entry["thresholds"].values()
+    assert before["above"]["value"] == 0.7 and before["below"]["value"] == 0.29
+    assert at["above"]["value"] == 0.41 and at["below"]["value"] == 0.59
+    assert beyond["above"]["value"] is beyond["below"]["low"] is None
+    assert "41 rows were censored before 80.0 s" in beyond["reason"]
+
+
+def test_early_censoring_widens_the_upper_bound_only():
+    values = np.arange(1.0, 201.0)
+    censored = np.arange(200) < 10
+    analysis = {"quantiles": [0.5]}
+    free = described(lifetimes(values, analysis=analysis), "life")["quantiles"]["0.5"]
+    held = described(lifetimes(values, censored, analysis), "life")["quantiles"]["0.5"]
+    assert held["low"] == free["low"]
+    assert held["high"] == free["high"] + 10
+    assert held["value"] is None and held["censored"] is True
+
+
+def test_tolerance_bound_on_never_or_censored_rows():
+    analysis = {"tolerance": {"coverage": 0.5, "confidence": 0.95}}
+    values = np.r_[np.arange(1.0, 51.0), np.full(50, np.inf)]
+    found = described(lifetimes(values, analysis=analysis), "life")["tolerance"]
+    assert found["lower"] < 50 and found["upper"] is None and found["upper_never"] is True
+    censored = np.isinf(values)
+    values[censored] = 51.0
+    found = described(lifetimes(values, censored, analysis), "life")["tolerance"]
+    assert found["lower"] < 50 and found["upper"] is None and found["upper_censored"] is True
+
+
+# Kinds of outputs --------------------------------------------------------------------------------
+
+
+def test_every_kind_of_output_is_described_by_element():
+    ds = kinds(samples=300, analysis={"thresholds": {"angle": 0.5}})
+    found = summarise(ds)
+    lives = [
+        f"life[side={side},depth={depth}]" for side in ("left", "right") for depth in (0.5, 1.5)
+    ]
+    assert list(found["outputs"]) == ["work[side=left]", "work[side=right]", *lives, "angle"]
+    assert found["outputs"]["work[side=left]"]["units"] == "W"
+    x1, x2 = ds["x1"].values, ds["x2"].values
+    for name in lives:
+        assert found["outputs"][name]["never"] == (x1 < 0.2).sum()
+        assert found["outputs"][name]["censored"] == (x1 > 0.8).sum()
+    angle = found["outputs"]["angle"]
+    spent = x1 > 0.95
+    assert angle["undefined"] == ((x2 < 0.2) & ~spent).sum() > 0
+    assert angle["failed"] == ((x2 < 0.2) & spent).sum() > 0
+    shares = angle["thresholds"]["0.5"]
+    parts = shares["above"]["value"] + shares["below"]["value"] + shares["undefined"]
+    assert parts == pytest.approx(1)
+    assert shares["undefined"] == pytest.approx(angle["undefined"] / (300 - angle["failed"]))
+    assert set(found["status"]) == {"ok", "out-of-budget"}
+
+
+def test_thresholds_of_an_angle_are_about_its_magnitude():
+    ds = with_output(linear(samples=100), "angle", np.linspace(-1, 1, 100), "angle")
+    entry = described(asking(ds, thresholds={"angle": 0.7}), "angle")
+    assert entry["thresholds"]["0.7"]["above"]["value"] == 0.3
+    assert entry["mean"] == pytest.approx(0)
+
+
+def test_shares_of_regimes_have_intervals_and_sum_to_one():
+    ds = kinds(samples=100)
+    regimes = summarise(ds)["regime"]
+    fast = (ds["x1"].values > 0.5).sum()
+    assert regimes["fast"]["count"] == fast and regimes["slow"]["count"] == 100 - fast
+    assert regimes["fast"]["share"] == fast / 100
+    assert regimes["fast"]["low"] < fast / 100 < regimes["fast"]["high"]
+    assert summarise(linear())["regime"] == {}
+    # Rows that failed have no regime and no part in the shares.
+    ds["regime"][:10] = -1
+    part = summarise(with_status(ds, slice(10), Status.RAISED))["regime"]
+    assert part["fast"]["count"] + part["slow"]["count"] == 90
+    assert part["fast"]["share"] + part["slow"]["share"] == pytest.approx(1)
+
+
+def test_outputs_that_the_study_names_are_shown():
+    ds = kinds(analysis={"outputs": ["angle"], "quantiles": [0.5]})
+    assert list(summarise(ds)["outputs"]) == ["angle"]
+    table = uq.summary(kinds(analysis={"quantiles": [0.5]}))
+    assert table.index[0] == "work[side=left]"
+    expected = ["units", "mean", "mean_low", "mean_high", "sd", "q0.5", "q0.5_low", "q0.5_high"]
+    assert list(table.columns) == [*expected, "never", "censored", "undefined", "failed"]
+    assert table.loc["work[side=left]", "mean"] == pytest.approx(0.5, abs=0.2)
+
+
+def test_describing_does_not_change_the_result():
+    ds = kinds(samples=64)
+    before = ds.copy(deep=True)
+    summarise(ds)
+    assert ds.identical(before)

@@ -1,0 +1,46 @@
+"""Probabilistic lifetime and sensitivity studies: from a study file to a result.
+
+What is named here is loaded when it is first used, so that ``import uq`` costs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from uq.indices import sensitivity
+    from uq.lifetime import survival
+    from uq.results import open_result
+    from uq.runner import run
+    from uq.simulation import simulate
+    from uq.statistics import summary
+    from uq.study import load_study
+
+__all__ = [
+    "load_study",
+    "open_result",
+    "run",
+    "sensitivity",
+    "simulate",
+    "summary",
+    "survival",
+]
+
+_MODULES = {
+    "load_study": "study",
+    "open_result": "results",
+    "run": "runner",
+    "sensitivity": "indices",
+    "simulate": "simulation",
+    "summary": "statistics",
+    "survival": "lifetime",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module 'uq' has no attribute '{name}'")
+    return getattr(import_module(f"uq.{_MODULES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

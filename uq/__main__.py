@@ -1,0 +1,5 @@
+"""``python -m uq``: the command ``uq``."""
+
+from uq.cli import main
+
+main()

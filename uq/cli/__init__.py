@@ -1,0 +1,66 @@
+"""The command ``uq``: how it starts, what a mistake looks like, how it ends.
+
+Exit codes: 0 done; 1 no usable result; 2 bad input; 130 interrupted.
+"""
+
+import os
+import signal
+import sys
+from types import FrameType
+from typing import Any, NoReturn
+
+from uq.errors import InputError, RunError, nearest
+from uq.interrupts import undo_all
+from uq.threads import SINGLE_THREADED
+
+_when_interrupted = "interrupted"
+
+
+def main() -> NoReturn:
+    """Run the command line of this process and end it."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _stop)
+    for name, value in SINGLE_THREADED.items():
+        os.environ.setdefault(name, value)
+    try:
+        code = _run(sys.argv[1:] or ["--help"])
+        sys.stdout.flush()
+    except (InputError, RunError) as error:
+        print(error, file=sys.stderr)
+        code = 2 if isinstance(error, InputError) else 1
+    except BrokenPipeError:  # whoever read this output, such as "head", has had enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = 1
+    sys.exit(code)
+
+
+def say_when_interrupted(sentence: str) -> None:
+    """Set what an interrupt at this point means for the user."""
+    global _when_interrupted
+    _when_interrupted = sentence
+
+
+def _run(arguments: list[str]) -> int:
+    import typer
+
+    from uq.cli.app import app
+
+    refusal: Any = typer.BadParameter.__mro__[2]  # the base of all that typer itself refuses
+    try:
+        return app(arguments, prog_name="uq", standalone_mode=False) or 0
+    except refusal as error:
+        if options := getattr(error, "possibilities", None):
+            line = f"{error.message}{nearest(error.option_name, options)}"
+        else:
+            line = " ".join(error.format_message().split())
+        raise InputError(f"uq: {line}") from None
+
+
+def _stop(number: int, frame: FrameType | None) -> NoReturn:
+    """End now: no exception that somebody might catch on its way, nothing left behind."""
+    signal.signal(number, signal.SIG_IGN)
+    try:
+        undo_all()
+        os.write(2, f"{_when_interrupted}\n".encode())
+    finally:
+        os._exit(128 + number)

@@ -1,0 +1,170 @@
+"""The verbs of ``uq``: what each is given, and what it calls.
+
+Heavy modules are imported inside the verbs, so that ``uq --help`` answers at once.
+"""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+app = typer.Typer(
+    help="Probabilistic lifetime and sensitivity studies of vibro-impact machines.",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+ModelName = Annotated[str, typer.Argument(metavar="MODEL", help="As 'uq models' lists them.")]
+StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
+ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.")]
+Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
+ModelReference = Annotated[
+    str | None,
+    typer.Option("--model", metavar="PKG.MOD:ATTR", help="Use a model that is not installed."),
+]
+
+
+@app.command()
+def models(
+    name: Annotated[str | None, typer.Argument(help="Show this one in full.")] = None,
+    json: Json = False,
+) -> None:
+    """List the models, or show all that one of them declares."""
+    from uq.cli import catalogue
+    from uq.cli.printing import print_json
+
+    if name is None:
+        listed = catalogue.list_models()
+        print_json(listed) if json else catalogue.show_list(listed)
+    else:
+        described = catalogue.describe(name)
+        print_json(catalogue.finite(described)) if json else catalogue.show(described)
+
+
+@app.command()
+def simulate(
+    model: ModelName,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),
+    ] = None,
+    setting: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
+    ] = None,
+    json: Json = False,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="TRAJ.nc", help="Write the trajectory here."),
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="F.png", help="Draw the trajectory here.")
+    ] = None,
+) -> int:
+    """Run a model once, at its nominal values but for what is set."""
+    from uq.cli import single
+
+    return single.simulate(model, set_ or [], setting or [], json, output, plot)
+
+
+@app.command()
+def init(model: ModelName) -> None:
+    """Print a commented study file to edit."""
+    from uq.registry import find_model
+    from uq.template import template
+
+    print(template(find_model(model)), end="")
+
+
+@app.command()
+def check(study: StudyFile, model: ModelReference = None) -> None:
+    """Check a study file and say what it would run."""
+    from uq.cli import studies
+
+    studies.check(study, model)
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of study files, for an editor."""
+    from uq.cli.printing import print_json
+    from uq.schema import json_schema
+
+    print_json(json_schema())
+
+
+@app.command()
+def run(
+    study: StudyFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="OUT.nc", help="Default results/<name>.nc."),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=0, metavar="N", help="Worker processes; 0: compute in this process."),
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Use a running dask cluster.")
+    ] = None,
+    samples: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Instead of the study's own.")
+    ] = None,
+    chunk_rows: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Rows per task; default: 0.5 s of work.")
+    ] = None,
+    model: ModelReference = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="Overwrite whatever OUT.nc is.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")] = False,
+) -> int:
+    """Run a study, write its result and show the summary."""
+    from uq.cli import studies
+
+    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler, "chunk_rows": chunk_rows}
+    return studies.run(study, output, model, samples, fresh, quiet, options)
+
+
+@app.command()
+def summary(result: ResultFile, json: Json = False) -> None:
+    """Show how rows ended, and the statistics of each output."""
+    from uq.cli import tables
+    from uq.cli.printing import print_json
+    from uq.results import open_result
+    from uq.statistics import summarise
+
+    ds = open_result(result)
+    print_json(summarise(ds)) if json else tables.show_summary(ds, summarise(ds))
+
+
+@app.command()
+def sensitivity(
+    result: ResultFile,
+    output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    method: Annotated[str | None, typer.Option(metavar="M", help="Default: the study's.")] = None,
+    json: Json = False,
+) -> None:
+    """Show which inputs the scatter comes from."""
+    from uq.cli import tables
+    from uq.cli.printing import print_json
+    from uq.indices import sensitivities
+    from uq.results import open_result
+
+    found = sensitivities(open_result(result), method=method, output=output)
+    print_json(found) if json else tables.show_sensitivity(found)
+
+
+@app.command()
+def plot(
+    result: ResultFile,
+    folder: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Default: OUT.nc without its ending."),
+    ] = None,
+) -> None:
+    """Draw the figures of a result into a folder."""
+    from uq.plots import save_all
+    from uq.results import open_result
+
+    for path in save_all(open_result(result), folder or result.with_suffix("")):
+        print(path)

@@ -1,0 +1,106 @@
+"""What ``uq models`` shows."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from math import isfinite
+from typing import Any
+
+from uq.cli.printing import console, grid, heading, number, paragraph
+from uq.contract import Model
+from uq.errors import InputError
+from uq.registry import find_model, model_names
+
+
+def list_models() -> list[dict[str, str]]:
+    """Return name, version and title of every installed model."""
+    return [_entry(name) for name in model_names()]
+
+
+def _entry(name: str) -> dict[str, str]:
+    try:
+        model = find_model(name)
+    except InputError as error:
+        return {"name": name, "version": "", "title": str(error)}
+    return {"name": name, "version": model.version, "title": model.title}
+
+
+def describe(name: str) -> dict[str, Any]:
+    """Return everything one model declares, as plain data."""
+    model = find_model(name)
+    defaults = model.settings()
+    return {
+        "name": model.name,
+        "version": model.version,
+        "title": model.title,
+        "parameters": {
+            name: {"nominal": nominal} | asdict(model.parameter(name))
+            for name, nominal in model.nominal.items()
+        },
+        "settings": {
+            name: {"default": getattr(defaults, name)} | asdict(model.setting(name))
+            for name in model.setting_names
+        },
+        "outputs": {name: asdict(output) for name, output in model.outputs.items()},
+        "coordinates": _coordinates(model),
+        "references": list(model.references),
+    }
+
+
+def _coordinates(model: Model) -> dict[str, list[Any]]:
+    return {dim: list(values) for dim, values in model.coordinates(model.settings()).items()}
+
+
+def finite(value: Any) -> Any:
+    """Return plain data with None for each number that is not finite, as JSON wants it."""
+    match value:
+        case dict():
+            return {key: finite(item) for key, item in value.items()}
+        case list() | tuple():
+            return [finite(item) for item in value]
+        case float() if not isfinite(value):
+            return None
+    return value
+
+
+def show_list(listed: list[dict[str, str]]) -> None:
+    """Print the models."""
+    grid([list(entry.values()) for entry in listed], header=("model", "version", "title"), indent=0)
+    console.print("\nuq models NAME shows one of them in full.")
+
+
+def show(model: Mapping[str, Any]) -> None:
+    """Print one model."""
+    heading(model["name"], f"{model['title']} (version {model['version']})")
+    heading("\nParameters")
+    for name, parameter in model["parameters"].items():
+        low, high = parameter["bounds"]
+        unit = "" if parameter["unit"] == "1" else f" {parameter['unit']}"
+        value = f"{parameter['symbol']} = {parameter['nominal']!r}{unit}"
+        heading(f"  {name}", f"{value}, {number(low)} to {number(high)}")
+        paragraph(parameter["meaning"])
+        paragraph(parameter["source"])
+    if model["settings"]:
+        heading("\nSettings")
+    for name, setting in model["settings"].items():
+        unit = "" if setting["unit"] == "1" else f" {setting['unit']}"
+        heading(f"  {name}", f"{setting['default']}{unit}{_allowed(setting)}")
+        paragraph(setting["meaning"])
+    heading("\nOutputs")
+    for name, output in model["outputs"].items():
+        dims = f"({', '.join(output['dims'])})" if output["dims"] else ""
+        heading(f"  {name}{dims}", f"{output['kind']} [{output['unit']}]")
+        paragraph(output["meaning"])
+        if output["categories"]:
+            paragraph(", ".join(output["categories"]))
+    if model["references"]:
+        heading("\nReferences")
+    for reference in model["references"]:
+        paragraph(reference)
+
+
+def _allowed(setting: Mapping[str, Any]) -> str:
+    if setting["choices"]:
+        return f", one of {', '.join(setting['choices'])}"
+    if setting["bounds"]:
+        return ", " + " to ".join(map(number, setting["bounds"]))
+    return ""

@@ -1,0 +1,88 @@
+"""Plain words and numbers on a terminal, and JSON."""
+
+import json
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+if TYPE_CHECKING:
+    from rich.console import JustifyMethod
+
+# Names such as work_rate[site=left] are not rich's markup.
+console = Console(markup=False, highlight=False, emoji=False)
+
+_HOUR, _DAY, _YEAR = 3600.0, 86400.0, 365.25 * 86400.0
+
+
+def print_json(value: Any) -> None:
+    """Print JSON; a number that is not finite is a mistake of the caller."""
+    print(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False))
+
+
+def heading(text: str, more: str = "") -> None:
+    """Print a line that stands out, with what explains it behind."""
+    console.print(Text.assemble((text, "bold"), f"  {more}" if more else ""))
+
+
+def paragraph(text: str, indent: int = 4) -> None:
+    """Print text that keeps its indent where it wraps."""
+    console.print(Padding(text, (0, 0, 0, indent), expand=False))
+
+
+def grid(rows: Iterable[Sequence[str]], header: Sequence[str] = (), indent: int = 2) -> None:
+    """Print aligned columns without lines; a column without a cell is left out.
+
+    Parameters
+    ----------
+    rows : iterable of sequence of str
+        All of one length.
+    header : sequence of str
+    indent : int
+    """
+    columns = list(zip(*rows, strict=True))
+    titles = header or [""] * len(columns)
+    table = Table(box=None, show_header=bool(header), pad_edge=False, padding=(0, 2, 0, 0))
+    kept = [i for i, column in enumerate(columns) if any(column)]
+    for i in kept:
+        justify: JustifyMethod = "right" if all(map(_looks_numeric, columns[i])) else "left"
+        table.add_column(titles[i], justify=justify, overflow="fold")
+    for row in zip(*(columns[i] for i in kept), strict=True):
+        table.add_row(*map(Text, row))
+    console.print(Padding(table, (0, 0, 0, indent), expand=False))
+
+
+def number(value: float | None) -> str:
+    """Return a number for a table; a dash for none."""
+    return "-" if value is None else f"{value:.5g}"
+
+
+def duration(seconds: float | None) -> str:
+    """Return a time in hours, days or years; nothing for less than an hour.
+
+    Parameters
+    ----------
+    seconds : float or None
+        [s]
+
+    Returns
+    -------
+    str
+    """
+    if seconds is None or not _HOUR <= abs(seconds) < float("inf"):
+        return ""
+    for unit, name in ((_YEAR, "years"), (_DAY, "days")):
+        if abs(seconds) >= 2 * unit:
+            return f"{seconds / unit:.3g} {name}"
+    return f"{seconds / _HOUR:.3g} hours"
+
+
+def _looks_numeric(cell: str) -> bool:
+    try:
+        float(cell.rstrip(" %"))
+    except ValueError:
+        return cell in ("", "-")
+    return True

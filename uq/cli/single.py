@@ -1,0 +1,155 @@
+"""What ``uq simulate`` does."""
+
+import tomllib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq import results, store
+from uq.cli.printing import duration, grid, heading, number, print_json
+from uq.contract import Model, Status
+from uq.elements import elements_of
+from uq.errors import InputError
+from uq.registry import find_model
+from uq.simulation import simulate as run_once
+
+
+def simulate(
+    reference: str,
+    parameters: Sequence[str],
+    settings: Sequence[str],
+    json: bool,
+    output: Path | None,
+    plot: Path | None,
+) -> int:
+    """Run a model once and show what came of it; return the exit code."""
+    model = find_model(reference)
+    given = dict(_number(text) for text in parameters)
+    chosen = dict(_literal(text) for text in settings)
+    for path in (output, plot):
+        if path is not None:
+            store.check_target(path, 0)
+            _keep_results(path)
+    if model.simulate is None and (output or plot):
+        raise InputError(f"model '{model.name}' gives no trajectory")
+    ds = run_once(model, given, chosen, trajectory=bool(output or plot))
+    if output:
+        store.write(ds, output)
+    if plot:
+        from uq.plots import trajectory
+
+        try:
+            trajectory(ds).savefig(plot)
+        except ValueError as error:  # a format that matplotlib does not know
+            raise InputError(f"{plot}: {error}") from None
+    print_json(as_json(model, ds)) if json else _show(model, ds)
+    return 0 if ds["status"].item() in (Status.OK, Status.OUT_OF_BUDGET) else 1
+
+
+def as_json(model: Model, ds: xr.Dataset) -> dict[str, Any]:
+    """Return one row as the JSON of ``uq simulate``.
+
+    Parameters
+    ----------
+    model : Model
+    ds : xarray.Dataset
+        From `uq.simulate`.
+
+    Returns
+    -------
+    dict
+        Numbers that are not finite are None; ``never``, ``censored`` and ``undefined`` name them.
+    """
+    status = Status(ds["status"].item())
+    outputs: dict[str, Any] = {}
+    names: dict[str, list[str]] = {"never": [], "censored": [], "undefined": []}
+    for name in model.outputs:
+        outputs[name] = _plain(model, name, ds[name].isel(sample=0).values)
+        for element, _, state in _states(ds, name):
+            if state:
+                names[state].append(element)
+    return {
+        "model": model.name,
+        "inputs": {name: ds[name].item() for name in model.parameter_names},
+        "outputs": outputs,
+        "status": {"code": status.label, "meaning": _meaning(ds, status)},
+        **names,
+    }
+
+
+def _plain(model: Model, name: str, values: Any) -> Any:
+    if np.ndim(values):
+        return [_plain(model, name, value) for value in values]
+    if model.outputs[name].kind == "category":
+        return model.outputs[name].categories[int(values)] if values >= 0 else None
+    return float(values) if np.isfinite(values) else None
+
+
+def _states(ds: xr.Dataset, name: str) -> Iterator[tuple[str, float, str]]:
+    """Yield name, value and never, censored, undefined or "" of each element of an output."""
+    for element in elements_of(ds, [name]):
+        states = ("censored", "never", "undefined")
+        state = next((state for state in states if getattr(element, state)[0]), "")
+        yield element.name, float(element.values[0]), state
+
+
+def _show(model: Model, ds: xr.Dataset) -> None:
+    status = Status(ds["status"].item())
+    heading(f"{model.name}: {status.label}", "" if status is Status.OK else _meaning(ds, status))
+    for name, output in model.outputs.items():
+        unit = "" if output.unit == "1" else f" [{output.unit}]"
+        heading(f"\n{name}{unit}", output.meaning)
+        if output.kind == "category":
+            grid([("", _plain(model, name, ds[name].values[0]) or "none")])
+            continue
+        grid(
+            [
+                (key[len(name) :].strip("[]"), _shown(value, state), _time(output.unit, value))
+                for key, value, state in _states(ds, name)
+            ]
+        )
+
+
+def _shown(value: float, state: str) -> str:
+    if state == "censored":
+        return f"more than {number(value)}"
+    return state or ("failed" if np.isnan(value) else number(value))
+
+
+def _time(unit: str, value: float) -> str:
+    return duration(value) if unit == "s" else ""
+
+
+def _meaning(ds: xr.Dataset, status: Status) -> str:
+    return str(ds["status"].attrs.get(f"example_{status.name.lower()}", status.meaning))
+
+
+def _keep_results(path: Path) -> None:
+    """Refuse to overwrite what may have taken hours."""
+    try:
+        results.open_result(path)
+    except InputError:
+        return
+    raise InputError(f"{path}: holds the result of a study; choose another name")
+
+
+def _number(text: str) -> tuple[str, float]:
+    name, _, value = text.partition("=")
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        raise InputError(f"--set {text}: write it as NAME=VALUE with a number") from None
+
+
+def _literal(text: str) -> tuple[str, Any]:
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise InputError(f"--setting {text}: write it as NAME=VALUE")
+    try:
+        parsed = tomllib.loads(f"value = {value}")
+    except tomllib.TOMLDecodeError:
+        return name.strip(), value.strip()
+    return name.strip(), parsed["value"] if len(parsed) == 1 else value.strip()

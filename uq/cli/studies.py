@@ -1,0 +1,113 @@
+"""What ``uq check`` and ``uq run`` do."""
+
+import shlex
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uq import results, runner
+from uq.cli import progress, say_when_interrupted, tables
+from uq.cli.printing import console, grid, heading
+from uq.contract import Status
+from uq.designs import DESIGNS
+from uq.job import Progress
+from uq.sampling import group_size, rows
+from uq.study import Study, load_study
+
+
+def check(path: str, model: str | None) -> None:
+    """Print what a study would run, if it is in order."""
+    study = load_study(path, model)
+    design = study.design
+    heading(f"{path}: in order", study.description)
+    factors = {"replicates": design.replicates, "rows each": group_size(study)}
+    parts = [f"{design.samples} samples"]
+    parts += [f"{number} {name}" for name, number in factors.items() if number > 1]
+    feeds = ", ".join(DESIGNS[design.method].feeds)
+    grid(
+        [
+            ("model", f"{study.model.name}, version {study.model.version}"),
+            ("design", f"{design.method}: {DESIGNS[design.method].meaning}"),
+            ("rows", f"{rows(study)} = {' x '.join(parts)}" if parts[1:] else str(rows(study))),
+            ("outputs", ", ".join(study.analysis.outputs)),
+            ("sensitivity", f"{feeds} can be had from this design"),
+            ("result", str(runner.output_path(study))),
+        ]
+    )
+    heading("\nUncertain inputs")
+    grid(
+        [
+            (name, _law(law), study.model.parameter(name).unit)
+            for name, law in study.uncertain.items()
+        ],
+        header=("parameter", "distribution", "unit"),
+    )
+
+
+def _law(law: Any) -> str:
+    given = law.model_dump(exclude={"distribution", "source"}, exclude_none=True)
+    arguments = ", ".join(f"{name} = {value!r}" for name, value in given.items())
+    return f"{law.distribution}({arguments})"
+
+
+def run(
+    path: str,
+    output: Path | None,
+    model: str | None,
+    samples: int | None,
+    fresh: bool,
+    quiet: bool,
+    options: dict[str, Any],
+) -> int:
+    """Run a study and show its result; return the exit code."""
+    study = load_study(path, model)
+    if samples is not None:
+        study = study.with_samples(samples)
+    target = runner.output_path(study, output)
+    ds = None if fresh else runner.finished(study, target)
+    if ds is not None:
+        note = f"{target} is complete already; nothing was computed (--fresh computes it again)"
+    else:
+        began = time.monotonic()
+        with progress.shown(quiet) as show:
+
+            def report(so_far: Progress) -> None:
+                say_when_interrupted(
+                    f"interrupted after {so_far.done} of {so_far.total} rows; nothing was written"
+                )
+                show(so_far)
+
+            say_when_interrupted("interrupted; nothing was written")
+            ds = runner.run(study, target, fresh=True, progress=report, **options)
+        note = f"{target}: {ds.sizes['sample']} rows in {time.monotonic() - began:.1f} s"
+    say_when_interrupted(f"interrupted; the result is complete in {target}")
+    if not quiet:
+        from uq.statistics import summarise
+
+        tables.show_summary(ds, summarise(ds))
+        console.print()
+        console.print(note)
+        name = shlex.quote(str(target))
+        console.print(f"Next: uq sensitivity {name}, or uq plot {name}")
+    return _verdict(study, ds)
+
+
+def _verdict(study: Study, ds: Any) -> int:
+    failed = int(np.count_nonzero(results.failed(ds)))
+    share = failed / ds.sizes["sample"]
+    if share <= study.analysis.max_failed:
+        return 0
+    examples = [
+        f"{status.label}: {text}"
+        for status in Status
+        if (text := ds["status"].attrs.get(f"example_{status.name.lower()}"))
+    ]
+    print(
+        f"{failed} of {ds.sizes['sample']} rows failed, more than max_failed = "
+        f"{study.analysis.max_failed:g} allows ({'; '.join(examples)})",
+        file=sys.stderr,
+    )
+    return 1

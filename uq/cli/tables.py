@@ -1,0 +1,123 @@
+"""The summary and the sensitivity indices of a result, as tables of 80 columns."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import xarray as xr
+
+from uq.cli.printing import console, duration, grid, heading, number, paragraph
+
+Entry = Mapping[str, Any]
+
+
+def show_summary(ds: xr.Dataset, summary: Entry) -> None:
+    """Print what `uq.statistics.summarise` found."""
+    design = f"{ds.attrs['design']}, {summary['samples']} rows"
+    if summary["rows_used"] < summary["samples"]:
+        design += f", statistics from the {summary['rows_used']} independent ones"
+    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {design}")
+    grid([(label, str(count), _example(ds, label)) for label, count in summary["status"].items()])
+    if summary["regime"]:
+        heading("\nregime")
+        shares = summary["regime"].items()
+        grid(
+            [
+                (label, number(one["share"]), _interval(one), str(one["count"]))
+                for label, one in shares
+            ],
+            header=("", "share", "95 % interval", "rows"),
+        )
+    for name, output in summary["outputs"].items():
+        meaning = ds[name.partition("[")[0]].attrs["long_name"]
+        unit = "" if output["units"] == "1" else f" [{output['units']}]"
+        heading(f"\n{name}{unit}", meaning)
+        grid(_lines(output), header=("", "value", "95 % interval", ""))
+    for note in summary["notes"]:
+        console.print()
+        paragraph(note, indent=0)
+
+
+Line = tuple[str, str, str, str]
+
+
+def _lines(output: Entry) -> Iterator[Line]:
+    """Yield label, value, interval and the value in hours, days or years."""
+
+    def line(label: str, entry: Entry, key: str = "value", time: bool = True) -> Line:
+        in_words = duration(entry[key]) if time and output["units"] == "s" else ""
+        return label, _known(entry, key), _interval(entry), in_words
+
+    yield line("mean", {"value": output["mean"], **output["mean_interval"]})
+    yield line("sd", output, "sd")
+    for probability, entry in output["quantiles"].items():
+        yield line(f"quantile {probability}", entry)
+    if bounds := output["tolerance"]:
+        yield line("tolerance, lower", bounds, "lower")
+        yield line("tolerance, upper", bounds, "upper")
+        if bounds["lower"] is None and bounds["upper"] is None:
+            yield "", f"needs {bounds['rows_needed']} rows", "", ""
+    for threshold, entry in output["thresholds"].items():
+        yield line(f"P(> {number(float(threshold))})", entry["above"], time=False)
+        yield line(f"P(< {number(float(threshold))})", entry["below"], time=False)
+        if reason := entry.get("reason"):
+            yield "", reason, "", ""
+    for count in ("never", "censored", "undefined", "failed"):
+        if output[count]:
+            yield count, str(output[count]), "", "rows"
+
+
+def _known(entry: Entry, key: str) -> str:
+    """Return a number, or why there is none."""
+    if entry[key] is not None:
+        return number(entry[key])
+    prefix = "" if key == "value" else f"{key}_"
+    if entry.get(f"{prefix}never"):
+        return "never"
+    return "beyond the horizon" if entry.get(f"{prefix}censored") else "-"
+
+
+def _interval(entry: Entry) -> str:
+    ends = [_known(entry, end) if end in entry else "-" for end in ("low", "high")]
+    return "" if ends == ["-", "-"] else " to ".join(ends)
+
+
+def _example(ds: xr.Dataset, status: str) -> str:
+    return str(ds["status"].attrs.get(f"example_{status.replace('-', '_')}", ""))
+
+
+def show_sensitivity(found: Entry) -> None:
+    """Print what `uq.indices.sensitivities` found."""
+    dropped = found["groups_dropped"]
+    more = f"{found['rows_used']} rows used" + (f", {dropped} groups dropped" if dropped else "")
+    heading(f"Sensitivity by {found['method']}", more)
+    for name, output in found["outputs"].items():
+        heading(f"\n{name}")
+        if refusal := output.get("refused"):
+            paragraph(refusal, indent=2)
+            continue
+        kinds = {kind: value for kind, value in output.items() if _is_index(value)}
+        pairs = {"S2": kinds.pop("S2")} if "S2" in kinds else {}
+        for table in (kinds, pairs):
+            if table:
+                grid(_ranked(table, output.get("dummy", {})), header=_header(table))
+        for note in output["notes"]:
+            paragraph(note, indent=2)
+
+
+def _is_index(value: Any) -> bool:
+    return isinstance(value, dict) and all(isinstance(one, dict) for one in value.values())
+
+
+def _header(table: Entry) -> list[str]:
+    return ["", *(text for kind in table for text in (kind, "95 % interval"))]
+
+
+def _ranked(table: Mapping[str, Any], dummy: Mapping[str, float]) -> Iterator[list[str]]:
+    """Yield one line per parameter, the most important first."""
+    last = list(table.values())[-1]
+    for label in sorted(last, key=lambda label: -(last[label]["value"] or 0.0)):
+        cells = ((number(one[label]["value"]), _interval(one[label])) for one in table.values())
+        yield [label, *(text for pair in cells for text in pair)]
+    if dummy:
+        cells = ((number(dummy[kind]), "") for kind in table)
+        yield ["(an input without effect)", *(text for pair in cells for text in pair)]

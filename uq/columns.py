@@ -1,0 +1,58 @@
+"""The arrays that a model's ``batch`` must return: names, dtypes, shapes and blank values."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Model, Output
+
+
+class Column(NamedTuple):
+    """One array of a batch.
+
+    Attributes
+    ----------
+    dtype : numpy.dtype
+    blank : float, int or bool
+        What a row holds that could not be computed.
+    shape : tuple of int
+        Beyond the row.
+    """
+
+    dtype: np.dtype[Any]
+    blank: float
+    shape: tuple[int, ...]
+
+    def blanks(self, rows: int) -> NDArray[Any]:
+        """Return an array of blank rows."""
+        return np.full((rows, *self.shape), self.blank, dtype=self.dtype)
+
+
+def columns_of(model: Model, settings: Any) -> dict[str, Column]:
+    """Return the columns of a model's batch under these settings, in declared order."""
+    coordinates = model.coordinates(settings)
+    columns = {}
+    for name, output in model.outputs.items():
+        shape = tuple(len(coordinates[dim]) for dim in output.dims)
+        columns[name] = _column(output, shape)
+        if output.has_censored_flag:
+            columns[censored_name(name)] = Column(np.dtype(np.bool_), False, shape)
+    return columns
+
+
+def blank_rows(columns: Mapping[str, Column], rows: int) -> dict[str, NDArray[Any]]:
+    """Return every column filled with its blank value."""
+    return {name: column.blanks(rows) for name, column in columns.items()}
+
+
+def censored_name(output: str) -> str:
+    """Return the name of the flag beside a lifetime."""
+    return f"{output}_censored"
+
+
+def _column(output: Output, shape: tuple[int, ...]) -> Column:
+    if output.kind == "category":
+        return Column(np.dtype(np.int8), -1, shape)
+    return Column(np.dtype(np.float64), np.nan, shape)

@@ -1,0 +1,191 @@
+"""One chunk of rows through a model's batch, with the fault found when it fails.
+
+A batch that raises or returns arrays of the wrong shape is halved until the guilty rows are
+found; these get a status and a sentence, the others their values.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.columns import Column, blank_rows, columns_of
+from uq.contract import Model, Status
+from uq.errors import InputError
+
+_WITH_OUTPUTS = (Status.OK, Status.OUT_OF_BUDGET)
+
+
+class KernelError(InputError):
+    """A model that does not keep its contract whatever the row."""
+
+
+class Chunk(NamedTuple):
+    """What became of n rows.
+
+    Attributes
+    ----------
+    columns : dict of str to ndarray, shape (n, *dims)
+    status : ndarray of int8, shape (n,)
+    failures : dict of str to (int, str)
+        Status label -> number of the first row with that status, and what happened to it.
+    """
+
+    columns: dict[str, NDArray[Any]]
+    status: NDArray[np.int8]
+    failures: dict[str, tuple[int, str]]
+
+
+class _Fault(NamedTuple):
+    status: Status
+    message: str
+
+
+def evaluate(
+    model: Model,
+    settings: Any,
+    x: NDArray[np.float64],
+    seed: NDArray[np.uint64],
+    start: int = 0,
+) -> Chunk:
+    """Run a model on some rows.
+
+    Parameters
+    ----------
+    model : Model
+    settings : object
+        An instance of the model's settings.
+    x : ndarray, shape (n, d)
+        Parameters in declared order.
+    seed : ndarray of uint64, shape (n,)
+    start : int
+        Number of the first row, for messages.
+
+    Returns
+    -------
+    Chunk
+        Rows that are neither ok nor out of budget are blank.
+
+    Raises
+    ------
+    KernelError
+        When names or dtypes are wrong, or a status or category does not exist.
+    """
+    expected = columns_of(model, settings)
+    columns = blank_rows(expected, len(x))
+    status = np.zeros(len(x), dtype=np.int8)
+    messages: dict[int, str] = {}
+    todo = [(0, len(x))]
+    while todo:
+        first, last = todo.pop()
+        # Copies, so that the kernel sees writable arrays of its own in every process.
+        returned = _call(model, settings, x[first:last].copy(), seed[first:last].copy(), expected)
+        if isinstance(returned, _Fault) and last - first > 1:
+            middle = (first + last) // 2
+            todo += [(middle, last), (first, middle)]
+        elif isinstance(returned, _Fault):
+            status[first] = returned.status
+            messages[first] = returned.message
+        else:
+            for name, column in columns.items():
+                column[first:last] = returned[0][name]
+            status[first:last] = returned[1]
+    _check_categories(model, columns)
+    _find_non_finite(model, columns, status, messages)
+    lost = ~np.isin(status, _WITH_OUTPUTS)
+    for name, column in columns.items():
+        column[lost] = expected[name].blank
+    return Chunk(columns, status, _first_failures(status, messages, start))
+
+
+def _call(
+    model: Model,
+    settings: Any,
+    x: NDArray[np.float64],
+    seed: NDArray[np.uint64],
+    expected: Mapping[str, Column],
+) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8]] | _Fault:
+    try:
+        with np.errstate(all="ignore"):
+            returned = model.batch(x, seed, settings)
+    except Exception as error:
+        text = " ".join(str(error).split())
+        return _Fault(Status.RAISED, f"{type(error).__name__}: {text}" if text else repr(error))
+    if not isinstance(returned, tuple) or len(returned) != 2:
+        raise KernelError(f"model '{model.name}': batch must return (outputs, status)")
+    outputs, status = returned
+    _check_names(model, outputs, expected)
+    for name, column in (*expected.items(), ("status", _STATUS)):
+        array = status if name == "status" else outputs[name]
+        if not isinstance(array, np.ndarray):
+            raise KernelError(
+                f"model '{model.name}': '{name}' is a {type(array).__name__}, "
+                f"expected an array of {column.dtype}"
+            )
+        if array.dtype != column.dtype:
+            raise KernelError(
+                f"model '{model.name}': '{name}' is {array.dtype}, expected {column.dtype}"
+            )
+        if array.shape != (len(x), *column.shape):
+            wrong = f"'{name}' has shape {array.shape}, expected {(len(x), *column.shape)}"
+            return _Fault(Status.BAD_SHAPE, wrong)
+    unknown = np.setdiff1d(status, list(Status))
+    if unknown.size:
+        raise KernelError(f"model '{model.name}': no such status: {unknown[0]}")
+    return outputs, status
+
+
+_STATUS = Column(np.dtype(np.int8), 0, ())
+
+
+def _check_names(
+    model: Model, outputs: Mapping[str, object], expected: Mapping[str, Column]
+) -> None:
+    faults = [
+        *(f"returned no output '{name}'" for name in expected if name not in outputs),
+        *(f"returned '{name}', which is not declared" for name in outputs if name not in expected),
+    ]
+    if faults:
+        raise KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
+
+
+def _check_categories(model: Model, columns: Mapping[str, NDArray[Any]]) -> None:
+    for name, output in model.outputs.items():
+        if output.kind == "category":
+            values = columns[name]
+            if np.any((values < -1) | (values >= len(output.categories))):
+                raise KernelError(f"model '{model.name}': '{name}' has a category not declared")
+
+
+def _find_non_finite(
+    model: Model,
+    columns: Mapping[str, NDArray[Any]],
+    status: NDArray[np.int8],
+    messages: dict[int, str],
+) -> None:
+    """Mark rows that say ok and hold a number that no such output can have."""
+    for name, output in model.outputs.items():
+        if output.kind == "category":
+            continue
+        values = columns[name].reshape(len(status), -1)
+        legal = np.isfinite(values)
+        if output.kind == "lifetime":
+            legal |= values == np.inf
+        if output.may_be_undefined:
+            legal |= np.isnan(values)
+        guilty = (status == Status.OK) & ~legal.all(axis=1)
+        status[guilty] = Status.NON_FINITE
+        for row in np.flatnonzero(guilty)[:1]:
+            messages[row] = f"'{name}' is {values[row][~legal[row]][0]}"
+
+
+def _first_failures(
+    status: NDArray[np.int8], messages: Mapping[int, str], start: int
+) -> dict[str, tuple[int, str]]:
+    failures = {}
+    for code in np.unique(status[status != Status.OK]):
+        row = int(np.flatnonzero(status == code)[0])
+        kind = Status(code)
+        failures[kind.label] = (start + row, messages.get(row, kind.meaning))
+    return failures

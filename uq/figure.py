@@ -1,0 +1,149 @@
+"""How figures look, how they are written, and the words and units on their axes."""
+
+import re
+import textwrap
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import matplotlib as mpl
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
+
+from uq.elements import Element, Floats
+
+WIDTH = 3.4
+"""One column of a journal [inch]."""
+
+# Okabe and Ito, "Color universal design" (2008), without yellow and black.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+LINES = ("-", "--", "-.", ":")
+
+_STYLE: Any = {
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "lines.linewidth": 1.2,
+    "svg.hashsalt": "vibrolife",
+}
+styled = mpl.rc_context(_STYLE)
+"""Decorates whatever draws or writes a figure."""
+
+
+class TimeUnit(NamedTuple):
+    """A unit of time and its length [s]."""
+
+    name: str
+    seconds: float
+
+
+_TIME_UNITS = (
+    TimeUnit("seconds", 1.0),
+    TimeUnit("hours", 3600.0),
+    TimeUnit("days", 86400.0),
+    TimeUnit("years", 365.25 * 86400.0),
+)
+
+
+def time_unit(seconds: float) -> TimeUnit:
+    """Return the largest unit of which a time [s] holds at least two, or else seconds."""
+    return [_TIME_UNITS[0], *(unit for unit in _TIME_UNITS if seconds >= 2 * unit.seconds)][-1]
+
+
+def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure, list[Axes]]:
+    """Return an empty figure one column wide, and its panels from top to bottom.
+
+    Parameters
+    ----------
+    height : float
+        [inch]
+    panels : int
+        They share the horizontal axis.
+    entries : int
+        Lines of the legend below, for which the figure grows.
+
+    Returns
+    -------
+    tuple of Figure and list of Axes
+    """
+    figure = Figure(figsize=(WIDTH, height + 0.15 * entries), layout="constrained")
+    return figure, list(figure.subplots(panels, sharex=True, squeeze=False)[:, 0])
+
+
+def legend(axes: Axes) -> None:
+    """Explain colours and lines below a figure with one panel, where there is anything to say."""
+    handles, labels = axes.get_legend_handles_labels()
+    if any(labels) and isinstance(axes.figure, Figure):
+        axes.figure.legend(handles, labels, loc="outside lower left")
+
+
+@styled
+def write(figure: Figure, path: Path) -> list[Path]:
+    """Write a figure as PNG and SVG, the same bytes each time, and return both paths.
+
+    Parameters
+    ----------
+    figure : Figure
+    path : Path
+        Without an ending.
+
+    Returns
+    -------
+    list of Path
+    """
+    paths = [path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg")]
+    nothing = ({"Software": None}, {"Date": None, "Creator": None})
+    for target, metadata in zip(paths, nothing, strict=True):
+        figure.savefig(target, dpi=200, metadata=metadata)
+        figure.set_layout_engine("none")  # the second has the layout of the first
+    return paths
+
+
+def file_name(*words: str) -> str:
+    """Return words as the name of a file, without anything that a shell would notice."""
+    return re.sub(r"[^A-Za-z0-9.+-]+", "_", "-".join(words)).strip("_")
+
+
+def sentence(text: str, unit: str = "", width: int = 44) -> str:
+    """Return text for an axis: wrapped, with a capital, its unit behind, nothing read as TeX."""
+    text = text[:1].upper() + text[1:]
+    if unit and unit != "1":
+        text += f" [{powers(unit)}]"
+    return textwrap.fill(text.replace("$", r"\$"), width)
+
+
+def powers(unit: str) -> str:
+    """Return a CF unit with raised exponents: ``m2 N-1`` becomes ``m² N⁻¹``."""
+    raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+    return re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(raised), unit)
+
+
+def place_in_words(element: Element, variable: xr.DataArray) -> str:
+    """Return which element of its output this is: ``left, 250 µm``."""
+    words = []
+    for dim, value in element.place.items():
+        attrs: Mapping[str, Any] = variable[dim].attrs if dim in variable.coords else {}
+        if isinstance(value, str):
+            words.append(value)
+        elif attrs.get("units") in ("m", "s", "Hz"):
+            words.append(EngFormatter(attrs["units"])(value))
+        else:
+            words.append(f"{dim} {value:g}")
+    return ", ".join(words)
+
+
+def is_wide(values: Floats) -> bool:
+    """Whether positive values spread so far that a logarithmic axis shows them better."""
+    low, high = np.quantile(values, (0.005, 0.995)) if len(values) else (0.0, 0.0)
+    return bool(low > 0 and high > 30 * low)
+
+
+def thinned(count: int, most: int = 1000) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Return which of `count` points of a curve to draw: the ends and enough between."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.intp))

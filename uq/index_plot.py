@@ -1,0 +1,113 @@
+"""The figure of sensitivity indices."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from uq.elements import named_elements
+from uq.errors import InputError
+from uq.figure import COLOURS, legend, new_figure, place_in_words, sentence, styled, time_unit
+from uq.indices import sensitivities
+
+_MEANING = {
+    "S1": "alone (S1)",
+    "ST": "with all interactions (ST)",
+    "delta": "Borgonovo's delta",
+    "pawn": "PAWN, median",
+}
+
+
+def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:
+    """Draw the sensitivity indices of one output as bars, with their 95 % intervals.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        One of the names that `uq.indices.sensitivities` returns.
+    method : str, optional
+        By default the first that the study asks for.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When there is no such output, it stands for several, or it has no indices.
+    """
+    found = sensitivities(ds, method, output)["outputs"]
+    if len(found) > 1:
+        raise InputError(f"'{output}' stands for several; name one of: {', '.join(found)}")
+    ((name, entry),) = found.items()
+    if "refused" in entry:
+        raise InputError(f"{name}: {entry['refused']}")
+    return bars(ds, name, entry)
+
+
+@styled
+def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
+    """Draw one entry of what `uq.indices.sensitivities` returns.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    name : str
+    entry : dict
+        Not refused.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    kinds = [kind for kind in _MEANING if kind in entry]
+    parameters = sorted(entry[kinds[-1]], key=lambda p: float(entry[kinds[-1]][p]["value"]))
+    labels = [_named(ds[parameter]) for parameter in parameters]
+    lines = [max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels]
+    figure, (axes,) = new_figure(0.8 + 0.13 * sum(lines), entries=2)
+    thickness = 0.8 / len(kinds)
+    for i, kind in enumerate(kinds):
+        y = np.arange(len(parameters)) + 0.4 - thickness * (i + 0.5)
+        found = [entry[kind][parameter] for parameter in parameters]
+        table = np.array([(one["value"], one["low"], one["high"]) for one in found], dtype=float)
+        value, ends = table[:, 0], table[:, 1:].T
+        axes.barh(y, value, thickness, color=COLOURS[i], label=_MEANING[kind])
+        axes.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
+    for limit in entry.get("dummy", {}).values():
+        label = "largest of inputs that play no part"
+        axes.axvline(limit, color="black", ls="--", lw=0.8, label=label)
+    axes.axvline(0, color="black", lw=0.6)
+    # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
+    low, high = axes.get_xlim()
+    axes.set_xlim(max(low, -0.25), min(high, 1.25))
+    axes.set_yticks(range(len(labels)), labels)
+    known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
+    axes.set_xlabel("Sensitivity index [1]" + known * ", with 95 % interval")
+    figure.suptitle(_subject(ds, name), x=0.01, ha="left", fontsize=8)
+    legend(axes)
+    return figure
+
+
+def _named(parameter: xr.DataArray) -> str:
+    """Return the full name of a parameter; the symbol tells apart those of the same meaning."""
+    return sentence(f"{parameter.attrs['long_name']} ({parameter.attrs['symbol']})", width=30)
+
+
+def _subject(ds: xr.Dataset, name: str) -> str:
+    """Return in words what the indices are about."""
+    inside = name.removeprefix("rate(").removeprefix("P(").removesuffix(")")
+    key, _, threshold = inside.partition("<")
+    (element,) = named_elements(ds, key)
+    place = place_in_words(element, ds[element.output])
+    words = element.meaning + (f", {place}" if place else "")
+    if threshold:
+        unit = time_unit(float(threshold))
+        words = f"whether it ends before {float(threshold) / unit.seconds:g} {unit.name}: {words}"
+    elif name.startswith("rate("):
+        words = f"rate, 1/time: {words}"
+    return sentence(words, width=56)

@@ -1,0 +1,267 @@
+"""Intervals of 95 % for means, shares and quantiles, and tolerance bounds.
+
+Rows are either independent (``replicate`` is None) or belong to independent replicates of a
+design, given as the replicate's number for each row. Formulas for independent rows are wrong for
+the rows of a Latin hypercube or a low-discrepancy sequence, whose estimates scatter less; there
+the scatter between replicates is the only witness. Where nothing can be said (one replicate, too
+few rows, replicates that agree to the last bit) an interval is ``(nan, nan)``: never one of zero
+width.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+CONFIDENCE = 0.95
+_UPPER_TAIL = 0.5 + CONFIDENCE / 2
+_ROUNDING = 64 * np.finfo(float).eps
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Replicates = NDArray[np.integer] | None
+
+
+class Interval(NamedTuple):
+    """Two bounds, or two arrays of bounds, NaN where they are not known."""
+
+    low: Any
+    high: Any
+
+
+UNKNOWN = Interval(np.nan, np.nan)
+
+
+def is_constant(values: Floats) -> bool:
+    """Whether finite values differ by no more than rounding."""
+    return bool(np.ptp(values) <= _ROUNDING * np.abs(values).max())
+
+
+def scatter_interval(value: float, estimates: Floats) -> Interval:
+    """Return ``value`` +- t s / sqrt(R) from independent estimates of the same number.
+
+    Parameters
+    ----------
+    value : float
+        The estimate from all rows together.
+    estimates : ndarray, shape (R,)
+        One estimate per replicate.
+
+    Returns
+    -------
+    Interval
+    """
+    count = len(estimates)
+    if count < 2 or is_constant(estimates):
+        return UNKNOWN
+    half = stats.t.ppf(_UPPER_TAIL, count - 1) * stats.sem(estimates)
+    return Interval(float(value - half), float(value + half))
+
+
+def mean_interval(values: Floats, replicate: Replicates = None) -> Interval:
+    """Return the interval of the mean.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite.
+    replicate : ndarray of int, shape (n,), optional
+
+    Returns
+    -------
+    Interval
+    """
+    if len(values) < 2 or is_constant(values):
+        return UNKNOWN
+    estimates = values if replicate is None else _means(values, replicate)
+    return scatter_interval(values.mean(), estimates)
+
+
+def share_interval(hits: Mask, replicate: Replicates = None) -> Interval:
+    """Return the interval of a share of rows.
+
+    Parameters
+    ----------
+    hits : ndarray of bool, shape (n,)
+    replicate : ndarray of int, shape (n,), optional
+
+    Returns
+    -------
+    Interval
+        Wilson's score interval [1]_. For replicates with the number of independent rows that
+        would scatter as much, and Student's t for the normal quantile [2]_.
+
+    References
+    ----------
+    .. [1] E. B. Wilson, "Probable inference, the law of succession, and statistical inference",
+       J. Am. Stat. Assoc. 22, 209-212 (1927).
+    .. [2] N. Dean, M. Pagano, "Evaluating confidence interval methods for binomial proportions in
+       clustered surveys", J. Surv. Stat. Methodol. 3, 484-503 (2015).
+    """
+    if len(hits) == 0:
+        return UNKNOWN
+    if replicate is None:
+        return _floats(_wilson(hits.mean(), len(hits), stats.norm.ppf(_UPPER_TAIL)))
+    return _floats(scattered_share_interval(hits.mean(), _means(hits, replicate)))
+
+
+def scattered_share_interval(
+    share: Floats | float, estimates: Floats, scatter_at: Floats | float | None = None
+) -> Interval:
+    """Return the interval of a share, or of several, from estimates by replicates.
+
+    Parameters
+    ----------
+    share : float or ndarray, shape (k,)
+        The estimate from all rows together.
+    estimates : ndarray, shape (R,) or (R, k)
+        By replicate.
+    scatter_at : float or ndarray, optional
+        The share whose scatter `estimates` show, if it is not exactly `share`.
+
+    Returns
+    -------
+    Interval
+        As in `share_interval`; arrays of shape (k,) if `share` is one.
+    """
+    at = share if scatter_at is None else scatter_at
+    count = len(estimates)
+    if count < 2:
+        return Interval(*np.full((2, *np.shape(share)), np.nan))
+    variance = estimates.var(axis=0, ddof=1) / count
+    variance = np.where(np.ptp(estimates, axis=0) > 0, variance, np.nan)
+    return _wilson(share, at * (1 - at) / variance, stats.t.ppf(_UPPER_TAIL, count - 1))
+
+
+def quantile(values: Floats, probability: float) -> float:
+    """Return the median-unbiased estimate of a quantile (type 8 of [1]_).
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite or +inf.
+    probability : float
+
+    Returns
+    -------
+    float
+        +inf as soon as an infinite value takes part; NaN without values.
+
+    References
+    ----------
+    .. [1] R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", Am. Stat. 50,
+       361-365 (1996).
+    """
+    finite = values[np.isfinite(values)]
+    if len(finite) == 0:
+        return np.inf if len(values) else np.nan
+    # Infinity times zero is no number: numpy interpolates towards a huge number instead.
+    huge = np.finfo(float).max / 4
+    found = np.quantile(np.minimum(values, huge), probability, method="median_unbiased")
+    return float(found) if found <= finite.max() else np.inf
+
+
+def quantile_interval(values: Floats, probability: float, replicate: Replicates = None) -> Interval:
+    """Return the interval of a quantile.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite or +inf.
+    probability : float
+    replicate : ndarray of int, shape (n,), optional
+
+    Returns
+    -------
+    Interval
+        Independent rows: order statistics, by the binomial law [1]_. Replicates: the quantiles at
+        both ends of the interval of the share of rows below the quantile [2]_. Bounds may be +inf.
+
+    References
+    ----------
+    .. [1] W. J. Conover, "Practical nonparametric statistics", 3rd ed., Wiley (1999), 3.2.
+    .. [2] R. S. Woodruff, "Confidence intervals for medians and other position measures", J. Am.
+       Stat. Assoc. 47, 635-646 (1952).
+    """
+    n = len(values)
+    if n == 0:
+        return UNKNOWN
+    if replicate is None:
+        law = stats.binom(n, probability)
+        return Interval(
+            order_statistic(values, int(law.ppf(1 - _UPPER_TAIL))),
+            order_statistic(values, int(law.isf(1 - _UPPER_TAIL)) + 1),
+        )
+    value = quantile(values, probability)
+    below = values <= value if np.isfinite(value) else values < value
+    low, high = scattered_share_interval(probability, _means(below, replicate), below.mean())
+    return Interval(
+        quantile(values, low) if low * n >= 1 else np.nan,
+        quantile(values, high) if (1 - high) * n >= 1 else np.nan,
+    )
+
+
+def order_statistic(values: Floats, rank: int) -> float:
+    """Return the value of this rank, from 1 to n, or NaN beyond."""
+    if not 1 <= rank <= len(values):
+        return np.nan
+    return float(np.partition(values, rank - 1)[rank - 1])
+
+
+def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: float) -> Interval:
+    """Return two one-sided tolerance bounds from independent rows (Wilks 1941).
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite or +inf.
+    failed : int
+        Number of further rows without a value: they count as the worst one on each side.
+    coverage : float
+        Share of all values that a bound must have on its side.
+    confidence : float
+        Probability that it has.
+
+    Returns
+    -------
+    Interval
+        NaN where there are fewer rows than `rows_needed`.
+
+    References
+    ----------
+    S. S. Wilks, "Determination of sample sizes for setting tolerance limits", Ann. Math. Stat. 12,
+    91-96 (1941).
+    """
+    n = len(values)
+    outside = int(stats.binom.ppf(1 - confidence, n + failed, 1 - coverage)) - failed
+    return Interval(order_statistic(values, outside), order_statistic(values, n + 1 - outside))
+
+
+def rows_needed(coverage: float, confidence: float, failed: int = 0) -> int:
+    """Return the least number of rows, `failed` of them failed, that gives a tolerance bound."""
+    beyond = failed + 1  # rows that must lie outside the bound
+    return beyond + int(stats.nbinom.ppf(confidence, beyond, 1 - coverage))
+
+
+def _means(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:
+    """Return the mean of each replicate that has rows."""
+    counts = np.bincount(replicate)
+    sums = np.bincount(replicate, weights=values.astype(float))
+    return sums[counts > 0] / counts[counts > 0]
+
+
+def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Interval:
+    """Return Wilson's interval; scipy's wants whole numbers of rows.
+
+    The bounds solve (1 + w) x^2 - (2 p + w) x + p^2 = 0 with w = z^2 / rows. One comes from the
+    other by the product of the roots, so that a share of 0 or 1 has a bound of exactly 0 or 1.
+    """
+    w = z**2 / rows
+    high = (share + w / 2 + np.sqrt(w * share * (1 - share) + w**2 / 4)) / (1 + w)
+    low = share**2 / (1 + w) / high
+    return Interval(low, 1 - (1 - share) ** 2 / (1 + w) / (1 - low))
+
+
+def _floats(interval: Interval) -> Interval:
+    return Interval(*map(float, interval))

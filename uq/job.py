@@ -1,0 +1,220 @@
+"""The rows of one run on their way: taken in order, computed here or on workers, kept.
+
+Rows are cut into chunks of whole design groups, one kernel call each. How they are cut and who
+computes them changes no bit of the result.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from functools import cache
+from math import ceil, lcm
+from queue import Empty, SimpleQueue
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.errors import InputError, RunError
+from uq.evaluate import Chunk, KernelError, evaluate
+from uq.interrupts import in_background
+from uq.registry import find_model
+from uq.sampling import Rows, group_size, row_block, rows
+from uq.store import Store, row_bytes
+from uq.study import Study
+
+if TYPE_CHECKING:
+    from distributed import Future
+
+    from uq.cluster import Workers
+
+CHUNK_SECONDS = 0.5
+"""Work in a chunk, unless the caller says how many rows."""
+
+_CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
+_ENOUGH_ROWS = 32  # to blame the model and not the rows
+_POLL_SECONDS = 0.2
+
+
+class Progress(NamedTuple):
+    """How far a run is.
+
+    Attributes
+    ----------
+    done, total, failed : int
+        Rows.
+    """
+
+    done: int
+    total: int
+    failed: int
+
+
+Report = Callable[[Progress], object]
+
+
+class Job:
+    """One study under way; rows are taken in order.
+
+    Parameters
+    ----------
+    study : Study
+    chunk_rows : int or None
+        Rows per chunk, if the caller has a wish.
+    report : callable
+        Called with a `Progress` whenever rows have arrived.
+
+    Attributes
+    ----------
+    store : Store
+        The rows that have arrived.
+    """
+
+    def __init__(self, study: Study, chunk_rows: int | None, report: Report) -> None:
+        self.study = study
+        self.report = report
+        self.store = Store(study, rows(study))
+        self._group = group_size(study)
+        self._wish = chunk_rows
+        self._next = 0
+        self._row_seconds = 0.0
+
+    @property
+    def complete(self) -> bool:
+        """Whether all rows have arrived."""
+        return self.store.done == self.store.total
+
+    @property
+    def seconds_left(self) -> float:
+        """Work that is left, by the cost of the latest rows computed here."""
+        return self._row_seconds * (self.store.total - self.store.done)
+
+    @property
+    def chunks_left(self) -> int:
+        """Tasks that are left."""
+        return ceil((self.store.total - self.store.done) / self._chunk_rows())
+
+    def pilot(self, share: float) -> None:
+        """Run the first rows here, more and more of them, until a chunk takes a while.
+
+        The first call may compile, so only later ones tell the cost of a row. No more than about
+        `share` of all rows is done here.
+        """
+        size = self._whole(min(self._wish or self.study.model.block, self.study.model.block))
+        self._here(size)
+        spent = self._here(size)
+        while spent < CHUNK_SECONDS and self.store.done < share * self.store.total:
+            size = min(2 * size, self._chunk_rows())
+            spent += self._here(size)
+
+    def finish_here(self) -> None:
+        """Run the other rows in this process."""
+        while not self.complete:
+            self._here(self._chunk_rows())
+
+    def finish_on(self, crew: "Workers") -> None:
+        """Run the other rows on workers; no more chunks in flight than keep them busy."""
+        arrived: SimpleQueue[Future] = SimpleQueue()
+        flying: dict[Future, tuple[int, Rows]] = {}
+        size = self._chunk_rows()
+        while not self.complete:
+            while self._next < self.store.total and len(flying) < 2 * crew.threads + 2:
+                start, some = self._take(size)
+                future = crew.client.submit(
+                    evaluate_rows,
+                    self.study.model_reference,
+                    self.study.model.version,
+                    asdict(self.study.settings),
+                    some.x,
+                    some.seed,
+                    start,
+                    pure=False,
+                )
+                flying[future] = start, some
+                future.add_done_callback(arrived.put)
+            try:
+                future = arrived.get(timeout=_POLL_SECONDS)
+            except Empty:
+                crew.watch()
+                continue
+            start, some = flying.pop(future)
+            self._keep(start, some, _result(future, start, len(some.x)))
+
+    def _here(self, size: int) -> float:
+        """Run the next rows in this process; return the seconds it took."""
+        if self.complete:
+            return 0.0
+        start, some = self._take(size)
+        began = time.perf_counter()
+        model, settings = self.study.model, self.study.settings
+        chunk = in_background(lambda: evaluate(model, settings, some.x, some.seed, start))
+        seconds = time.perf_counter() - began
+        self._row_seconds = seconds / len(some.x)
+        self._keep(start, some, chunk)
+        return seconds
+
+    def _take(self, size: int) -> tuple[int, Rows]:
+        start, stop = self._next, min(self._next + size, self.store.total)
+        self._next = stop
+        return start, row_block(self.study, start, stop)
+
+    def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
+        self.store.add(start, some, chunk)
+        wrong = self.store.shapes_all_wrong
+        if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
+            raise KernelError(f"model '{self.study.model.name}': every row is wrong: {wrong}")
+        self.report(Progress(self.store.done, self.store.total, self.store.failed))
+
+    def _chunk_rows(self) -> int:
+        if self._wish:
+            return self._whole(self._wish)
+        most = _CHUNK_BYTES // row_bytes(self.study)
+        affordable = CHUNK_SECONDS / self._row_seconds if self._row_seconds else most
+        return self._whole(min(most, affordable))
+
+    def _whole(self, size: float) -> int:
+        """Round up to whole groups, and to full blocks of the kernel if that is not much more."""
+        groups = self._group * ceil(size / self._group)
+        both = lcm(self._group, self.study.model.block)
+        full = both * ceil(size / both)
+        return full if full <= 2 * groups else groups
+
+
+_find_model = cache(find_model)
+
+
+def evaluate_rows(
+    reference: str,
+    version: str,
+    settings: dict[str, Any],
+    x: NDArray[np.float64],
+    seed: NDArray[np.uint64],
+    start: int,
+) -> Chunk:
+    """Run some rows in a worker process: one dask task, given plain data only.
+
+    A worker that lacks the model would not survive the arrival of one of its objects.
+    """
+    model = _find_model(reference)
+    if model.version != version:
+        raise InputError(
+            f"a worker has version {model.version} of model '{model.name}', "
+            f"this process has {version}: install the same on both"
+        )
+    return evaluate(model, model.settings(**settings), x, seed, start)
+
+
+def _result(future: "Future", start: int, count: int) -> Chunk:
+    from distributed import KilledWorker
+
+    rows = f"rows {start} to {start + count - 1}"
+    try:
+        chunk: Chunk = future.result()
+    except (InputError, RunError):
+        raise
+    except KilledWorker:
+        raise RunError(f"{rows} killed the worker processes that computed them") from None
+    except Exception as error:
+        reason = " ".join(str(error.__cause__ or error).split())
+        raise RunError(f"a worker could not compute {rows}: {reason}") from error
+    return chunk

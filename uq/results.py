@@ -1,0 +1,322 @@
+"""The schema of a result: one flat, self-describing Dataset, built here and checked here.
+
+One dimension ``sample``; one variable per parameter (``role`` is ``input`` where it is uncertain,
+``fixed`` where it is one number), one per output (``role="output"``, plus the model's own
+dimensions), one ``<name>_censored`` beside each lifetime that can be censored, and ``status``.
+``replicate``, ``group`` and ``block`` say which place of the design a row has. Nothing in it
+depends on clock, host, chunks or workers.
+"""
+
+import hashlib
+import importlib.metadata
+import platform
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.columns import censored_name
+from uq.contract import Model, Status
+from uq.designs import DESIGNS
+from uq.errors import InputError
+
+if TYPE_CHECKING:
+    from uq.sampling import Rows
+    from uq.study import Study
+
+SCHEMA_VERSION = 1
+_LIBRARIES = ("numpy", "numba", "scipy", "SALib")
+
+Columns = Mapping[str, NDArray[Any]]
+
+
+def build(
+    study: "Study",
+    rows: "Rows",
+    columns: Columns,
+    status: NDArray[np.int8],
+    failures: Mapping[str, str],
+) -> xr.Dataset:
+    """Put the rows of a study and what the model made of them into one Dataset.
+
+    Parameters
+    ----------
+    study : Study
+    rows : Rows
+        Inputs and place in the design, n rows.
+    columns : dict of str to ndarray
+        What ``batch`` returns, joined: output name -> (n, *dims), ``<name>_censored`` -> (n,
+        *dims).
+    status : ndarray of int8, shape (n,)
+    failures : dict of str to str
+        Status label -> what happened to the first row with that status.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    model = study.model
+    inputs: dict[str, Any] = {}
+    for i, name in enumerate(model.parameter_names):
+        if name in study.uncertain:
+            inputs[name] = _input(model, name, rows.x[:, i], study.uncertain[name].source)
+        else:
+            inputs[name] = _input(model, name, study.fixed.get(name, model.nominal[name]))
+    ds = xr.Dataset(
+        inputs | _outputs(model, columns, status, failures),
+        _places(study, rows) | _coordinates(model, study.settings),
+        _attributes(study),
+    )
+    for variable in ds.variables.values():
+        variable.encoding["_FillValue"] = None
+    return ds
+
+
+def build_single(
+    model: Model,
+    settings: Any,
+    values: Mapping[str, float],
+    columns: Columns,
+    status: NDArray[np.int8],
+    failures: Mapping[str, str],
+) -> xr.Dataset:
+    """Put one row computed outside of any study into a Dataset of the same schema.
+
+    Parameters
+    ----------
+    model : Model
+    settings : object
+    values : dict of str to float
+        Every parameter.
+    columns, status, failures
+        As in `build`, with n = 1.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    inputs = {name: _input(model, name, value) for name, value in values.items()}
+    attrs = {"title": model.title} | _model_attributes(model) | provenance()
+    outputs = _outputs(model, columns, status, failures)
+    return xr.Dataset(inputs | outputs, _coordinates(model, settings), attrs)
+
+
+def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
+    """Yield name and values of each element of an output: ``work_rate[site=left]``.
+
+    Parameters
+    ----------
+    variable : xarray.DataArray
+        With or without the dimension ``sample``.
+
+    Yields
+    ------
+    tuple of str and xarray.DataArray
+        Coordinates appear as Python's repr without quotes.
+    """
+    dims = [str(dim) for dim in variable.dims if dim != "sample"]
+    for index in np.ndindex(*(variable.sizes[dim] for dim in dims)):
+        place = dict(zip(dims, index, strict=True))
+        label = ",".join(f"{dim}={variable[dim].values[i].item()}" for dim, i in place.items())
+        yield f"{variable.name}[{label}]" if label else str(variable.name), variable.isel(place)
+
+
+def open_result(path: str | Path) -> xr.Dataset:
+    """Read a result into memory and check its schema.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    InputError
+        When the file does not exist, is not netCDF, or is not a result of this schema version.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise InputError(f"{path}: no such file")
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder, not a result")
+    try:
+        ds = xr.load_dataset(path, engine="netcdf4", decode_timedelta=False)
+    except (OSError, ValueError, RuntimeError):
+        raise InputError(f"{path}: not a readable netCDF file") from None
+    check(ds, path)
+    return ds
+
+
+def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
+    """Refuse a Dataset that is not a result of this schema version.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    path : str or Path
+        What the message calls it.
+
+    Raises
+    ------
+    InputError
+    """
+    version = ds.attrs.get("schema_version")
+    if version is None or "study" not in ds.attrs or "status" not in ds:
+        raise InputError(f"{path}: not a result of 'uq run'")
+    if version != SCHEMA_VERSION:
+        raise InputError(
+            f"{path}: written with schema version {version}; this version of vibrolife reads "
+            f"{SCHEMA_VERSION}: run the study again, or read it with xarray"
+        )
+
+
+def failed(ds: xr.Dataset) -> NDArray[np.bool_]:
+    """Return which rows failed, shape (n,).
+
+    A row whose budget ended counts only where an output is lacking.
+    """
+    lacking = np.zeros(ds.sizes["sample"], dtype=bool)
+    for variable in ds.data_vars.values():
+        if variable.attrs.get("role") == "output" and not variable.attrs["may_be_undefined"]:
+            category = variable.attrs["kind"] == "category"
+            missing = variable < 0 if category else variable.isnull()
+            lacking |= missing.values.reshape(len(lacking), -1).any(axis=1)
+    status = ds["status"].values
+    return np.where(status == Status.OUT_OF_BUDGET, lacking, status != Status.OK)
+
+
+def relabel(ds: xr.Dataset, study: "Study") -> xr.Dataset:
+    """Return the same rows under the present text of their study.
+
+    Comments, sources and [analysis] of a study may change without a row being computed again.
+    """
+    ds = ds.assign_attrs(_attributes(study) | {name: ds.attrs[name] for name in provenance()})
+    for name, law in study.uncertain.items():
+        ds[name].attrs["source"] = law.source or study.model.parameter(name).source
+    return ds
+
+
+def _input(model: Model, name: str, value: Any, source: str = "") -> tuple[Any, Any, Any]:
+    """Return the variable of a parameter: one number, or one per row."""
+    declared = model.parameter(name)
+    uncertain = isinstance(value, np.ndarray)
+    attrs = {
+        "role": "input" if uncertain else "fixed",
+        "units": declared.unit,
+        "long_name": declared.meaning,
+        "symbol": declared.symbol,
+        "source": source or declared.source,
+    }
+    return (("sample",), value, attrs) if uncertain else ((), np.float64(value), attrs)
+
+
+def _outputs(
+    model: Model, columns: Columns, status: NDArray[np.int8], failures: Mapping[str, str]
+) -> dict[str, Any]:
+    variables: dict[str, Any] = {}
+    for name, output in model.outputs.items():
+        dims = ("sample", *output.dims)
+        attrs: dict[str, Any] = {
+            "role": "output",
+            "kind": output.kind,
+            "units": output.unit,
+            "long_name": output.meaning,
+            "may_be_undefined": int(output.may_be_undefined),
+        }
+        if output.kind == "category":
+            attrs |= _flags(("none", *output.categories), np.int8, first=-1)
+        variables[name] = (dims, columns[name], attrs)
+        if output.has_censored_flag:
+            flag = censored_name(name)
+            attrs = {"role": "censored", "long_name": f"whether {name} is only a lower bound"}
+            variables[flag] = (dims, columns[flag].astype(np.int8), attrs)
+    attrs = {"role": "status", "long_name": "how the row ended"}
+    attrs |= _flags([status.label for status in Status], np.int8)
+    for label, message in failures.items():
+        attrs[f"example_{label.replace('-', '_')}"] = message
+    return variables | {"status": (("sample",), status, attrs)}
+
+
+def _coordinates(model: Model, settings: Any) -> dict[str, Any]:
+    values = model.coordinates(settings)
+    used = {dim for output in model.outputs.values() for dim in output.dims}
+    return {dim: np.asarray(values[dim]) for dim in sorted(used)}
+
+
+def _places(study: "Study", rows: "Rows") -> dict[str, Any]:
+    sample = ("sample",)
+    block = {"long_name": "block of the design"} | _flags(_block_labels(study), np.int16)
+    return {
+        "sample": (sample, np.arange(len(rows.x)), {"long_name": "row"}),
+        "replicate": (sample, rows.replicate, {"long_name": "independent scramble of the design"}),
+        "group": (sample, rows.group, {"long_name": "base point of the design"}),
+        "block": (sample, rows.block, block),
+    }
+
+
+def _flags(labels: Sequence[str], dtype: type[np.integer[Any]], first: int = 0) -> dict[str, Any]:
+    values = np.arange(first, first + len(labels), dtype=dtype)
+    if len(labels) == 1:
+        values = values[0]  # what netCDF makes of an attribute of one number
+    return {"flag_values": values, "flag_meanings": " ".join(labels)}
+
+
+def _block_labels(study: "Study") -> list[str]:
+    if not DESIGNS[study.design.method].crossed:
+        return ["sample"]
+    mixed = [f"AB_{name}" for name in study.uncertain]
+    if study.design.second_order:
+        mixed += [f"BA_{name}" for name in study.uncertain]
+    return ["A", *mixed, "B"]
+
+
+def _attributes(study: "Study") -> dict[str, Any]:
+    design = study.design
+    return (
+        {"title": study.description or study.name}
+        | _model_attributes(study.model)
+        | {
+            "study": study.text,
+            "study_sha256": hashlib.sha256(study.text.encode()).hexdigest(),
+            "study_identity": study.identity,
+            "design": design.method,
+            "samples": design.samples,
+            "replicates": design.replicates,
+            "second_order": int(design.second_order),
+            "seed": design.seed,
+        }
+        | provenance()
+    )
+
+
+def _model_attributes(model: Model) -> dict[str, Any]:
+    return {
+        "Conventions": "CF-1.11",
+        "schema_version": SCHEMA_VERSION,
+        "source": f"{model.name} {model.version}",
+        "model": model.name,
+        "model_version": model.version,
+    }
+
+
+def provenance() -> dict[str, str]:
+    """Return the processor and the versions that made a result."""
+    here = {"cpu": _cpu(), "python": platform.python_version()}
+    return here | {name: importlib.metadata.version(name) for name in _LIBRARIES}
+
+
+def _cpu() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    for line in lines:
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()

@@ -1,0 +1,230 @@
+"""What a result says: counts, moments, quantiles and probabilities, each with its interval."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from uq import intervals
+from uq.contract import Status
+from uq.elements import (
+    Element,
+    Floats,
+    Mask,
+    analysis_of,
+    elements_of,
+    flags,
+    independent_rows,
+    output_names,
+    shown_outputs,
+)
+from uq.intervals import Interval, Replicates
+from uq.study_file import AnalysisTable
+
+NO_INTERVALS = (
+    "no intervals: the rows of a '{design}' design are not independent, and with replicates = 1"
+    " nothing shows how far its estimates scatter; set replicates = 8"
+)
+
+
+def summarise(ds: xr.Dataset, analysis: AnalysisTable | None = None) -> dict[str, Any]:
+    """Describe a result in plain data, ready for JSON.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    analysis : AnalysisTable, optional
+        What to show; by default what the result's own study asks for.
+
+    Returns
+    -------
+    dict
+        ``samples`` and ``status`` count all rows. Everything else is about the ``rows_used``, the
+        independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
+        element -> mean, sd, quantiles, tolerance, thresholds, counts of never, censored, undefined
+        and failed rows) and ``notes``, sentences on what could not be given. A number that does
+        not exist or is not finite is None; beside it ``never``, ``low_censored`` and the like say
+        why.
+    """
+    analysis = analysis or analysis_of(ds)
+    rows = independent_rows(ds)
+    replicate = replicates_of(rows)
+    outputs = shown_outputs(ds, analysis)
+    return {
+        "samples": ds.sizes["sample"],
+        "rows_used": rows.sizes["sample"],
+        "status": status_counts(ds),
+        "regime": regime_shares(rows) if "regime" in output_names(ds) else {},
+        "outputs": {
+            element.name: _describe(element, replicate, analysis)
+            for element in elements_of(rows, outputs)
+        },
+        "notes": _notes(ds),
+    }
+
+
+def summary(ds: xr.Dataset) -> pd.DataFrame:
+    """Describe a result in a table, one line per element of each output.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Index: name of the element. Columns: units, mean, sd and each quantile, with ``_low`` and
+        ``_high`` for the 95 % interval, and counts of rows never, censored, undefined and failed.
+    """
+    table = {}
+    for name, entry in summarise(ds)["outputs"].items():
+        line = {"units": entry["units"], "mean": entry["mean"]}
+        line |= {f"mean_{end}": entry["mean_interval"][end] for end in ("low", "high")}
+        line["sd"] = entry["sd"]
+        for probability, estimate in entry["quantiles"].items():
+            line[f"q{probability}"] = np.inf if estimate.get("never") else estimate["value"]
+            line |= {f"q{probability}_{end}": estimate[end] for end in ("low", "high")}
+        table[name] = line | {count: entry[count] for count in _COUNTS}
+    return pd.DataFrame.from_dict(table, orient="index").rename_axis("output")
+
+
+def replicates_of(rows: xr.Dataset) -> Replicates:
+    """Return the replicate of each row, or None where the rows are independent."""
+    return None if rows.attrs["design"] == "monte-carlo" else rows["replicate"].values
+
+
+def status_counts(ds: xr.Dataset) -> dict[str, int]:
+    """Return how many rows ended how, all rows, for each status that occurs and ``ok``."""
+    codes = ds["status"].values
+    counts = {label: int((codes == code).sum()) for code, label in flags(ds["status"])}
+    return {label: count for label, count in counts.items() if count or label == "ok"}
+
+
+def regime_shares(rows: xr.Dataset) -> dict[str, dict[str, Any]]:
+    """Return count and share of each regime among the rows that did not fail.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        Independent rows of a result.
+
+    Returns
+    -------
+    dict
+        Label -> ``count``, ``share``, ``low``, ``high``; also for regimes that do not occur.
+    """
+    codes = rows["regime"].values
+    kept = (codes >= 0) | (rows["status"].values == Status.OK)
+    replicate = _of(replicates_of(rows), kept)
+    shares = {}
+    for code, label in flags(rows["regime"]):
+        if code >= 0:
+            hits = codes[kept] == code
+            estimate = _share(hits, replicate)
+            shares[label] = {"count": int(hits.sum()), "share": estimate.pop("value")} | estimate
+    return shares
+
+
+_COUNTS = ("never", "censored", "undefined", "failed")
+
+
+def _describe(element: Element, replicate: Replicates, analysis: AnalysisTable) -> dict[str, Any]:
+    values = element.at_least
+    within = _of(replicate, element.present)
+    moments = len(values) > 0 and not element.never.any() and not element.censored.any()
+    mean = intervals.mean_interval(values, within) if moments else intervals.UNKNOWN
+    return {
+        "units": element.units,
+        "mean": _plain(values.mean()) if moments else None,
+        "mean_interval": {"low": _plain(mean.low), "high": _plain(mean.high)},
+        "sd": _plain(values.std(ddof=1)) if moments and len(values) > 1 else None,
+        "quantiles": {
+            repr(probability): _quantile(element, probability, within)
+            for probability in analysis.quantiles
+        },
+        "tolerance": _tolerance(element, replicate, analysis),
+        "thresholds": {
+            repr(threshold): _threshold(element, threshold, replicate)
+            for threshold in analysis.thresholds.get(element.output, ())
+        },
+    } | {count: int(getattr(element, count).sum()) for count in _COUNTS}
+
+
+def _quantile(element: Element, probability: float, replicate: Replicates) -> dict[str, Any]:
+    def estimate(values: Floats) -> tuple[float, Interval]:
+        interval = intervals.quantile_interval(values, probability, replicate)
+        return intervals.quantile(values, probability), interval
+
+    value, early = estimate(element.at_least)
+    latest, late = estimate(element.at_most) if element.censored.any() else (value, early)
+    return _entry(
+        value=(value, np.inf if value < latest else value),
+        low=(early.low, early.low),
+        high=(early.high, late.high),
+    )
+
+
+def _tolerance(
+    element: Element, replicate: Replicates, analysis: AnalysisTable
+) -> dict[str, Any] | None:
+    if analysis.tolerance is None or replicate is not None:
+        return None
+    failed = int(element.failed.sum())
+    early = intervals.tolerance_bounds(element.at_least, failed, *analysis.tolerance)
+    late = intervals.tolerance_bounds(element.at_most, failed, *analysis.tolerance)
+    bounds = _entry(lower=(early.low, early.low), upper=(early.high, late.high))
+    return bounds | {"rows_needed": intervals.rows_needed(*analysis.tolerance, failed)}
+
+
+def _entry(**numbers: tuple[float, float]) -> dict[str, Any]:
+    """Return numbers that depend on the censored rows, with the reason for each that is null.
+
+    Each comes twice: with the censored rows ending where they were last seen, and never ending.
+    The second is given, so that a bound from above holds whenever they end.
+    """
+    entry: dict[str, Any] = {name: _plain(last) for name, (_, last) in numbers.items()}
+    for name, (first, last) in numbers.items():
+        reason = "never" if np.isposinf(first) else "censored" if np.isposinf(last) else None
+        if reason:
+            entry[reason if name == "value" else f"{name}_{reason}"] = True
+    return entry
+
+
+def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:
+    kept = ~element.failed
+    values, censored = element.values[kept], element.censored[kept]
+    if element.kind == "angle":
+        values = np.abs(values)
+    undefined = {"undefined": _plain(element.undefined[kept].mean()) if kept.any() else None}
+    unknown = int((censored & (values < threshold)).sum())
+    if unknown:
+        nothing = dict.fromkeys(("value", "low", "high"))
+        reason = f"{unknown} rows were censored before {threshold!r} {element.units}"
+        return {"above": nothing, "below": nothing} | undefined | {"reason": reason}
+    above = (values > threshold) | (censored & (values == threshold))
+    within = _of(replicate, kept)
+    below = (values < threshold) & ~censored
+    return {"above": _share(above, within), "below": _share(below, within)} | undefined
+
+
+def _share(hits: Mask, replicate: Replicates) -> dict[str, Any]:
+    interval = intervals.share_interval(hits, replicate)
+    value = hits.mean() if len(hits) else np.nan
+    return {"value": _plain(value), "low": _plain(interval.low), "high": _plain(interval.high)}
+
+
+def _of(replicate: Replicates, rows: Mask) -> Replicates:
+    return None if replicate is None else replicate[rows]
+
+
+def _plain(number: float) -> float | None:
+    return float(number) if np.isfinite(number) else None
+
+
+def _notes(ds: xr.Dataset) -> list[str]:
+    if ds.attrs["design"] == "monte-carlo" or ds.attrs["replicates"] > 1:
+        return []
+    return [NO_INTERVALS.format(design=ds.attrs["design"])]
