@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict
 from functools import cache
-from math import ceil, lcm
+from math import ceil
 from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -170,14 +170,12 @@ class Job:
             return self._whole(self._wish)
         most = _CHUNK_BYTES // row_bytes(self.study)
         affordable = CHUNK_SECONDS / self._row_seconds if self._row_seconds else most
-        return self._whole(min(most, affordable))
+        block = self.study.model.block
+        return self._whole(block * ceil(min(most, affordable) / block))
 
     def _whole(self, size: float) -> int:
-        """Round up to whole groups, and to full blocks of the kernel if that is not much more."""
-        groups = self._group * ceil(size / self._group)
-        both = lcm(self._group, self.study.model.block)
-        full = both * ceil(size / both)
-        return full if full <= 2 * groups else groups
+        """Round up to whole groups of the design."""
+        return self._group * ceil(size / self._group)
 
 
 _find_model = cache(find_model)

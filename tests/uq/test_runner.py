@@ -77,14 +77,17 @@ def test_chunks_are_whole_groups_and_full_blocks(write_study):
     assert seen[-1] == Progress(640, 640, 0)
 
 
-def test_chunks_fill_the_blocks_of_a_kernel_where_that_is_cheap(write_study):
-    study = load_study(write_study(uncertain=("x1",), samples=320), "sample_models:KINDS")
-    for block, size in {16: 32, 64: 20}.items():
-        seen = []
-        blocked = replace(study, model=replace(study.model, block=block))
-        runner.compute(blocked, workers=0, chunk_rows=20, progress=seen.append)
-        done = [progress.done for progress in seen]
-        assert np.diff(done)[-2] == size
+def test_chunks_fill_the_blocks_of_a_kernel_unless_a_size_is_asked_for(write_study):
+    study = load_study(write_study(uncertain=("x1",), samples=2000), "sample_models:KINDS")
+    blocked = replace(study, model=replace(study.model, block=96))
+    seen = []
+    runner.compute(blocked, workers=0, progress=seen.append)
+    done = np.array([0, *(progress.done for progress in seen)])
+    assert len(done) > 3
+    assert np.all(np.diff(done)[:-1] % 96 == 0)
+    seen.clear()
+    runner.compute(blocked, workers=0, chunk_rows=20, progress=seen.append)
+    assert np.all(np.diff([progress.done for progress in seen]) == 20)
 
 
 def test_progress_counts_rows_and_failures(write_study):
