@@ -5,7 +5,7 @@ BIN := .venv/bin
 BASE := .venv/.installed
 TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
-PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install -c constraints.txt
+PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
 .PHONY: run test slow notebook bench clean
 

@@ -164,7 +164,6 @@ class _Processes:
                 stdout=stream,
                 stderr=stream,
                 env=_environment(),
-                start_new_session=True,  # Ctrl-C in a terminal is the parent's affair
             )
         self._running.append(process)
 

@@ -182,6 +182,8 @@ class Model:
         ``simulate(params, settings, seed=0) -> Trajectory``.
     coordinates : callable
         ``coordinates(settings) -> {dimension: values}`` for every dimension the outputs name.
+    dimensions : dict of str to tuple
+        Dimension -> (unit, meaning), for coordinates that are quantities.
     block : int
         Rows that the kernel advances together; a chunk shorter than this wastes work.
     references : tuple of str
@@ -197,6 +199,7 @@ class Model:
     batch: Batch
     simulate: Callable[..., Trajectory] | None = None
     coordinates: Callable[[Any], Mapping[str, Sequence[Any]]] = field(default=_no_coordinates)
+    dimensions: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     block: int = 1
     references: tuple[str, ...] = ()
 

@@ -87,7 +87,7 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
     axes.set_xlim(max(low, -0.25), min(high, 1.25))
     axes.set_yticks(range(len(labels)), labels)
     known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
-    axes.set_xlabel("Sensitivity index [1]" + known * ", with 95 % interval")
+    axes.set_xlabel("Sensitivity index [1]" + known * ",\nwith 95 % interval")
     figure.suptitle(_subject(ds, name), x=0.01, ha="left", fontsize=8)
     legend(axes)
     return figure

@@ -65,13 +65,14 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
 
 
 def _figures(ds: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    for output in shown_outputs(ds, analysis_of(ds)):
-        match ds[output].attrs["kind"]:
-            case "lifetime":
-                yield file_name("lifetime", output), lifetime(ds, output)
-            case "value" | "angle":
-                yield file_name("histogram", output), histogram(ds, output)
-    for method in methods(ds):
+    kinds = {output: ds[output].attrs["kind"] for output in shown_outputs(ds, analysis_of(ds))}
+    numbers = {output: kind for output, kind in kinds.items() if kind != "category"}
+    for output, kind in numbers.items():
+        if kind == "lifetime":
+            yield file_name("lifetime", output), lifetime(ds, output)
+        else:
+            yield file_name("histogram", output), histogram(ds, output)
+    for method in methods(ds) if numbers else ():
         for name, entry in sensitivities(ds, method)["outputs"].items():
             if "refused" not in entry:
                 yield file_name(method, name), bars(ds, name, entry)

@@ -246,7 +246,11 @@ def _outputs(
 def _coordinates(model: Model, settings: Any) -> dict[str, Any]:
     values = model.coordinates(settings)
     used = {dim for output in model.outputs.values() for dim in output.dims}
-    return {dim: np.asarray(values[dim]) for dim in sorted(used)}
+    coordinates: dict[str, Any] = {}
+    for dim in sorted(used):
+        described = zip(("units", "long_name"), model.dimensions.get(dim, ()), strict=False)
+        coordinates[dim] = ((dim,), np.asarray(values[dim]), dict(described))
+    return coordinates
 
 
 def _places(study: "Study", rows: "Rows") -> dict[str, Any]:

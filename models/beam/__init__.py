@@ -32,6 +32,7 @@ MODEL = Model(
     batch=_batch,
     simulate=_simulate,
     coordinates=coordinates,
+    dimensions={"depth": ("m", "growth of the gap by wear")},
     block=256,
     references=(
         "J. Knudsen, A. R. Massih, Impact work-rate and wear of a loosely supported beam subject "

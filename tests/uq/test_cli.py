@@ -316,12 +316,13 @@ def test_a_wrong_model_of_ones_own_is_one_line(uq, write_study, folder):
     assert everything(folder) == ["small.toml"]
 
 
-def test_a_reader_that_has_enough_is_no_error():
+@pytest.mark.parametrize("verb", [("schema",), ("models", "linear")], ids=["long", "short"])
+def test_a_reader_that_has_enough_is_no_error(verb):
     command = Path(sys.executable).with_name("uq")
     nobody, pipe = os.pipe()
     os.close(nobody)
     ended = subprocess.run(
-        [command, "schema"], stdout=pipe, stderr=subprocess.PIPE, text=True, timeout=60
+        [command, *verb], stdout=pipe, stderr=subprocess.PIPE, text=True, timeout=60
     )
     os.close(pipe)
     assert (ended.returncode, ended.stderr) == (1, "")

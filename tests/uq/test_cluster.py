@@ -13,7 +13,7 @@ import pytest
 import sample_models
 
 import uq
-from uq import cluster, runner
+from uq import cluster, job, runner
 from uq.errors import InputError, RunError
 from uq.job import evaluate_rows
 from uq.study import load_study
@@ -63,19 +63,16 @@ def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeyp
     assert runner.compute(study, workers=0)["y"].values[0] != ds["y"].values[0]
 
 
-def test_workers_are_not_started_for_a_few_seconds_of_work(write_study, monkeypatch):
-    study = load_study(write_study(uncertain=("x1",), samples=10_000), "sample_models:PROCESS")
-    assert set(runner.compute(study)["y"].values) == {os.getpid()}
-
-
-def test_a_longer_study_is_given_to_workers(write_study, tidy, monkeypatch):
-    monkeypatch.setattr(runner, "IN_PROCESS_SECONDS", 0.5)
-    path = write_study(uncertain=("x1",), samples=64, more="[settings]\nseconds = 0.03")
-    seen = []
-    study = load_study(path, "sample_models:SLEEPING")
-    ds = runner.compute(study, progress=seen.append)
-    assert np.array_equal(ds["y"], ds["x1"])
-    assert seen[-1].done == 64
+@pytest.mark.parametrize(("seconds", "processes"), [(60.0, 1), (0.1, 3)])
+def test_workers_are_started_for_longer_studies_only(
+    write_study, tidy, monkeypatch, seconds, processes
+):
+    monkeypatch.setattr(job, "CHUNK_SECONDS", 0.05)
+    monkeypatch.setattr(runner, "IN_PROCESS_SECONDS", seconds)
+    monkeypatch.setattr(cluster, "CORES", 2)
+    path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
+    ds = runner.compute(load_study(path, "sample_models:PROCESS"))
+    assert len(set(ds["y"].values)) == processes
 
 
 def test_an_existing_cluster_is_used(write_study, tidy):
@@ -164,6 +161,8 @@ def test_a_worker_ends_with_its_parent(folder):
         "context = cluster.local(1)\n"
         "crew = context.__enter__()\n"
         "print(*crew.client.run(os.getpid).values(), flush=True)\n"
+        "work = crew.client.submit(time.sleep, 1000)\n"
+        "time.sleep(1)\n"
         "os.kill(os.getpid(), 9)\n"
     )
     ended = subprocess.run(

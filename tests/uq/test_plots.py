@@ -11,6 +11,7 @@ from uq import plots
 from uq.errors import InputError
 from uq.figure import file_name, powers, sentence, time_unit
 from uq.index_plot import index_bars
+from uq.indices import sensitivities
 
 
 def words(figure):
@@ -41,6 +42,13 @@ def test_the_same_result_gives_the_same_bytes(tmp_path):
     assert len(once) == 4
     for one, other in zip(once, again, strict=True):
         assert one.read_bytes() == other.read_bytes()
+
+
+def test_categories_alone_give_no_figure(tmp_path):
+    ds = kinds(analysis={"outputs": ["regime"]})
+    assert plots.save_all(ds, tmp_path) == []
+    with pytest.raises(InputError, match="none of the outputs is a number"):
+        sensitivities(ds)
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
