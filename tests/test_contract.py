@@ -147,10 +147,11 @@ def test_every_corner_of_the_bounds_ends_with_a_status(model, settings):
     assert not np.isin(status, [Status.RAISED, Status.BAD_SHAPE]).any()
 
 
-def test_a_trajectory_is_labelled_and_finite(model, settings):
-    if model.simulate is None:
-        pytest.skip("gives no trajectory")
-    time, quantities = model.simulate(model.parameters(), settings, seed=0)
+@pytest.mark.parametrize(
+    "model", [m for m in map(find_model, model_names()) if m.simulate], ids=lambda m: m.name
+)
+def test_a_trajectory_is_labelled_and_finite(model):
+    time, quantities = model.simulate(model.parameters(), model.settings(), seed=0)
     assert np.all(np.diff(time) > 0)
     assert quantities
     for name, (unit, meaning, values) in quantities.items():
