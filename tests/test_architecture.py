@@ -10,7 +10,7 @@ HOUSE = Path(__file__).parents[1]
 
 LAYERS = {
     "contract": {"contract"},
-    "ground": {"columns", "errors", "interrupts", "literals", "threads"},
+    "ground": {"columns", "errors", "interrupts", "literals", "provenance", "threads"},
     "study": {
         "checks",
         "conditioning",

@@ -98,10 +98,8 @@ def _curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, A
             for r in np.unique(of)
         ]
         interval = scattered_share_interval(curve, np.array(estimates))
-    known = (curve > 0) & (curve < 1)  # elsewhere both formulas give zero width, or nothing
-    low, high = (np.where(known, end, np.nan) for end in interval)
     never = element.never.sum() / len(values)
-    return counts | {"never": never, "survival": curve, "low": low, "high": high}
+    return counts | {"never": never, "survival": curve} | interval._asdict()
 
 
 def _kaplan_meier(values: Floats, censored: Mask, time: Floats) -> Any:

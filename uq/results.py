@@ -8,8 +8,6 @@ depends on clock, host, chunks or workers.
 """
 
 import hashlib
-import importlib.metadata
-import platform
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,13 +20,13 @@ from uq.columns import censored_name
 from uq.contract import Model, Status
 from uq.designs import DESIGNS
 from uq.errors import InputError
+from uq.provenance import provenance
 
 if TYPE_CHECKING:
     from uq.sampling import Rows
     from uq.study import Study
 
 SCHEMA_VERSION = 1
-_LIBRARIES = ("numpy", "numba", "scipy", "SALib")
 
 Columns = Mapping[str, NDArray[Any]]
 
@@ -307,20 +305,3 @@ def _model_attributes(model: Model) -> dict[str, Any]:
         "model": model.name,
         "model_version": model.version,
     }
-
-
-def provenance() -> dict[str, str]:
-    """Return the processor and the versions that made a result."""
-    here = {"cpu": _cpu(), "python": platform.python_version()}
-    return here | {name: importlib.metadata.version(name) for name in _LIBRARIES}
-
-
-def _cpu() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        lines = []
-    for line in lines:
-        if line.startswith("model name"):
-            return line.partition(":")[2].strip()
-    return platform.processor() or platform.machine()

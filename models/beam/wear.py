@@ -6,8 +6,8 @@ coefficient multiplied by an acceleration K it takes N periods, and the life is 
 what was simulated. K follows the running work-rate, so that the gap which grows faster grows by
 the same amount per period all along: N is known beforehand, whatever the work-rate does.
 
-The limit of infinitely slow wear is what a lifetime means. A run with 4 N periods is nearer to it
-than one with N, and the difference of the two tells how near: see `lives`.
+The limit of infinitely slow wear is what a lifetime means. Each run lasts twice as long as the one
+before and is nearer to it; how the differences fall tells how near: see `extrapolate`.
 """
 
 import math
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from models.beam.modal import Array
 
-SHORTEST = 128  # N of the first run; each further one lasts four times as long
+SHORTEST = 64  # N of the first run; each further one lasts twice as long
 LONGEST = 660  # over the accuracy: N of the last run at most
 LOOKS = 32  # changes of the acceleration in N periods
 OVERTIME = 4  # a run may last this many times N periods
@@ -231,7 +231,7 @@ def lives(
         np.zeros((n, depths)),
         np.zeros(n, np.int64),
     )
-    levels = max(2, 1 + int(math.log(LONGEST / (SHORTEST * accuracy), 4)))
+    levels = max(3, 1 + int(math.log2(LONGEST / (SHORTEST * accuracy))))
     times = np.empty((levels, n, 3, depths))
     left = np.arange(n)
     for level in range(levels):
@@ -243,7 +243,7 @@ def lives(
             work[left],
             share[left],
             growths[left],
-            SHORTEST * 4**level,
+            SHORTEST * 2**level,
         )
         times[level, left, :2] = one.time
         times[level, left, 2] = one.time.min(axis=1)
@@ -251,9 +251,9 @@ def lives(
         reached[:, :2], reached[:, 2] = one.reached, one.reached.any(axis=1)
         out.reached[left], out.ratio[left] = reached, one.ratio
         out.periods[left] += one.periods
-        if level == 0:
+        if level < 2:
             continue
-        time, error = extrapolate(times[max(level - 2, 0) : level + 1, left])
+        time, error = extrapolate(times[level - 2 : level + 1, left])
         out.time[left] = np.where(reached, time, times[level, left])
         out.error[left] = np.where(reached, np.where(before, error, time), np.nan)
         good = ((reached == before) & (~reached | (out.error[left] <= accuracy * time)))[:, 2:]
@@ -264,18 +264,18 @@ def lives(
 
 
 def extrapolate(times: Array) -> tuple[Array, Array]:
-    """Estimate the life at infinitely slow wear from lives at N, 4 N and perhaps 16 N periods.
+    """Estimate the life at infinitely slow wear from lives at N, 2 N and 4 N periods.
 
     Where the response follows the gaps smoothly it lags behind by a time that does not depend on
-    the pace, so that the error falls like 1/N; through a change of branch it falls more slowly,
-    like N^(-2/3) (a slow passage); of an aperiodic response it is statistical. Three lives tell
-    these apart by the ratio of their differences, about 4, 2.5, or anything, and in the first two
-    cases the rest of the geometric series is added. Two lives do not tell: they are corrected as
-    if smooth, and the error stated is what it would be in the worse cases.
+    the pace, so that the error falls like 1/N; through a change of branch (a slow passage) it
+    falls like N^(-2/3). In both cases the differences of the lives are a geometric series of
+    ratio 2 or 1.6, whose rest is added; a third of that rest is kept as the error. Differences
+    that grow say that a change is not resolved yet, and their error is several times the last;
+    any other sequence is that of an aperiodic response, whose error is statistical.
 
     Parameters
     ----------
-    times : ndarray, shape (2 or 3, ...)
+    times : ndarray, shape (3, ...)
         Lives, the slowest wear last.
 
     Returns
@@ -283,13 +283,11 @@ def extrapolate(times: Array) -> tuple[Array, Array]:
     time, error : ndarray, shape (...)
     """
     with np.errstate(invalid="ignore", divide="ignore"):
-        last = times[-1] - times[-2]
-        corrected, error = times[-1] + last / 3, np.abs(last) * 2 / 3
-        if len(times) == 3:
-            previous = times[-2] - times[-3]
-            ratio = previous / last
-            regular = (ratio > 2.0) & (ratio < 4.8)
-            corrected = times[-1] + np.where(regular, last / (ratio - 1), 0.0)
-            error = np.abs(last) * np.where(regular & (ratio > 3.4), 0.25, 0.5)
-            error = np.where(regular, error, np.maximum(error, np.abs(previous) / 4))
-    return corrected, error
+        previous, last = times[1] - times[0], times[2] - times[1]
+        ratio = previous / last
+        regular = (ratio > 1.4) & (ratio < 2.4)
+        growing = (ratio > 0) & (ratio < 1)
+        rest = np.where(regular, last / (ratio - 1), 0.0)
+        statistical = np.maximum(np.abs(last), 0.7 * np.abs(previous))
+        error = np.where(growing, 4 * np.abs(last), statistical)
+        return times[2] + rest, np.where(regular, np.abs(rest) / 3, error)

@@ -316,13 +316,19 @@ def test_a_wrong_model_of_ones_own_is_one_line(uq, write_study, folder):
     assert everything(folder) == ["small.toml"]
 
 
-@pytest.mark.parametrize("verb", [("schema",), ("models", "linear")], ids=["long", "short"])
+@pytest.mark.parametrize("verb", [("schema",), ("models", "linear"), ("init", "linear")])
 def test_a_reader_that_has_enough_is_no_error(verb):
     command = Path(sys.executable).with_name("uq")
     nobody, pipe = os.pipe()
     os.close(nobody)
+    buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     ended = subprocess.run(
-        [command, *verb], stdout=pipe, stderr=subprocess.PIPE, text=True, timeout=60
+        [command, *verb],
+        stdout=pipe,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=buffered,
+        timeout=60,
     )
     os.close(pipe)
     assert (ended.returncode, ended.stderr) == (1, "")

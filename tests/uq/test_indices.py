@@ -4,7 +4,8 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_output, with_status
+from computed import asking, computed, kinds, linear, study_of, with_output
+from SALib.analyze import pawn, rbd_fast
 from SALib.analyze import sobol as salib
 from scipy import stats
 
@@ -141,8 +142,9 @@ def test_constant_failed_and_missing_rows_are_refused_not_zero():
     assert found["y"]["ST"]["x4"]["value"] == pytest.approx(16 / 30, abs=0.1)
     # Outputs without indices do not count against those with.
     assert indices(ds)["groups_dropped"] == 0
-    with pytest.raises(InputError, match="rows of the design are missing"):
-        sensitivities(ds.isel(sample=slice(1, None)))
+    for rows in (slice(1, None), [0, 1, 2, 9, 10, 11]):
+        with pytest.raises(InputError, match="rows of the design are missing"):
+            sensitivities(ds.assign_attrs(replicates=1).isel(sample=rows))
     with pytest.raises(InputError, match="rows of the design are missing"):
         sensitivities(ds.isel(sample=np.r_[0:6, 6:12, 12:18, 18:23, 29]))
 
@@ -220,6 +222,13 @@ def test_censored_lives_have_no_rate_but_may_have_a_probability():
         assert found[name]["ST"]["x4"]["value"] > 0.2
 
 
+def test_rows_without_a_life_drop_their_groups_from_every_target():
+    ds = lives(lambda y: np.where(y > 9, np.nan, 1 / y), thresholds=[0.2])
+    lacking = np.isnan(ds["life"].values.reshape(-1, 6)).any(axis=1).sum()
+    for name in ("rate(life)", "P(life<0.2)"):
+        assert indices(ds)["outputs"][name]["groups_dropped"] == lacking > 0
+
+
 def test_an_event_that_never_or_always_happens_is_refused():
     found = indices(lives(lambda y: 1 + y, thresholds=[0.5, 100.0]))["outputs"]
     assert "same value" in found["P(life<0.5)"]["refused"]
@@ -266,6 +275,21 @@ def test_dummy_is_passed_by_one_input_in_twenty_that_plays_no_part(method, index
     assert stats.binomtest(sum(passed), len(passed), 0.05).pvalue > 0.01
 
 
+def test_given_data_values_are_those_of_salib():
+    ds = ishigami("monte-carlo", samples=300, replicates=1)
+    x, y = np.column_stack([ds[name].values for name in INPUTS]), ds["y"].values
+    problem = {"num_vars": 3, "names": list(INPUTS)}
+    fast = indices(ds, "rbd-fast")["outputs"]["y"]
+    assert values(fast, "S1") == pytest.approx(rbd_fast.analyze(problem, x, y, seed=1)["S1"])
+    assert values(indices(ds, "pawn")["outputs"]["y"], "pawn") == pytest.approx(
+        pawn.analyze(problem, x, y)["median"]
+    )
+    dummies = np.random.default_rng(0).random((300, DUMMIES))
+    problem = {"num_vars": DUMMIES, "names": [str(i) for i in range(DUMMIES)]}
+    largest = max(rbd_fast.analyze(problem, dummies, y, seed=1)["S1"])
+    assert fast["dummy"]["S1"] == pytest.approx(largest)
+
+
 def test_given_data_depends_on_nothing_but_the_rows():
     ds = ishigami("monte-carlo", samples=200, replicates=1)
     state = np.random.get_state()[1].copy()  # noqa: NPY002
@@ -294,7 +318,8 @@ def test_given_data_drops_rows_and_counts_them():
         assert found["rows_used"] == 200 - found["groups_dropped"]
         assert found["outputs"]["y"]["rows_used"] == found["rows_used"]
         sound = ds.isel(sample=~np.isnan(ds["y"].values))
-        assert indices(sound, method)["outputs"]["y"]["dummy"] == found["outputs"]["y"]["dummy"]
+        alone = indices(sound, method)["outputs"]["y"]
+        assert alone == found["outputs"]["y"] | {"groups_dropped": 0}
 
 
 def test_given_data_refuses_what_it_cannot_judge():
@@ -392,7 +417,3 @@ def test_all_failed_is_refused_everywhere():
             assert "refused" in found["outputs"]["y"]
             assert found["rows_used"] == 0
             assert np.isnan(uq.sensitivity(ds, method).get("S1", np.nan)).all()
-
-
-def test_uniform_is_what_the_helper_says():
-    assert UNIFORM["upper"] == 1.0 and with_status(linear(), 0, 3)["status"][0] == 3

@@ -116,6 +116,14 @@ def test_tolerance_counts_failed_rows_as_the_worst():
     assert described(failed)["tolerance"] == {"lower": y[1], "upper": y[-2], "rows_needed": 93}
 
 
+def test_tolerance_is_for_independent_rows_only():
+    asked = {"tolerance": {"coverage": 0.95, "confidence": 0.95}}
+    assert (
+        described(asking(linear("sobol", samples=64, replicates=8), **asked))["tolerance"] is None
+    )
+    assert described(asking(linear(samples=64), **asked))["tolerance"]["lower"] is not None
+
+
 # Lifetimes ---------------------------------------------------------------------------------------
 
 

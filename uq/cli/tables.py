@@ -116,8 +116,20 @@ def _ranked(table: Mapping[str, Any], dummy: Mapping[str, float]) -> Iterator[li
     """Yield one line per parameter, the most important first."""
     last = list(table.values())[-1]
     for label in sorted(last, key=lambda label: -(last[label]["value"] or 0.0)):
-        cells = ((number(one[label]["value"]), _interval(one[label])) for one in table.values())
+        cells = (
+            (_index(one[label], "value"), _index_interval(one[label])) for one in table.values()
+        )
         yield [label, *(text for pair in cells for text in pair)]
     if dummy:
-        cells = ((number(dummy[kind]), "") for kind in table)
+        cells = ((_index(dummy, kind), "") for kind in table)
         yield ["(an input without effect)", *(text for pair in cells for text in pair)]
+
+
+def _index(entry: Entry, key: str) -> str:
+    """Return an index to three decimals: names of inputs need the room of the others."""
+    return "-" if entry[key] is None else f"{entry[key]:.3f}"
+
+
+def _index_interval(entry: Entry) -> str:
+    ends = [_index(entry, end) for end in ("low", "high")]
+    return "" if ends == ["-", "-"] else " to ".join(ends)
