@@ -39,13 +39,11 @@ bench: $(TEST)
 clean:
 	rm -rf .venv
 
-.venv/bin/python:
+$(BASE): pyproject.toml constraints.txt
 	@echo "Making .venv and installing pinned packages (about two minutes, once) ..."
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo "Python 3.11 or newer is needed; try: make PYTHON=python3.11 $(MAKECMDGOALS)"; exit 1; }
 	@$(PYTHON) -m venv .venv
-
-$(BASE): pyproject.toml constraints.txt | .venv/bin/python
 	@$(PIP) -e .
 	@touch $@
 

@@ -9,10 +9,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.columns import censored_name
-from uq.contract import Status
 from uq.errors import InputError, nearest
 from uq.reading import read_study_text
-from uq.results import elements
+from uq.results import elements, failed
 from uq.study_file import AnalysisTable
 
 Floats = NDArray[np.float64]
@@ -133,7 +132,7 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
     InputError
         When the result has no such output.
     """
-    sound = ds["status"].values == Status.OK
+    unsound = failed(ds)
     for output in outputs:
         if output not in (known := output_names(ds)):
             raise InputError(f"no such output '{output}'{nearest(output, known)}")
@@ -162,7 +161,7 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
                 place,
                 np.where(lacking, np.nan, values),
                 censored,
-                lacking & ~sound,
+                lacking & unsound,
             )
 
 

@@ -54,14 +54,17 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
     Raises
     ------
     InputError
-        When the folder cannot be made.
+        When the folder cannot be made or written to.
     """
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{folder}: cannot make this folder: {error.strerror}") from None
-    return [path for name, figure in _figures(ds) for path in write(figure, folder / name)]
+    try:
+        return [path for name, figure in _figures(ds) for path in write(figure, folder / name)]
+    except OSError as error:
+        raise InputError(f"{folder}: cannot write a figure: {error.strerror}") from None
 
 
 def _figures(ds: xr.Dataset) -> Iterator[tuple[str, Figure]]:
@@ -186,8 +189,7 @@ def _bins(values: Floats) -> tuple[Floats, bool]:
         return np.array([0.0, 1.0]), False
     wide = is_wide(values)
     scaled = np.log10(values) if wide else values
-    spread = np.ptp(scaled)
-    count = len(np.histogram_bin_edges(scaled, "scott")) - 1 if spread > 0 else 1
+    count = len(np.histogram_bin_edges(scaled, "scott")) - 1
     edges = np.histogram_bin_edges(scaled, min(count, 60))
     return (10**edges if wide else edges), wide
 

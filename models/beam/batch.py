@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam import exact, lanes, response, wear
-from models.beam.modal import Array, Beams, beams
+from models.beam.modal import Array, beams
 from models.beam.parameters import Params, Rows, Settings
 from uq.contract import Status
 
@@ -63,16 +63,21 @@ def simulate_rows(p: Rows, settings: Settings) -> Simulated:
     Returns
     -------
     Simulated
+        NaN for a beam that takes too many steps or events in a period.
     """
     b = beams(p, settings)
     propagator = PROPAGATORS[settings.propagator]
-    parts, order = [], []
+    n, depths = len(p.length), len(settings.depths)
+    whole = Simulated(
+        response.Response.nothing(n), wear.Lives.nothing(n, depths), b.frequency[:, 0]
+    )
     for rows, system in propagator.groups(b, settings):
         q = Params._make(field[rows] for field in p)
-        parts.append(_simulate_group(propagator, system, q, b.take(rows), settings))
-        order.append(rows)
-    back = np.argsort(np.concatenate(order))
-    return _take(_join(parts), back)
+        settled, lives = _simulate_group(propagator, system, q, settings)
+        fields: tuple[Any, ...] = (*whole.response, *whole.lives)
+        for field, part in zip(fields, (*settled, *lives), strict=True):
+            field[rows] = part
+    return whole
 
 
 def initial_gaps(p: Rows) -> Array:
@@ -81,8 +86,8 @@ def initial_gaps(p: Rows) -> Array:
 
 
 def _simulate_group(
-    propagator: ModuleType, system: Any, p: Rows, b: Beams, settings: Settings
-) -> Simulated:
+    propagator: ModuleType, system: Any, p: Rows, settings: Settings
+) -> tuple[response.Response, wear.Lives]:
     gaps = initial_gaps(p)
     x0 = p.initial_gap
     state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
@@ -92,7 +97,7 @@ def _simulate_group(
     lives = wear.lives(
         propagator, system, state, gaps, settled.work, share, growths, settings.accuracy
     )
-    return Simulated(settled, lives, b.frequency[:, 0])
+    return settled, lives
 
 
 def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
@@ -100,17 +105,6 @@ def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
         response.Response._make(a[rows] for a in s.response),
         wear.Lives._make(a[rows] for a in s.lives),
         s.fundamental[rows],
-    )
-
-
-def _join(parts: list[Simulated]) -> Simulated:
-    def each(values: list[Any]) -> list[Any]:
-        return [np.concatenate(columns) for columns in zip(*values, strict=True)]
-
-    return Simulated(
-        response.Response._make(each([s.response for s in parts])),
-        wear.Lives._make(each([s.lives for s in parts])),
-        np.concatenate([s.fundamental for s in parts]),
     )
 
 
@@ -126,7 +120,9 @@ def _in_units(
     time, error = s.lives.time * to_second, s.lives.error * to_second
     reached = s.lives.reached & (time <= settings.horizon)
     never = np.isinf(s.lives.time)
-    censored = ~reached & ~never
+    # A beam that no propagator could follow has NaN for its work: nothing is known of its life.
+    lost = np.asarray(np.isnan(s.response.work).any(axis=1), bool)
+    censored = ~reached & ~never & ~lost[:, None, None]
     time = np.where(censored, np.minimum(time, settings.horizon), time)
     error = np.where(reached, error, np.nan)
 
@@ -161,8 +157,6 @@ def _in_units(
         "period": s.response.period,
         "fundamental_frequency": s.fundamental / (2 * np.pi),
     }
-    # The exact propagator gives NaN for a beam that takes too many events in one period.
-    lost = np.isnan(work).any(axis=1)
     outputs["regime"] = np.where(lost, np.int8(-1), s.response.regime)
     unfinished = (censored & (time < settings.horizon)).any(axis=(1, 2))
     status = np.where(lost | unfinished, Status.OUT_OF_BUDGET, Status.OK).astype(np.int8)

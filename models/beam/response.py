@@ -48,6 +48,12 @@ class Response(NamedTuple):
     regime: NDArray[np.int8]
     period: Array
 
+    @staticmethod
+    def nothing(n: int) -> "Response":
+        """Return what is known of n beams before they are run."""
+        regime = np.full(n, APERIODIC, np.int8)
+        return Response._make([*np.full((3, n, 2), np.nan), regime, np.full(n, np.nan)])
+
 
 def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Response:
     """Run n beams until they have settled.

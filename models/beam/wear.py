@@ -40,16 +40,13 @@ class Run(NamedTuple):
     ended : ndarray of bool, shape (n,)
         Whether wear has stopped for good: what was not reached never will be.
     ratio : ndarray, shape (n, D)
-        Smaller gap over the larger when the first site reaches the growth, NaN if never.
-    periods : ndarray, shape (n,)
-        Forcing periods simulated.
+        Gap of the other site over that of the first to reach the growth, then; NaN if never.
     """
 
     time: Array
     reached: NDArray[np.bool_]
     ended: NDArray[np.bool_]
     ratio: Array
-    periods: NDArray[np.int64]
 
 
 def run(
@@ -93,7 +90,6 @@ def run(
         np.zeros((n, 2, depths), bool),
         np.zeros(n, bool),
         np.full((n, depths), np.nan),
-        np.zeros(n, np.int64),
     )
     state, now = state.copy(), gaps.copy()
     look = periods // LOOKS
@@ -117,7 +113,6 @@ def run(
         state[left], now[left] = x, here
         _note_crossings(out, left, record.work, acceleration, share, before, gaps, growths, clock)
         clock[left] += acceleration * look
-        out.periods[left] += look
         mean = record.work.mean(axis=1) * share[left]
         rate[left] += _MEMORY * (mean - rate[left])
         quiet = (record.work == 0).all(axis=(1, 2))
@@ -157,22 +152,23 @@ def _note_crossings(
     """Note when, in the periods just simulated, a growth was reached; linear within a period."""
     steps = (acceleration[:, None] * share[rows])[:, None, :] * work
     grown = np.cumsum(np.concatenate([(before - gaps[rows])[:, None], steps], axis=1), axis=1)
-    for site in range(2):
-        for depth in range(growths.shape[1]):
-            goal = growths[rows, depth]
+    for depth in range(growths.shape[1]):
+        goal = growths[rows, depth]
+        earliest = np.where(out.reached[rows, :, depth].any(axis=1), -np.inf, np.inf)
+        for site in range(2):
             new = ~out.reached[rows, site, depth] & (grown[:, -1, site] >= goal)
-            if not new.any():
-                continue
             at, path = rows[new], grown[new]
             j = (path[:, :, site] < goal[new, None]).sum(axis=1) - 1
             i = np.arange(len(j))
             low, high = path[i, j, site], path[i, j + 1, site]
             part = (goal[new] - low) / (high - low)
-            out.time[at, site, depth] = clock[at] + acceleration[new] * (j + part)
+            when = acceleration[new] * (j + part)
+            out.time[at, site, depth] = clock[at] + when
             out.reached[at, site, depth] = True
-            first = ~out.reached[at, 1 - site, depth]
             both = gaps[at] + path[i, j] + part[:, None] * (path[i, j + 1] - path[i, j])
-            out.ratio[at[first], depth] = (both.min(axis=1) / both.max(axis=1))[first]
+            first = when < earliest[new]
+            out.ratio[at[first], depth] = (both[:, 1 - site] / both[:, site])[first]
+            earliest[new] = np.minimum(earliest[new], when)
 
 
 class Lives(NamedTuple):
@@ -188,15 +184,19 @@ class Lives(NamedTuple):
         False where the time is infinite, or only the time simulated.
     ratio : ndarray, shape (n, D)
         As in `Run`.
-    periods : ndarray, shape (n,)
-        Forcing periods simulated.
     """
 
     time: Array
     error: Array
     reached: NDArray[np.bool_]
     ratio: Array
-    periods: NDArray[np.int64]
+
+    @staticmethod
+    def nothing(n: int, depths: int) -> "Lives":
+        """Return what is known of n beams before they are run."""
+        unknown = np.full((2, n, 3, depths), np.nan)
+        ratio = np.full((n, depths), np.nan)
+        return Lives._make([*unknown, np.zeros((n, 3, depths), bool), ratio])
 
 
 def lives(
@@ -224,15 +224,9 @@ def lives(
     Lives
     """
     n, depths = growths.shape
-    out = Lives(
-        np.zeros((n, 3, depths)),
-        np.full((n, 3, depths), np.nan),
-        np.zeros((n, 3, depths), bool),
-        np.zeros((n, depths)),
-        np.zeros(n, np.int64),
-    )
+    out = Lives.nothing(n, depths)
     levels = max(3, 1 + int(math.log2(LONGEST / (SHORTEST * accuracy))))
-    times = np.empty((levels, n, 3, depths))
+    times = np.empty((levels, n, 2, depths))
     left = np.arange(n)
     for level in range(levels):
         one = run(
@@ -245,22 +239,29 @@ def lives(
             growths[left],
             SHORTEST * 2**level,
         )
-        times[level, left, :2] = one.time
-        times[level, left, 2] = one.time.min(axis=1)
-        before, reached = out.reached[left], np.empty((len(left), 3, depths), bool)
-        reached[:, :2], reached[:, 2] = one.reached, one.reached.any(axis=1)
-        out.reached[left], out.ratio[left] = reached, one.ratio
-        out.periods[left] += one.periods
+        times[level, left] = one.time
+        before, out.reached[left, :2] = out.reached[left, :2], one.reached
+        out.ratio[left] = one.ratio
         if level < 2:
             continue
         time, error = extrapolate(times[level - 2 : level + 1, left])
-        out.time[left] = np.where(reached, time, times[level, left])
-        out.error[left] = np.where(reached, np.where(before, error, time), np.nan)
-        good = ((reached == before) & (~reached | (out.error[left] <= accuracy * time)))[:, 2:]
+        # A life that one of the runs did not reach is known no better than by its own size.
+        error = np.where(before & np.isfinite(error), np.minimum(error, time), time)
+        out.time[left, :2] = np.where(one.reached, time, one.time)
+        out.error[left, :2] = np.where(one.reached, error, np.nan)
+        good = (one.reached == before) & (~one.reached | (error <= accuracy * time))
         left = left[~good.all(axis=(1, 2))]
         if not len(left):
             break
+    _take_the_earlier(out)
     return out
+
+
+def _take_the_earlier(out: Lives) -> None:
+    sites = np.where(out.reached[:, :2], out.time[:, :2], np.inf)
+    earlier = sites.argmin(axis=1)[:, None]
+    for field in (out.time, out.error, out.reached):
+        field[:, 2] = np.take_along_axis(field[:, :2], earlier, axis=1)[:, 0]
 
 
 def extrapolate(times: Array) -> tuple[Array, Array]:

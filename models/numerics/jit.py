@@ -10,7 +10,7 @@ import os
 import sys
 import time
 from collections.abc import Callable
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import rmtree
 from tempfile import gettempdir
@@ -66,8 +66,9 @@ def _cache_folder() -> Path:
         folder.mkdir(parents=True, exist_ok=True)
     oldest = time.time() - _KEEP_SECONDS
     for other in base.iterdir():
-        if other.stat().st_mtime < oldest:
-            rmtree(other, ignore_errors=True)
+        with suppress(FileNotFoundError):  # another process may be forgetting it too
+            if other.stat().st_mtime < oldest:
+                rmtree(other, ignore_errors=True)
     return folder
 
 

@@ -42,11 +42,12 @@ def simulate(
         from uq.plots import trajectory
 
         try:
+            plot.parent.mkdir(parents=True, exist_ok=True)
             trajectory(ds).savefig(plot)
-        except ValueError as error:  # a format that matplotlib does not know
-            raise InputError(f"{plot}: {error}") from None
+        except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
+            raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None
     print_json(as_json(model, ds)) if json else _show(model, ds)
-    return 0 if ds["status"].item() in (Status.OK, Status.OUT_OF_BUDGET) else 1
+    return 1 if results.failed(ds.expand_dims("sample")).any() else 0
 
 
 def as_json(model: Model, ds: xr.Dataset) -> dict[str, Any]:

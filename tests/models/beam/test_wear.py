@@ -114,6 +114,41 @@ def test_beyond_the_horizon_a_life_is_censored():
     assert np.array_equal(outputs["linear_time_to_depth"], free["linear_time_to_depth"])
 
 
+def test_the_first_time_is_that_of_the_earlier_site_with_its_error():
+    rng = np.random.default_rng(8)
+    x = rows(24, contact_stiffness=rng.uniform(8e3, 2.2e4, 24))
+    outputs, _ = compute(x, depths=(DEPTH / 2, DEPTH))
+    sites, first = outputs["time_to_depth"], outputs["first_time_to_depth"]
+    assert np.array_equal(first, sites.min(axis=1))
+    error = np.take_along_axis(
+        outputs["time_to_depth_error"], sites.argmin(axis=1)[:, None], axis=1
+    )[:, 0]
+    assert np.array_equal(outputs["first_time_to_depth_error"], error)
+    assert (error > 0).all() and np.isfinite(outputs["time_to_depth_error"]).all()
+
+
+def test_the_gap_ratio_is_that_of_the_less_worn_site_over_the_more_worn_one():
+    # the left gap starts at 0.75, the right one at 1.25, and the left site wears twice as fast
+    x = rows(gap_asymmetry=0.5, wear_coefficient_ratio=2.0, forcing_frequency=54.797)
+    outputs, _ = compute(x, depths=(0.2 * DEPTH,))
+    right, left = outputs["time_to_depth"][0, :, 0]
+    assert left < right
+    assert 1.25 / 0.95 < outputs["gap_ratio"][0, 0] < 1.45 / 0.95
+
+
+@pytest.mark.parametrize("settings", [{}, {"steps_per_period": 16}], ids=["ladder", "set"])
+def test_contact_too_stiff_for_the_steps_is_said_and_harms_no_other_row(settings):
+    stiff = {"contact_stiffness": [1e7, 1e3], "forcing_frequency": [2.0, 54.797]}
+    outputs, status = compute(rows(2, mass_damping=30.0, **stiff), **settings)
+    assert status.tolist() == [Status.OUT_OF_BUDGET, Status.OK]
+    assert outputs["regime"][0] == -1
+    for name in ("work_rate", "time_to_depth", "first_time_to_depth", "linear_time_to_depth"):
+        assert np.isnan(outputs[name][0]).all()
+        assert not np.isnan(outputs[name][1]).any()
+    assert not outputs["first_time_to_depth_censored"].any()
+    assert outputs["fundamental_frequency"][0] > 0
+
+
 def test_a_life_in_one_row_does_not_depend_on_the_others():
     rng = np.random.default_rng(3)
     x = rows(20, force_amplitude=rng.uniform(5, 7, 20), contact_stiffness=rng.uniform(9e3, 2e4, 20))
