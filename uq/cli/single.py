@@ -47,7 +47,7 @@ def simulate(
         except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
             raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None
     print_json(as_json(model, ds)) if json else _show(model, ds)
-    return 1 if results.failed(ds.expand_dims("sample")).any() else 0
+    return 1 if results.failed(ds).any() else 0
 
 
 def as_json(model: Model, ds: xr.Dataset) -> dict[str, Any]:
