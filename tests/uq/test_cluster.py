@@ -85,6 +85,7 @@ def test_an_existing_cluster_is_used(write_study, tidy):
     assert len(set(ds["y"].values)) == 2
 
 
+@pytest.mark.slow
 def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
     monkeypatch.setattr(cluster, "_REMOTE_SECONDS", 1)
     study = load_study(write_study())

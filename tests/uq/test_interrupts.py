@@ -142,6 +142,7 @@ def test_a_request_to_terminate_is_obeyed_too(started):
     assert err.startswith("interrupted")
 
 
+@pytest.mark.slow
 def test_in_a_script_it_is_the_exception_of_python(started):
     program = (
         "import uq\n"
