@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from uq.columns import censored_name
 from uq.contract import Model, Status
-from uq.designs import DESIGNS
+from uq.designs import DESIGNS, block_names
 from uq.errors import InputError
 from uq.provenance import provenance
 
@@ -270,12 +270,8 @@ def _flags(labels: Sequence[str], dtype: type[np.integer[Any]], first: int = 0) 
 
 
 def _block_labels(study: "Study") -> list[str]:
-    if not DESIGNS[study.design.method].crossed:
-        return ["sample"]
-    mixed = [f"AB_{name}" for name in study.uncertain]
-    if study.design.second_order:
-        mixed += [f"BA_{name}" for name in study.uncertain]
-    return ["A", *mixed, "B"]
+    design = study.design
+    return list(block_names(DESIGNS[design.method], tuple(study.uncertain), design.second_order))
 
 
 def _attributes(study: "Study") -> dict[str, Any]:
