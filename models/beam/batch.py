@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam import exact, lanes, response, wear
+from models.beam import exact, lanes, response
+from models.beam.lives import Lives, find_lives
 from models.beam.modal import Array, beams
 from models.beam.parameters import Params, Rows, Settings
 from uq.contract import Status
@@ -21,7 +22,7 @@ class Simulated(NamedTuple):
     """The nondimensional results of n beams."""
 
     response: response.Response
-    lives: wear.Lives
+    lives: Lives
     fundamental: Array
 
 
@@ -68,9 +69,7 @@ def simulate_rows(p: Rows, settings: Settings) -> Simulated:
     b = beams(p, settings)
     propagator = PROPAGATORS[settings.propagator]
     n, depths = len(p.length), len(settings.depths)
-    whole = Simulated(
-        response.Response.nothing(n), wear.Lives.nothing(n, depths), b.frequency[:, 0]
-    )
+    whole = Simulated(response.Response.nothing(n), Lives.nothing(n, depths), b.frequency[:, 0])
     for rows, system in propagator.groups(b, settings):
         q = Params._make(field[rows] for field in p)
         settled, lives = _simulate_group(propagator, system, q, settings)
@@ -87,14 +86,14 @@ def initial_gaps(p: Rows) -> Array:
 
 def _simulate_group(
     propagator: ModuleType, system: Any, p: Rows, settings: Settings
-) -> tuple[response.Response, wear.Lives]:
+) -> tuple[response.Response, Lives]:
     gaps = initial_gaps(p)
     x0 = p.initial_gap
     state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
     settled = response.settle(propagator, system, state, gaps)
     share = np.stack([np.ones_like(x0), p.wear_coefficient_ratio], axis=1)
     growths = np.asarray(settings.depths) / x0[:, None]
-    lives = wear.lives(
+    lives = find_lives(
         propagator, system, state, gaps, settled.work, share, growths, settings.accuracy
     )
     return settled, lives
@@ -103,7 +102,7 @@ def _simulate_group(
 def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
     return Simulated(
         response.Response._make(a[rows] for a in s.response),
-        wear.Lives._make(a[rows] for a in s.lives),
+        Lives._make(a[rows] for a in s.lives),
         s.fundamental[rows],
     )
 

@@ -44,12 +44,12 @@ class System(NamedTuple):
     Attributes
     ----------
     modes : ndarray, shape (n, 4, m)
-        t, d, alpha, beta of each mode.
-    begin : ndarray, shape (n, 2, m)
-        The displacement after one step per unit of displacement and of velocity.
+        t, d, alpha, beta of the m lowest modes; zero for one that follows the contact statically.
+    begin : ndarray, shape (n, 3, m)
+        The displacement after one step per unit of displacement and of velocity, and 1; or zeros.
     sigma : ndarray, shape (n,)
         Displacement within the step per unit of its final penetration, negative.
-    modal : ndarray, shape (n, m), complex
+    modal : ndarray, shape (n, all modes), complex
         Steady amplitude of each mode.
     forcing : ndarray, shape (n,)
         [rad s-1]
@@ -117,12 +117,34 @@ def _mode_step(w, d, h):
 
 
 @kernel
+def _is_static(w, d, h):
+    """Tell a mode too fast for a force sampled at steps of h: its slower pole is beyond Nyquist."""
+    pole = w if d < w else w * (w / (d + np.sqrt(d * d - w * w)))
+    return pole * h > np.pi
+
+
+@kernel
+def _compliance(frequency, decay, gain, h):
+    """Return sigma of one beam: the displacement within a step per unit of final penetration."""
+    total = 0.0
+    for i in range(frequency.size):
+        w, d = frequency[i], decay[i]
+        if _is_static(w, d, h):
+            total += gain[i] / (w * w)
+        else:
+            total += gain[i] * _mode_step(w, d, h)[6]
+    return total
+
+
+@kernel
 def _prepare(forcing, frequency, decay, gain, steps, modes, begin, sigma):
     for n in range(frequency.shape[0]):
         h = 2 * np.pi / (forcing[n] * steps)
-        total = 0.0
+        sigma[n] = _compliance(frequency[n], decay[n], gain[n], h)
         for i in range(frequency.shape[1]):
             w, d, b = frequency[n, i], decay[n, i], gain[n, i]
+            if _is_static(w, d, h):
+                continue
             p11, p12, p21, p22, a1, a2, b1, b2 = _mode_step(w, d, h)
             determinant = np.exp(-2 * d * h)
             modes[n, 0, i] = p11 + p22
@@ -131,8 +153,7 @@ def _prepare(forcing, frequency, decay, gain, steps, modes, begin, sigma):
             modes[n, 3, i] = -b * (p22 * a1 - p12 * a2 + determinant * b1)
             begin[n, 0, i] = p11
             begin[n, 1, i] = p12 / w
-            total += b * b1
-        sigma[n] = total
+            begin[n, 2, i] = 1.0
 
 
 @kernel
@@ -140,9 +161,7 @@ def _choose_steps(forcing, frequency, decay, gain, steps):
     for n in range(frequency.shape[0]):
         for candidate in LADDER:
             h = 2 * np.pi / (forcing[n] * candidate)
-            sigma = 0.0
-            for i in range(frequency.shape[1]):
-                sigma += gain[n, i] * _mode_step(frequency[n, i], decay[n, i], h)[6]
+            sigma = _compliance(frequency[n], decay[n], gain[n], h)
             steps[n] = candidate
             if abs(sigma) <= COMPLIANCE:
                 break
@@ -175,12 +194,11 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     for count in np.unique(steps):
         rows = np.flatnonzero(steps == count)
         b = beams.take(rows)
-        modes, begin, sigma = (
-            np.empty((len(rows), 4, m)),
-            np.empty((len(rows), 2, m)),
-            gain[rows, 0],
-        )
+        modes, begin = np.zeros((len(rows), 4, m)), np.zeros((len(rows), 3, m))
+        sigma = np.empty(len(rows))
         _prepare(b.forcing, b.frequency, b.decay, gain[rows], int(count), modes, begin, sigma)
+        last = 1 + np.flatnonzero(begin[:, 2].any(axis=0)).max(initial=0)
+        modes, begin = modes[:, :, :last], begin[:, :, :last]
         system = System(modes, begin, sigma, steady_response(b), b.forcing, int(count))
         sound = np.flatnonzero(np.abs(sigma) <= UNSTABLE)
         if len(sound):
@@ -203,14 +221,16 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
     ndarray, shape (n, 2 m + 3)
         y and r of each mode, then penetration, displacement and the displacement a step before.
     """
-    n, m = system.modal.shape
-    z = -system.modal.real
-    v = system.modal.imag * system.forcing[:, None]
+    n, _, m = system.modes.shape
+    to_displacement, to_velocity, moving = system.begin.transpose(1, 0, 2)
+    modal = system.modal[:, :m]
+    z = -modal.real * moving
+    v = modal.imag * system.forcing[:, None]
     z[:, 0] += displacement
     v[:, 0] += velocity
     state = np.zeros((n, 2 * m + 3))
     state[:, :m] = z
-    state[:, m : 2 * m] = system.begin[:, 0] * z + system.begin[:, 1] * v - system.modes[:, 0] * z
+    state[:, m : 2 * m] = to_displacement * z + to_velocity * v - system.modes[:, 0] * z
     state[:, -2] = displacement
     state[:, -1] = displacement
     return state

@@ -1,16 +1,12 @@
-"""Lifetimes: the gaps grow while the beam rattles, only many times faster than in life.
+"""An accelerated life: the gaps grow while the beam rattles, only many times faster than in life.
 
 Archard's law with impact work (eqs 5, 9 to 12 of Knudsen & Massih 2002) makes a gap grow by a
 constant times the work done on its site. Life lasts some 1e9 forcing periods; with the wear
 coefficient multiplied by an acceleration K it takes N periods, and the life is K times as long as
 what was simulated. K follows the running work-rate, so that the gap which grows faster grows by
 the same amount per period all along: N is known beforehand, whatever the work-rate does.
-
-The limit of infinitely slow wear is what a lifetime means. Each run lasts twice as long as the one
-before and is nearer to it; how the differences fall tells how near: see `extrapolate`.
 """
 
-import math
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -18,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.modal import Array
+from models.numerics.jit import kernel
 
-SHORTEST = 64  # N of the first run; each further one lasts twice as long
-LONGEST = 660  # over the accuracy: N of the last run at most
 LOOKS = 32  # changes of the acceleration in N periods
 OVERTIME = 4  # a run may last this many times N periods
 _MEMORY = 0.25  # weight of the newest look in the running work-rate
@@ -47,6 +42,34 @@ class Run(NamedTuple):
     reached: NDArray[np.bool_]
     ended: NDArray[np.bool_]
     ratio: Array
+
+
+class _Life(NamedTuple):
+    """What `_pace` and `_note` read and keep of each beam, beside the outcome.
+
+    Attributes
+    ----------
+    gaps, share, growths : ndarray
+        As in `run`.
+    reach : ndarray, shape (n,)
+        Amplitude of the tip without contact [X0].
+    first, rate : ndarray, shape (n,), (n, 2)
+        Wear per period at the beginning, and the running one of each site.
+    grown : ndarray, shape (n, 2)
+        Growth of each gap so far [X0].
+    clock, silence : ndarray, shape (n,)
+        Accelerated time, and periods since the last contact.
+    """
+
+    gaps: Array
+    share: Array
+    growths: Array
+    reach: Array
+    first: Array
+    rate: Array
+    grown: Array
+    clock: Array
+    silence: NDArray[np.int64]
 
 
 def run(
@@ -91,34 +114,20 @@ def run(
         np.zeros(n, bool),
         np.full((n, depths), np.nan),
     )
-    state, now = state.copy(), gaps.copy()
-    look = periods // LOOKS
-    head_start = growths[:, 0] / 2
-    pace = np.log1p(growths[:, -1] / head_start) / periods
     rate = work * share
-    first = rate.max(axis=1)
-    silence = np.zeros(n, np.int64)
-    clock = np.zeros(n)
     reach = np.abs(system.modal.sum(axis=1))
-    left = np.arange(n)
+    clock, grown, silence = np.zeros(n), np.zeros((n, 2)), np.zeros(n, np.int64)
+    life = _Life(gaps, share, growths, reach, rate.max(axis=1), rate, grown, clock, silence)
+    left, state, here = np.arange(n), state.copy(), gaps.copy()
     for _ in range(LOOKS * OVERTIME):
-        control = np.where(out.reached[left, :, -1], 0.0, rate[left]).max(axis=1)
-        before, here, x = now[left], now[left], state[left]
-        grown = (here - gaps[left]).max(axis=1)
-        step = pace[left] * (grown + head_start[left])
-        acceleration = np.divide(step, control, out=np.zeros_like(step), where=control > 0)
-        record = propagator.advance(
-            system.take(left), x, here, acceleration[:, None] * share[left], look
-        )
-        state[left], now[left] = x, here
-        _note_crossings(out, left, record.work, acceleration, share, before, gaps, growths, clock)
-        clock[left] += acceleration * look
-        mean = record.work.mean(axis=1) * share[left]
-        rate[left] += _MEMORY * (mean - rate[left])
-        quiet = (record.work == 0).all(axis=(1, 2))
-        silence[left] = np.where(quiet, silence[left] + look, 0)
-        out.ended[left] = _has_ended(silence[left], rate[left], first[left], reach[left], here)
-        left = left[~(out.ended[left] | out.reached[left, :, -1].all(axis=1))]
+        acceleration, growth = np.empty(len(left)), np.empty((len(left), 2))
+        _pace(left, life, out.reached, periods, acceleration, growth)
+        record = propagator.advance(system, state, here, growth, periods // LOOKS)
+        _note(left, life, out, record.work, acceleration, growth)
+        alive = ~(out.ended[left] | out.reached[left, :, -1].all(axis=1))
+        if not alive.all():
+            kept = np.flatnonzero(alive)
+            left, state, here, system = left[kept], state[kept], here[kept], system.take(kept)
         if not len(left):
             break
     missing = ~out.reached
@@ -127,168 +136,75 @@ def run(
     return out
 
 
-def _has_ended(silence: Any, rate: Array, first: Array, reach: Array, gaps: Array) -> Any:
+@kernel
+def _pace(left, life, reached, periods, acceleration, growth):
+    """Choose accelerations so that the gap that grows faster grows like (1 + a)^t, from t = 0."""
+    last = life.growths.shape[1] - 1
+    for j in range(left.size):
+        i = left[j]
+        head_start = life.growths[i, 0] / 2
+        pace = np.log1p(life.growths[i, last] / head_start) / periods
+        control, grown = 0.0, 0.0
+        for site in range(2):
+            if not reached[i, site, last]:
+                control = max(control, life.rate[i, site])
+            grown = max(grown, life.grown[i, site])
+        acceleration[j] = pace * (grown + head_start) / control if control > 0 else 0.0
+        for site in range(2):
+            growth[j, site] = acceleration[j] * life.share[i, site]
+
+
+@kernel
+def _note(left, life, out, work, acceleration, growth):
+    """Take in the periods just simulated: growths reached, running work-rates, the end of wear."""
+    periods = work.shape[1]
+    for j in range(left.size):
+        i = left[j]
+        total = (0.0, 0.0)
+        for period in range(periods):
+            done = (work[j, period, 0], work[j, period, 1])
+            step = (growth[j, 0] * done[0], growth[j, 1] * done[1])
+            when = life.clock[i] + acceleration[j] * period
+            _note_crossings(i, life, out, step, when, acceleration[j])
+            total = (total[0] + done[0], total[1] + done[1])
+            for site in range(2):
+                life.grown[i, site] += step[site]
+        life.clock[i] += acceleration[j] * periods
+        for site in range(2):
+            rate = total[site] * life.share[i, site] / periods
+            life.rate[i, site] += _MEMORY * (rate - life.rate[i, site])
+        life.silence[i] = 0 if total[0] + total[1] > 0 else life.silence[i] + periods
+        out.ended[i] = _has_ended(i, life)
+
+
+@kernel
+def _note_crossings(i, life, out, step, when, acceleration):
+    """Note which growths beam i reaches in one period, and when; linear within it."""
+    for depth in range(life.growths.shape[1]):
+        goal = life.growths[i, depth]
+        first_of_all = not (out.reached[i, 0, depth] or out.reached[i, 1, depth])
+        earliest = np.inf
+        for site in range(2):
+            before = life.grown[i, site]
+            if out.reached[i, site, depth] or before + step[site] < goal:
+                continue
+            part = (goal - before) / step[site]
+            out.time[i, site, depth] = when + acceleration * part
+            out.reached[i, site, depth] = True
+            if first_of_all and part < earliest:
+                earliest = part
+                other = 1 - site
+                slower = life.gaps[i, other] + life.grown[i, other] + part * step[other]
+                out.ratio[i, depth] = slower / (life.gaps[i, site] + goal)
+
+
+@kernel
+def _has_ended(i, life):
     """Tell where no contact is left, or so little that no greater depth is ever reached.
 
     A gap that grows towards the free amplitude comes near it like 1/t, not in finite time.
     """
-    narrow = gaps.min(axis=1)
-    silent = (silence >= _SILENCE) & (reach < narrow)
-    fading = (rate.max(axis=1) <= _EXTINCT * first) & (reach < 1.01 * narrow)
-    return silent | fading
-
-
-def _note_crossings(
-    out: Run,
-    rows: Any,
-    work: Array,
-    acceleration: Array,
-    share: Array,
-    before: Array,
-    gaps: Array,
-    growths: Array,
-    clock: Array,
-) -> None:
-    """Note when, in the periods just simulated, a growth was reached; linear within a period."""
-    steps = (acceleration[:, None] * share[rows])[:, None, :] * work
-    grown = np.cumsum(np.concatenate([(before - gaps[rows])[:, None], steps], axis=1), axis=1)
-    for depth in range(growths.shape[1]):
-        goal = growths[rows, depth]
-        earliest = np.where(out.reached[rows, :, depth].any(axis=1), -np.inf, np.inf)
-        for site in range(2):
-            new = ~out.reached[rows, site, depth] & (grown[:, -1, site] >= goal)
-            at, path = rows[new], grown[new]
-            j = (path[:, :, site] < goal[new, None]).sum(axis=1) - 1
-            i = np.arange(len(j))
-            low, high = path[i, j, site], path[i, j + 1, site]
-            part = (goal[new] - low) / (high - low)
-            when = acceleration[new] * (j + part)
-            out.time[at, site, depth] = clock[at] + when
-            out.reached[at, site, depth] = True
-            both = gaps[at] + path[i, j] + part[:, None] * (path[i, j + 1] - path[i, j])
-            first = when < earliest[new]
-            out.ratio[at[first], depth] = (both[:, 1 - site] / both[:, site])[first]
-            earliest[new] = np.minimum(earliest[new], when)
-
-
-class Lives(NamedTuple):
-    """Lifetimes of n beams in the limit of slow wear, with their numerical errors.
-
-    Attributes
-    ----------
-    time : ndarray, shape (n, 3, D)
-        Right site, left site and the earlier of the two, in the unit of `Run.time`.
-    error : ndarray, shape (n, 3, D)
-        Estimated numerical error, NaN where the growth is not reached.
-    reached : ndarray of bool, shape (n, 3, D)
-        False where the time is infinite, or only the time simulated.
-    ratio : ndarray, shape (n, D)
-        As in `Run`.
-    """
-
-    time: Array
-    error: Array
-    reached: NDArray[np.bool_]
-    ratio: Array
-
-    @staticmethod
-    def nothing(n: int, depths: int) -> "Lives":
-        """Return what is known of n beams before they are run."""
-        unknown = np.full((2, n, 3, depths), np.nan)
-        ratio = np.full((n, depths), np.nan)
-        return Lives._make([*unknown, np.zeros((n, 3, depths), bool), ratio])
-
-
-def lives(
-    propagator: ModuleType,
-    system: Any,
-    state: Array,
-    gaps: Array,
-    work: Array,
-    share: Array,
-    growths: Array,
-    accuracy: float,
-) -> Lives:
-    """Repeat the accelerated life ever more slowly until it no longer depends on the pace.
-
-    Parameters
-    ----------
-    propagator, system, state, gaps, work, share, growths
-        As in `run`.
-    accuracy : float
-        Relative error at which a beam's lives are good enough. It also sets the longest run: where
-        that does not suffice, the error says so.
-
-    Returns
-    -------
-    Lives
-    """
-    n, depths = growths.shape
-    out = Lives.nothing(n, depths)
-    levels = max(3, 1 + int(math.log2(LONGEST / (SHORTEST * accuracy))))
-    times = np.empty((levels, n, 2, depths))
-    left = np.arange(n)
-    for level in range(levels):
-        one = run(
-            propagator,
-            system.take(left),
-            state[left],
-            gaps[left],
-            work[left],
-            share[left],
-            growths[left],
-            SHORTEST * 2**level,
-        )
-        times[level, left] = one.time
-        before, out.reached[left, :2] = out.reached[left, :2], one.reached
-        out.ratio[left] = one.ratio
-        if level < 2:
-            continue
-        time, error = extrapolate(times[level - 2 : level + 1, left])
-        # A life that one of the runs did not reach is known no better than by its own size.
-        error = np.where(before & np.isfinite(error), np.minimum(error, time), time)
-        out.time[left, :2] = np.where(one.reached, time, one.time)
-        out.error[left, :2] = np.where(one.reached, error, np.nan)
-        good = (one.reached == before) & (~one.reached | (error <= accuracy * time))
-        left = left[~good.all(axis=(1, 2))]
-        if not len(left):
-            break
-    _take_the_earlier(out)
-    return out
-
-
-def _take_the_earlier(out: Lives) -> None:
-    sites = np.where(out.reached[:, :2], out.time[:, :2], np.inf)
-    earlier = sites.argmin(axis=1)[:, None]
-    for field in (out.time, out.error, out.reached):
-        field[:, 2] = np.take_along_axis(field[:, :2], earlier, axis=1)[:, 0]
-
-
-def extrapolate(times: Array) -> tuple[Array, Array]:
-    """Estimate the life at infinitely slow wear from lives at N, 2 N and 4 N periods.
-
-    Where the response follows the gaps smoothly it lags behind by a time that does not depend on
-    the pace, so that the error falls like 1/N; through a change of branch (a slow passage) it
-    falls like N^(-2/3). In both cases the differences of the lives are a geometric series of
-    ratio 2 or 1.6, whose rest is added; a third of that rest is kept as the error. Differences
-    that grow say that a change is not resolved yet, and their error is several times the last;
-    any other sequence is that of an aperiodic response, whose error is statistical.
-
-    Parameters
-    ----------
-    times : ndarray, shape (3, ...)
-        Lives, the slowest wear last.
-
-    Returns
-    -------
-    time, error : ndarray, shape (...)
-    """
-    with np.errstate(invalid="ignore", divide="ignore"):
-        previous, last = times[1] - times[0], times[2] - times[1]
-        ratio = previous / last
-        regular = (ratio > 1.4) & (ratio < 2.4)
-        growing = (ratio > 0) & (ratio < 1)
-        rest = np.where(regular, last / (ratio - 1), 0.0)
-        statistical = np.maximum(np.abs(last), 0.7 * np.abs(previous))
-        error = np.where(growing, 4 * np.abs(last), statistical)
-        return times[2] + rest, np.where(regular, np.abs(rest) / 3, error)
+    narrow = min(life.gaps[i, 0] + life.grown[i, 0], life.gaps[i, 1] + life.grown[i, 1])
+    rate = max(life.rate[i, 0], life.rate[i, 1])
+    silent = life.silence[i] >= _SILENCE and life.reach[i] < narrow
+    return silent or (rate <= _EXTINCT * life.first[i] and life.reach[i] < 1.01 * narrow)

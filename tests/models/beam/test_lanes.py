@@ -53,19 +53,22 @@ def test_a_mode_is_propagated_exactly_under_a_force_linear_in_the_step(frequency
     assert np.allclose([a1, a2], flow[:2, 2] - rise, rtol=0, atol=1e-11 * scale)
 
 
-def test_without_contact_the_tip_follows_the_exact_solution_at_any_step():
+@pytest.mark.parametrize(("steps", "from_period"), [(50, 8), (200, 6), (800, 0)])
+def test_without_contact_the_tip_follows_the_exact_solution_at_any_step(steps, from_period):
+    # Modes that are too fast for the step lack their share of the start, which soon dies away.
     p = nominal(force_amplitude=0.5, initial_displacement=5e-5, initial_velocity=2e-3)
     x0 = p.initial_gap
     traces = []
-    for propagator, steps in ((lanes, 50), (lanes, 200), (exact, 50)):
-        system = prepared(propagator, p, steps_per_period=steps)
+    for propagator, count in ((lanes, steps), (exact, 50)):
+        system = prepared(propagator, p, steps_per_period=count)
         state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
         gaps = np.full((1, 2), 1e3)
         record = propagator.advance(system, state, gaps, np.zeros((1, 2)), 20, trace=True)
-        traces.append(record.trace[0, steps // 50 - 1 :: steps // 50])
-    assert np.abs(traces[2]).max() > 0.1
-    assert np.abs(traces[0] - traces[2]).max() < 1e-9
-    assert np.abs(traces[1] - traces[2]).max() < 1e-9
+        traces.append(record.trace[0, count // 50 - 1 :: count // 50])
+    error = np.abs(traces[0] - traces[1])
+    assert np.abs(traces[1]).max() > 0.1
+    assert error.max() < 1e-4
+    assert error[50 * from_period :].max() < 1e-9
 
 
 @pytest.mark.parametrize("frequency", [32.3591, 57.1042])

@@ -6,7 +6,7 @@ from incremental import incremental_lives
 
 from models.beam import MODEL
 from models.beam.parameters import OUTPUTS, Params, Settings
-from models.beam.wear import extrapolate
+from models.beam.lives import extrapolate
 from uq.contract import Status
 
 NOMINAL = np.array(list(MODEL.nominal.values()))
