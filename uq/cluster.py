@@ -36,7 +36,7 @@ _STARTS_AT_MOST = 100
 
 
 class Workers:
-    """Connected workers.
+    """Workers that are connected, or about to be.
 
     Attributes
     ----------
@@ -49,11 +49,17 @@ class Workers:
 
     @property
     def threads(self) -> int:
-        """Tasks that can run at the same time."""
+        """Tasks that can run at the same time, as long as no worker is connected none."""
         return sum(self.client.nthreads().values())
 
     def watch(self) -> None:
-        """Replace workers that died; to be called now and then."""
+        """Replace workers that died; to be called now and then.
+
+        Raises
+        ------
+        RunError
+            When workers cannot start, or keep dying.
+        """
         self._watch()
 
 
@@ -68,11 +74,7 @@ def local(count: int) -> Iterator[Workers]:
     Yields
     ------
     Workers
-
-    Raises
-    ------
-    RunError
-        When a worker cannot start.
+        They connect in their own time; what is submitted before waits for them.
     """
     with ExitStack() as stack:
         folder = Path(tempfile.mkdtemp(prefix="uq-"))
@@ -97,8 +99,7 @@ def local(count: int) -> Iterator[Workers]:
         stack.enter_context(undone(processes.kill))
         for _ in range(count):
             processes.start()
-        processes.wait(client)
-        yield Workers(client, processes.replace_dead)
+        yield Workers(client, lambda: processes.watch(bool(client.nthreads())))
 
 
 @contextmanager
@@ -152,6 +153,8 @@ class _Processes:
         self._folder = folder
         self._running: list[subprocess.Popen[bytes]] = []
         self._started = 0
+        self._connected = False
+        self._began = time.monotonic()
 
     def start(self) -> None:
         log = self._folder / f"{self._started}.log"
@@ -167,26 +170,23 @@ class _Processes:
             )
         self._running.append(process)
 
-    def wait(self, client: Client) -> None:
-        """Wait for the first worker; the others join while it works."""
-        for _ in range(_START_SECONDS * 20):
-            if client.nthreads():
-                return
-            for number, process in enumerate(self._running):
-                if process.poll() is not None:
-                    log = (self._folder / f"{number}.log").read_text().strip()
-                    last = log.splitlines()[-1] if log else f"exit code {process.returncode}"
-                    raise RunError(f"a worker process could not start: {last}")
-            time.sleep(0.05)
-        raise RunError(f"no worker process answered within {_START_SECONDS} s")
-
-    def replace_dead(self) -> None:
-        if self._started > _STARTS_AT_MOST:
-            raise RunError(f"worker processes keep dying: {self._started} were started")
-        for process in [process for process in self._running if process.poll() is not None]:
+    def watch(self, connected: bool) -> None:
+        """Replace dead processes; give up when they die young, or none has ever connected."""
+        self._connected = self._connected or connected
+        for number, process in enumerate(list(self._running)):
+            if process.poll() is None:
+                continue
+            if not self._connected:
+                log = (self._folder / f"{number}.log").read_text().strip()
+                last = log.splitlines()[-1] if log else f"exit code {process.returncode}"
+                raise RunError(f"a worker process could not start: {last}")
             self._running.remove(process)
             _close(process)
             self.start()
+        if self._started > _STARTS_AT_MOST:
+            raise RunError(f"worker processes keep dying: {self._started} were started")
+        if not self._connected and time.monotonic() > self._began + _START_SECONDS:
+            raise RunError(f"no worker process answered within {_START_SECONDS} s")
 
     def kill(self) -> None:
         for process in self._running:

@@ -7,21 +7,17 @@ computes them changes no bit of the result.
 import time
 from collections.abc import Callable
 from dataclasses import asdict
-from functools import cache
 from math import ceil
 from queue import Empty, SimpleQueue
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, NamedTuple
 
 from uq.errors import InputError, RunError
 from uq.evaluate import Chunk, KernelError, evaluate
 from uq.interrupts import in_background
-from uq.registry import find_model
 from uq.sampling import Rows, group_size, row_block, rows
 from uq.store import Store, row_bytes
 from uq.study import Study
+from uq.task import evaluate_rows
 
 if TYPE_CHECKING:
     from distributed import Future
@@ -31,6 +27,10 @@ if TYPE_CHECKING:
 CHUNK_SECONDS = 0.5
 """Work in a chunk, unless the caller says how many rows."""
 
+_BLOCK_SECONDS = 4.0  # longest chunk for the sake of a whole block of the kernel
+_FIRST_ROWS = 16
+_IN_FLIGHT = 4  # chunks at least, also while workers start
+_GROWTH = 4  # of the chunks of the pilot
 _CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
 _ENOUGH_ROWS = 32  # to blame the model and not the rows
 _POLL_SECONDS = 0.2
@@ -90,9 +90,9 @@ class Job:
         return self._row_seconds * (self.store.total - self.store.done)
 
     @property
-    def chunks_left(self) -> int:
-        """Tasks that are left."""
-        return ceil((self.store.total - self.store.done) / self._chunk_rows())
+    def groups(self) -> int:
+        """Tasks into which the rows can be cut at most."""
+        return self.store.total // self._group
 
     def pilot(self, share: float) -> None:
         """Run the first rows here, more and more of them, until a chunk takes a while.
@@ -100,11 +100,11 @@ class Job:
         The first call may compile, so only later ones tell the cost of a row. No more than about
         `share` of all rows is done here.
         """
-        size = self._whole(min(self._wish or self.study.model.block, self.study.model.block))
+        size = self._whole(self._wish or _FIRST_ROWS)
         self._here(size)
-        spent = self._here(size)
+        spent = 0.0
         while spent < CHUNK_SECONDS and self.store.done < share * self.store.total:
-            size = min(2 * size, self._chunk_rows())
+            size = min(_GROWTH * size, self._chunk_rows())
             spent += self._here(size)
 
     def finish_here(self) -> None:
@@ -113,12 +113,13 @@ class Job:
             self._here(self._chunk_rows())
 
     def finish_on(self, crew: "Workers") -> None:
-        """Run the other rows on workers; no more chunks in flight than keep them busy."""
+        """Run the other rows on workers, and here until the first of them is there."""
         arrived: SimpleQueue[Future] = SimpleQueue()
         flying: dict[Future, tuple[int, Rows]] = {}
         size = self._chunk_rows()
         while not self.complete:
-            while self._next < self.store.total and len(flying) < 2 * crew.threads + 2:
+            # No more chunks in flight than keep the workers busy.
+            while self._next < self.store.total and len(flying) < max(_IN_FLIGHT, 2 * crew.threads):
                 start, some = self._take(size)
                 future = crew.client.submit(
                     evaluate_rows,
@@ -132,6 +133,8 @@ class Job:
                 )
                 flying[future] = start, some
                 future.add_done_callback(arrived.put)
+            if not crew.threads and self._next < self.store.total:
+                self._here(size)
             try:
                 future = arrived.get(timeout=_POLL_SECONDS)
             except Empty:
@@ -169,37 +172,15 @@ class Job:
         if self._wish:
             return self._whole(self._wish)
         most = _CHUNK_BYTES // row_bytes(self.study)
-        affordable = CHUNK_SECONDS / self._row_seconds if self._row_seconds else most
-        block = self.study.model.block
-        return self._whole(block * ceil(min(most, affordable) / block))
+        if not self._row_seconds:
+            return self._whole(most)
+        block = min(self.study.model.block, ceil(_BLOCK_SECONDS / self._row_seconds))
+        blocks = CHUNK_SECONDS / (self._row_seconds * block)
+        return self._whole(min(most, block * max(1, round(blocks))))
 
     def _whole(self, size: float) -> int:
         """Round up to whole groups of the design."""
         return self._group * ceil(size / self._group)
-
-
-_find_model = cache(find_model)
-
-
-def evaluate_rows(
-    reference: str,
-    version: str,
-    settings: dict[str, Any],
-    x: NDArray[np.float64],
-    seed: NDArray[np.uint64],
-    start: int,
-) -> Chunk:
-    """Run some rows in a worker process: one dask task, given plain data only.
-
-    A worker that lacks the model would not survive the arrival of one of its objects.
-    """
-    model = _find_model(reference)
-    if model.version != version:
-        raise InputError(
-            f"a worker has version {model.version} of model '{model.name}', "
-            f"this process has {version}: install the same on both"
-        )
-    return evaluate(model, model.settings(**settings), x, seed, start)
 
 
 def _result(future: "Future", start: int, count: int) -> Chunk:

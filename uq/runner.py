@@ -129,12 +129,15 @@ def compute(
             job.pilot(share=1 / 8)
             job.finish_on(crew)
         return job.store.dataset()
-    job.pilot(share=1 if workers is None else 1 / 8)
+    if not workers:
+        job.pilot(share=1)
     if workers == 0 or (workers is None and job.seconds_left < IN_PROCESS_SECONDS):
         job.finish_here()
     elif not job.complete:
         from uq import cluster
 
-        with cluster.local(min(workers or cluster.CORES, job.chunks_left)) as crew:
+        with cluster.local(min(workers or cluster.CORES, job.groups)) as crew:
+            if workers:
+                job.pilot(share=1 / 8)  # while they start
             job.finish_on(crew)
     return job.store.dataset()

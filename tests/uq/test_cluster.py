@@ -15,8 +15,8 @@ import sample_models
 import uq
 from uq import cluster, job, runner
 from uq.errors import InputError, RunError
-from uq.job import evaluate_rows
 from uq.study import load_study
+from uq.task import evaluate_rows
 
 
 @pytest.fixture
@@ -78,6 +78,7 @@ def test_workers_are_started_for_longer_studies_only(
 def test_an_existing_cluster_is_used(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=100), "sample_models:PROCESS")
     with cluster.local(1) as crew:
+        crew.client.wait_for_workers(1)
         address = crew.client.scheduler.address
         ds = runner.compute(study, scheduler=address, chunk_rows=5)
         assert address.startswith("tcp://127.0.0.1:")
@@ -85,18 +86,19 @@ def test_an_existing_cluster_is_used(write_study, tidy):
     assert len(set(ds["y"].values)) == 2
 
 
-@pytest.mark.slow
 def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
-    monkeypatch.setattr(cluster, "_REMOTE_SECONDS", 1)
     study = load_study(write_study())
-    for address in ("tcp://127.0.0.1:9", "nonsense://x"):
-        with pytest.raises(InputError, match=rf"^--scheduler {address}: cannot connect: .+$"):
-            runner.compute(study, scheduler=address)
+    with monkeypatch.context() as hasty:
+        hasty.setattr(cluster, "_REMOTE_SECONDS", 1)
+        for address in ("tcp://127.0.0.1:9", "nonsense://x"):
+            with pytest.raises(InputError, match=rf"^--scheduler {address}: cannot connect: .+$"):
+                runner.compute(study, scheduler=address)
     with cluster.LocalCluster(n_workers=0, dashboard_address=None) as empty:
         address = empty.scheduler_address
         with pytest.raises(InputError, match=rf"^--scheduler {address}: .* no workers$"):
             runner.compute(study, scheduler=address)
     with cluster.local(1) as crew:
+        crew.client.wait_for_workers(1)
         with pytest.raises(InputError, match=r"^there: worker .* has vibrolife .*, this .* 0\.0$"):
             cluster._check_packages(crew.client, "there", "0.0")
         monkeypatch.setattr(cluster, "_PACKAGE", "no-such-package")
@@ -161,6 +163,7 @@ def test_a_worker_ends_with_its_parent(folder):
         "from uq import cluster\n"
         "context = cluster.local(1)\n"
         "crew = context.__enter__()\n"
+        "crew.client.wait_for_workers(1)\n"
         "print(*crew.client.run(os.getpid).values(), flush=True)\n"
         "work = crew.client.submit(time.sleep, 1000)\n"
         "time.sleep(1)\n"
