@@ -1,6 +1,8 @@
 """Which module may import which: every import of the house, read from the source."""
 
 import ast
+import subprocess
+import sys
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -10,7 +12,15 @@ HOUSE = Path(__file__).parents[1]
 
 LAYERS = {
     "contract": {"contract"},
-    "ground": {"columns", "errors", "interrupts", "literals", "provenance", "threads"},
+    "ground": {
+        "columns",
+        "errors",
+        "interrupts",
+        "literals",
+        "provenance",
+        "threads",
+        "time_units",
+    },
     "study": {
         "checks",
         "conditioning",
@@ -26,7 +36,7 @@ LAYERS = {
         "values",
     },
     "rows": {"evaluate", "results", "sampling", "store"},
-    "running": {"cluster", "job", "runner", "simulation", "worker"},
+    "running": {"cluster", "job", "runner", "simulation", "task", "worker"},
     "analysis": {
         "elements",
         "given_data",
@@ -141,6 +151,12 @@ def test_the_platform_depends_one_way():
             if order.index(there) > order.index(here) or (here, there) in STRANGERS:
                 guilty.add((name, other))
     assert not guilty
+
+
+def test_a_worker_imports_no_more_than_it_needs():
+    program = "import sys, uq.task; print(*{'pydantic', 'scipy', 'xarray'} & set(sys.modules))"
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert (ended.stdout, ended.stderr) == ("\n", "")
 
 
 @pytest.mark.parametrize("package", ["uq", "models"])

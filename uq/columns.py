@@ -1,12 +1,12 @@
-"""The arrays that a model's ``batch`` must return: names, dtypes, shapes and blank values."""
+"""The arrays that a model's ``batch`` must return, and where they lack a value."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Model, Output
+from uq.contract import Model, Output, Status
 
 
 class Column(NamedTuple):
@@ -50,6 +50,38 @@ def blank_rows(columns: Mapping[str, Column], rows: int) -> dict[str, NDArray[An
 def censored_name(output: str) -> str:
     """Return the name of the flag beside a lifetime."""
     return f"{output}_censored"
+
+
+def lacking(kind: str, values: NDArray[Any]) -> NDArray[np.bool_]:
+    """Return where an output of some kind has no value, of the shape of `values`."""
+    if kind == "category":
+        return values < 0
+    if kind == "lifetime":
+        return np.isnan(values) | np.isneginf(values)
+    return ~np.isfinite(values)
+
+
+def failed_rows(
+    status: NDArray[np.int8], required: Iterable[tuple[str, NDArray[Any]]]
+) -> NDArray[np.bool_]:
+    """Return which rows failed.
+
+    A row whose budget ended counts only where an output is lacking.
+
+    Parameters
+    ----------
+    status : ndarray of int8, shape (n,)
+    required : iterable of (str, ndarray)
+        Kind and values, shape (n, *dims), of each output that may not be undefined.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    incomplete = np.zeros(len(status), dtype=np.bool_)
+    for kind, values in required:
+        incomplete |= lacking(kind, values).reshape(len(status), -1).any(axis=1)
+    return np.where(status == Status.OUT_OF_BUDGET, incomplete, status != Status.OK)
 
 
 def _column(output: Output, shape: tuple[int, ...]) -> Column:

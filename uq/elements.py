@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.columns import censored_name
+from uq.columns import censored_name, lacking
 from uq.errors import InputError, nearest
 from uq.reading import read_study_text
 from uq.results import elements, failed
@@ -143,12 +143,9 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
         for name, column in elements(variable):
             place = {str(dim): column[dim].item() for dim in variable.dims if dim != "sample"}
             values = column.values
-            if variable.attrs["kind"] == "lifetime":
-                lacking = np.isnan(values) | np.isneginf(values)
-            else:
-                lacking = ~np.isfinite(values)
+            absent = lacking(variable.attrs["kind"], values)
             censored = (
-                ds[flag].sel(place).values.astype(bool) & ~lacking
+                ds[flag].sel(place).values.astype(bool) & ~absent
                 if flag in ds
                 else np.zeros(len(values), dtype=bool)
             )
@@ -159,9 +156,9 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
                 variable.attrs["units"],
                 variable.attrs["long_name"],
                 place,
-                np.where(lacking, np.nan, values),
+                np.where(absent, np.nan, values),
                 censored,
-                lacking & unsound,
+                absent & unsound,
             )
 
 

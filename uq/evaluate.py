@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.columns import Column, blank_rows, columns_of
+from uq.columns import Column, blank_rows, columns_of, lacking
 from uq.contract import Model, Status
 from uq.errors import InputError
 
@@ -169,9 +169,7 @@ def _find_non_finite(
         if output.kind == "category":
             continue
         values = columns[name].reshape(len(status), -1)
-        legal = np.isfinite(values)
-        if output.kind == "lifetime":
-            legal |= values == np.inf
+        legal = ~lacking(output.kind, values)
         if output.may_be_undefined:
             legal |= np.isnan(values)
         guilty = (status == Status.OK) & ~legal.all(axis=1)

@@ -4,12 +4,14 @@ import re
 import textwrap
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
@@ -17,6 +19,8 @@ from uq.elements import Element, Floats
 
 WIDTH = 3.4
 """One column of a journal [inch]."""
+
+_DOTS_PER_INCH = 200
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
@@ -34,26 +38,6 @@ _STYLE: Any = {
 }
 styled = mpl.rc_context(_STYLE)
 """Decorates whatever draws or writes a figure."""
-
-
-class TimeUnit(NamedTuple):
-    """A unit of time and its length [s]."""
-
-    name: str
-    seconds: float
-
-
-_TIME_UNITS = (
-    TimeUnit("seconds", 1.0),
-    TimeUnit("hours", 3600.0),
-    TimeUnit("days", 86400.0),
-    TimeUnit("years", 365.25 * 86400.0),
-)
-
-
-def time_unit(seconds: float) -> TimeUnit:
-    """Return the largest unit of which a time [s] holds at least two, or else seconds."""
-    return [_TIME_UNITS[0], *(unit for unit in _TIME_UNITS if seconds >= 2 * unit.seconds)][-1]
 
 
 def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure, list[Axes]]:
@@ -97,12 +81,13 @@ def write(figure: Figure, path: Path) -> list[Path]:
     -------
     list of Path
     """
-    paths = [path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg")]
-    nothing = ({"Software": None}, {"Date": None, "Creator": None})
-    for target, metadata in zip(paths, nothing, strict=True):
-        figure.savefig(target, dpi=200, metadata=metadata)
-        figure.set_layout_engine("none")  # the second has the layout of the first
-    return paths
+    png, svg = (path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg"))
+    # Figure.savefig draws twice for each file, only to lay out what the first drawing lays out.
+    figure.set_dpi(_DOTS_PER_INCH)
+    FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
+    figure.set_layout_engine("none")  # the second has the layout of the first
+    FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": None})
+    return [png, svg]
 
 
 def file_name(*words: str) -> str:

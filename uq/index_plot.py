@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 
 from uq.elements import named_elements
 from uq.errors import InputError
-from uq.figure import COLOURS, legend, new_figure, place_in_words, sentence, styled, time_unit
+from uq.figure import COLOURS, legend, new_figure, place_in_words, sentence, styled
 from uq.indices import sensitivities
+from uq.time_units import time_unit
 
 _MEANING = {
     "S1": "alone (S1)",

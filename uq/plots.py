@@ -28,12 +28,12 @@ from uq.figure import (
     sentence,
     styled,
     thinned,
-    time_unit,
     write,
 )
 from uq.index_plot import bars
 from uq.indices import methods, sensitivities
 from uq.lifetime import survival
+from uq.time_units import time_unit
 
 
 def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.columns import censored_name
+from uq.columns import censored_name, failed_rows
 from uq.contract import Model, Status
 from uq.designs import DESIGNS, block_names
 from uq.errors import InputError
@@ -175,18 +175,13 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
 
 
 def failed(ds: xr.Dataset) -> NDArray[np.bool_]:
-    """Return which rows failed, shape (n,).
-
-    A row whose budget ended counts only where an output is lacking.
-    """
-    lacking = np.zeros(ds.sizes["sample"], dtype=bool)
-    for variable in ds.data_vars.values():
-        if variable.attrs.get("role") == "output" and not variable.attrs["may_be_undefined"]:
-            category = variable.attrs["kind"] == "category"
-            missing = variable < 0 if category else variable.isnull()
-            lacking |= missing.values.reshape(len(lacking), -1).any(axis=1)
-    status = ds["status"].values
-    return np.where(status == Status.OUT_OF_BUDGET, lacking, status != Status.OK)
+    """Return which rows of a result failed, shape (n,), by the rule of `failed_rows`."""
+    required = (
+        (variable.attrs["kind"], variable.values)
+        for variable in ds.data_vars.values()
+        if variable.attrs.get("role") == "output" and not variable.attrs["may_be_undefined"]
+    )
+    return failed_rows(ds["status"].values, required)
 
 
 def relabel(ds: xr.Dataset, study: "Study") -> xr.Dataset:

@@ -1,6 +1,7 @@
 """One row of a model, outside of any study."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -72,6 +73,16 @@ def simulate(
     if not trajectory or model.simulate is None:
         return ds
     return ds.assign(trajectory=in_background(lambda: _trajectory(model, frozen, values, seed)))
+
+
+def holds_trajectory(path: Path) -> bool:
+    """Return whether a file is the netCDF form of what `simulate` returned with a trajectory."""
+    try:
+        with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as ds:
+            roles = [variable.attrs.get("role") for variable in ds.data_vars.values()]
+            return "trajectory" in roles and "schema_version" in ds.attrs
+    except (OSError, ValueError, RuntimeError):
+        return False
 
 
 def _trajectory(

@@ -1,5 +1,6 @@
 """What a result says: counts, moments, quantiles and probabilities, each with its interval."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -77,18 +78,40 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     -------
     pandas.DataFrame
         Index: name of the element. Columns: units, mean, sd and each quantile, with ``_low`` and
-        ``_high`` for the 95 % interval, and counts of rows never, censored, undefined and failed.
+        ``_high`` for the 95 % interval; tolerance bounds, where the study asks for them, with the
+        rows they need; counts of rows never, censored, undefined and failed; and for each
+        threshold ``P(>t)`` and ``P(<t)`` with their intervals, where it is one of the output's.
+        Infinity stands for never, NaN for what could not be given.
     """
-    table = {}
-    for name, entry in summarise(ds)["outputs"].items():
-        line = {"units": entry["units"], "mean": entry["mean"]}
-        line |= {f"mean_{end}": entry["mean_interval"][end] for end in ("low", "high")}
-        line["sd"] = entry["sd"]
-        for probability, estimate in entry["quantiles"].items():
-            line[f"q{probability}"] = np.inf if estimate.get("never") else estimate["value"]
-            line |= {f"q{probability}_{end}": estimate[end] for end in ("low", "high")}
-        table[name] = line | {count: entry[count] for count in _COUNTS}
-    return pd.DataFrame.from_dict(table, orient="index").rename_axis("output")
+    lines = {name: _line(entry) for name, entry in summarise(ds)["outputs"].items()}
+    return pd.DataFrame(list(lines.values()), index=pd.Index(list(lines), name="output"))
+
+
+def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Return one line of `summary`."""
+    line = {"units": entry["units"]}
+    line |= _cells("mean", {"value": entry["mean"], **entry["mean_interval"]})
+    line |= _cells("sd", {"value": entry["sd"]})
+    for probability, estimate in entry["quantiles"].items():
+        line |= _cells(f"q{probability}", estimate)
+    if bounds := entry["tolerance"]:
+        line |= _cells("tolerance", bounds)
+    line |= {count: entry[count] for count in _COUNTS}
+    for threshold, shares in entry["thresholds"].items():
+        line |= _cells(f"P(>{threshold})", shares["above"])
+        line |= _cells(f"P(<{threshold})", shares["below"])
+    return line
+
+
+def _cells(name: str, entry: Mapping[str, Any]) -> dict[str, float]:
+    """Return the numbers of an entry of `summarise`, named after what they say."""
+    cells = {}
+    for key in ("value", "low", "high", "lower", "upper", "rows_needed"):
+        if key in entry:
+            never = entry.get("never" if key == "value" else f"{key}_never")
+            number = np.nan if entry[key] is None else entry[key]
+            cells[name if key == "value" else f"{name}_{key}"] = np.inf if never else number
+    return cells
 
 
 def replicates_of(rows: xr.Dataset) -> Replicates:

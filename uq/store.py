@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from uq import results
-from uq.columns import blank_rows, columns_of
+from uq.columns import blank_rows, columns_of, failed_rows
 from uq.contract import Status
 from uq.errors import InputError, RunError
 from uq.interrupts import undone
@@ -39,7 +39,7 @@ class Store:
     done : int
         Rows that have arrived.
     failed : int
-        Rows among them whose status is not ok.
+        Rows among them that failed.
     """
 
     def __init__(self, study: "Study", total: int) -> None:
@@ -77,7 +77,12 @@ class Store:
         for label, failure in chunk.failures.items():
             self._failures[label] = min(failure, self._failures.get(label, failure))
         self.done += stop - start
-        self.failed += int(np.count_nonzero(chunk.status != Status.OK))
+        required = (
+            (output.kind, chunk.columns[name])
+            for name, output in self.study.model.outputs.items()
+            if not output.may_be_undefined
+        )
+        self.failed += int(np.count_nonzero(failed_rows(chunk.status, required)))
 
     @property
     def shapes_all_wrong(self) -> str | None:

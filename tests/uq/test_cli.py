@@ -144,13 +144,26 @@ def test_a_trajectory_is_written_and_drawn(uq, folder):
     assert everything(folder) == ["t.nc", "t.png"]
 
 
-def test_a_trajectory_does_not_overwrite_a_study(uq, write_study):
-    uq("run", write_study(), "-o", "out.nc", "--quiet")
-    before = Path("out.nc").read_bytes()
-    ended = uq("simulate", "sample_models:KINDS", "-o", "out.nc")
-    assert (ended.code, ended.out) == (2, "")
-    assert ended.err == "out.nc: holds the result of a study; choose another name\n"
-    assert Path("out.nc").read_bytes() == before
+def test_a_trajectory_overwrites_nothing_but_a_trajectory(uq, write_study, folder):
+    uq("run", write_study(), "-o", "study.nc", "--quiet")
+    xr.Dataset({"trajectory": ("time", [0.0, 1.0])}).to_netcdf("foreign.nc")
+    api.simulate("linear").to_netcdf("row.nc")
+    Path("notes.txt").write_text("precious")
+    Path("empty").touch()
+    for path in sorted(folder.iterdir()):
+        before = path.read_bytes()
+        ended = uq("simulate", "sample_models:KINDS", "-o", path.name)
+        assert (ended.code, ended.out) == (2, "")
+        assert ended.err == (
+            f"{path.name}: exists, and is no trajectory of 'uq simulate'; choose another name\n"
+        )
+        assert path.read_bytes() == before
+
+    for place in ("0.25", "0.5"):
+        ended = uq("simulate", "sample_models:KINDS", "-o", "t.nc", "--set", f"x1={place}")
+        assert (ended.code, ended.err) == (0, "")
+        with xr.open_dataset("t.nc") as ds:
+            assert ds["x1"] == float(place)
 
 
 def test_init_gives_a_study_that_checks_and_runs(uq, folder):

@@ -160,7 +160,10 @@ def test_a_row_out_of_budget_failed_only_where_an_output_is_lacking(kinds):
     ds["work"].values[0, 1] = np.nan
     ds["regime"].values[1] = -1
     ds["angle"].values[2] = np.nan
+    ds["life"].values[3] = np.inf  # it never ends
     assert list(np.flatnonzero(results.failed(ds))) == [0, 1, 4]
+    ds["work"].values[3] = np.inf
+    assert list(np.flatnonzero(results.failed(ds))) == [0, 1, 3, 4]
 
 
 def test_new_text_of_the_same_study_replaces_the_old(kinds, write_study):

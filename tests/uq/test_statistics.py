@@ -255,6 +255,39 @@ def test_outputs_that_the_study_names_are_shown():
     assert table.loc["work[side=left]", "mean"] == pytest.approx(0.5, abs=0.2)
 
 
+def test_the_table_says_what_the_command_prints():
+    n = 100
+    values = np.r_[np.arange(1.0, 61.0), np.full(40, np.inf)]
+    ds = with_output(linear(samples=n), "life", values, "lifetime")
+    ds = asking(
+        ds,
+        outputs=["y", "life"],
+        quantiles=[0.1, 0.9],
+        tolerance={"coverage": 0.95, "confidence": 0.95},
+        thresholds={"life": [30.5, 1e6]},
+    )
+    table, found = uq.summary(ds), summarise(ds)["outputs"]
+    assert list(table.columns[-12:]) == [
+        f"P({sign}{threshold}){end}"
+        for threshold in ("30.5", "1000000.0")
+        for sign in "><"
+        for end in ("", "_low", "_high")
+    ]
+    assert table.loc["y", table.columns[-12:]].isna().all()
+    y, life = table.loc["y"], table.loc["life"]
+    bounds = found["y"]["tolerance"]
+    assert (y["tolerance_lower"], y["tolerance_upper"]) == (bounds["lower"], bounds["upper"])
+    assert life["tolerance_lower"] == 2.0 and life["tolerance_upper"] == np.inf
+    assert list(table["tolerance_rows_needed"]) == [59, 59]
+    assert (life["P(>30.5)"], life["P(<30.5)"]) == (0.7, 0.3)
+    assert life["P(>30.5)_low"] == found["life"]["thresholds"]["30.5"]["above"]["low"]
+    assert np.isnan(life["mean"]) and life["never"] == 40
+    assert life["q0.9"] == life["q0.9_low"] == life["q0.9_high"] == np.inf
+    numbers = table.drop(columns="units")
+    assert all(dtype.kind in "if" for dtype in numbers.dtypes)
+    assert "tolerance_lower" not in uq.summary(asking(ds))
+
+
 def test_describing_does_not_change_the_result():
     ds = kinds(samples=64)
     before = ds.copy(deep=True)

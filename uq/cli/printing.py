@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Sequence
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -9,13 +10,13 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from uq.time_units import time_unit
+
 if TYPE_CHECKING:
     from rich.console import JustifyMethod
 
 # Names such as work_rate[site=left] are not rich's markup.
 console = Console(markup=False, highlight=False, emoji=False)
-
-_HOUR, _DAY, _YEAR = 3600.0, 86400.0, 365.25 * 86400.0
 
 
 def print_json(value: Any) -> None:
@@ -72,12 +73,10 @@ def duration(seconds: float | None) -> str:
     -------
     str
     """
-    if seconds is None or not _HOUR <= abs(seconds) < float("inf"):
+    if seconds is None or not isfinite(seconds):
         return ""
-    for unit, name in ((_YEAR, "years"), (_DAY, "days")):
-        if abs(seconds) >= 2 * unit:
-            return f"{seconds / unit:.3g} {name}"
-    return f"{seconds / _HOUR:.3g} hours"
+    unit = time_unit(abs(seconds))
+    return "" if unit.name == "seconds" else f"{seconds / unit.seconds:.3g} {unit.name}"
 
 
 def _looks_numeric(cell: str) -> bool:

@@ -14,6 +14,7 @@ from uq.contract import Model, Status
 from uq.elements import elements_of
 from uq.errors import InputError
 from uq.registry import find_model
+from uq.simulation import holds_trajectory
 from uq.simulation import simulate as run_once
 
 
@@ -32,7 +33,10 @@ def simulate(
     for path in (output, plot):
         if path is not None:
             store.check_target(path, 0)
-            _keep_results(path)
+    if output and output.exists() and not holds_trajectory(output):
+        raise InputError(
+            f"{output}: exists, and is no trajectory of 'uq simulate'; choose another name"
+        )
     if model.simulate is None and (output or plot):
         raise InputError(f"model '{model.name}' gives no trajectory")
     ds = run_once(model, given, chosen, trajectory=bool(output or plot))
@@ -126,15 +130,6 @@ def _time(unit: str, value: float) -> str:
 
 def _meaning(ds: xr.Dataset, status: Status) -> str:
     return str(ds["status"].attrs.get(f"example_{status.name.lower()}", status.meaning))
-
-
-def _keep_results(path: Path) -> None:
-    """Refuse to overwrite what may have taken hours."""
-    try:
-        results.open_result(path)
-    except InputError:
-        return
-    raise InputError(f"{path}: holds the result of a study; choose another name")
 
 
 def _number(text: str) -> tuple[str, float]:
