@@ -5,8 +5,8 @@ import pytest
 from incremental import incremental_lives
 
 from models.beam import MODEL
-from models.beam.parameters import OUTPUTS, Params, Settings
 from models.beam.lives import extrapolate
+from models.beam.parameters import OUTPUTS, Params, Settings
 from uq.contract import Status
 
 NOMINAL = np.array(list(MODEL.nominal.values()))
