@@ -144,7 +144,9 @@ def test_a_request_to_terminate_is_obeyed_too(started):
 
 def test_in_a_script_it_is_the_exception_of_python(started):
     program = (
-        "import uq\n"
+        "import signal, uq\n"
+        # As in a terminal, also where the tests run in the background and ignore it.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "study = uq.load_study('small.toml', 'sample_models:SLEEPING')\n"
         "try:\n"
         "    uq.run(study, workers=2, chunk_rows=4)\n"
