@@ -77,8 +77,8 @@ def test_parameters_are_documented(model):
 def test_nominal_values_lie_within_bounds_that_leave_room(model):
     for name, nominal in model.nominal.items():
         low, high = model.parameter(name).bounds
-        assert np.isfinite([low, high]).all(), name
-        assert low <= nominal <= high, name
+        assert np.isfinite(low), name
+        assert low <= nominal <= high, name  # an infinite stiffness is a rigid part
         assert low < high, name
         # The analytic functions are defined on a box; a physical quantity may be 30 times other.
         if low > 0:

@@ -120,8 +120,10 @@ def _texts(model: Model, name: str) -> Schema:
 
 
 def _fixed(model: Model, name: str) -> Schema:
+    nominal = model.nominal[name]
+    default = {"default": nominal} if isfinite(nominal) else {}  # JSON has no infinity
     limits = _limits(model.parameter(name).bounds)
-    return {"type": "number", **limits, "default": model.nominal[name], **_texts(model, name)}
+    return {"type": "number", **limits, **default, **_texts(model, name)}
 
 
 def _uncertain(model: Model, name: str) -> Schema:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from math import isfinite
 from typing import Any
 
 from pydantic import BaseModel
@@ -76,13 +77,18 @@ def _example_laws(model: Model) -> dict[str, Law]:
 
 
 def _example_law(parameter: Parameter, nominal: float) -> Law | None:
-    """Return a law around the nominal value that the bounds allow: 10 % scatter if it can be."""
+    """Return a law around the nominal value that the bounds allow: 10 % scatter if it can be.
+
+    A parameter that is infinite unless given has none.
+    """
+    if not isfinite(nominal):
+        return None
     source = "example: replace by what you know"
     candidates: list[Law] = []
     if nominal > 0:
         candidates.append(LogNormal(distribution="lognormal", mean=nominal, cv=0.1, source=source))
     low, high = parameter.bounds
-    if low < high and high - low < float("inf"):
+    if low < high and isfinite(high - low):
         candidates.append(Uniform(distribution="uniform", lower=low, upper=high, source=source))
     candidates.append(Normal(distribution="normal", mean=nominal, sd=1.0, source=source))
     return next((law for law in candidates if law_problem(law, parameter) is None), None)

@@ -37,6 +37,10 @@ def parameter_problem(model: Model, name: str, value: Any) -> str | None:
         return unknown_name("parameter", name, model, model.parameter_names)
     if isinstance(value, bool) or not isinstance(value, int | float):
         return "must be a number"
+    try:
+        float(value)
+    except OverflowError:  # a whole number of 309 digits or more; infinity is written inf
+        return "must be a number"
     parameter = model.parameter(name)
     low, high = parameter.bounds
     if not low <= value <= high:

@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import rmtree
 from tempfile import gettempdir
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from platformdirs import user_cache_path
 
@@ -94,8 +94,21 @@ def kernel(function: Function) -> Function:
     ``error_model="numpy"`` drops the division check that blocks vectorisation; of fast math only
     contraction and the sign of zero are given away, so no sum is reassociated.
     """
+    return _compiled(function, "never")
+
+
+def inlined(function: Function) -> Function:
+    """Compile straight-line algebra into every kernel that calls it, where loops are vectorised."""
+    return _compiled(function, "always")
+
+
+def _compiled(function: Function, inline: Literal["never", "always"]) -> Function:
     with _our_cache_folder():
         compiled: Any = numba.njit(
-            cache=True, nogil=True, error_model="numpy", fastmath={"contract", "nsz"}
+            cache=True,
+            nogil=True,
+            error_model="numpy",
+            fastmath={"contract", "nsz"},
+            inline=inline,
         )(function)
     return compiled

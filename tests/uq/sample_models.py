@@ -197,3 +197,20 @@ def _mutating(x, seed, settings):
 
 MUTATING = _simple("mutating", _mutating)
 """Writes into its input."""
+
+
+class Mounting(NamedTuple):
+    mount_stiffness: Annotated[
+        float, Parameter("k", "N m-1", "stiffness of the mount", (1e4, math.inf), "rigid")
+    ] = math.inf
+    mass: Annotated[float, Parameter("m", "kg", "mass on the mount", (0.0, 1e3), "made up")] = 2.0
+
+
+def _sag(x, seed, settings):
+    return {"sag": 9.81 * x[:, 1] / x[:, 0]}, ok(len(x))
+
+
+MOUNTED = _simple(
+    "mounted", _sag, parameters=Mounting, outputs={"sag": Output("m", "deflection of the mount")}
+)
+"""Has a parameter that is infinite unless given."""

@@ -67,6 +67,18 @@ def test_one_model_is_shown_in_full(uq):
     assert uq("models", "liner").err.startswith("no such model 'liner'; did you mean 'linear'?")
 
 
+def test_a_parameter_may_be_infinite_unless_given(uq):
+    assert "k = inf N m-1, 10000 to inf" in uq("models", "sample_models:MOUNTED").out
+    described = strict_json(uq("models", "sample_models:MOUNTED", "--json").out)
+    shown = described["parameters"]["mount_stiffness"]
+    assert (shown["nominal"], shown["bounds"]) == (None, [1e4, None])
+    nominal = uq("simulate", "sample_models:MOUNTED")
+    assert nominal.code == 0
+    assert nominal == uq("simulate", "sample_models:MOUNTED", "--set", "mount_stiffness=inf")
+    softer = uq("simulate", "sample_models:MOUNTED", "--set", "mount_stiffness=1e5")
+    assert softer.out != nominal.out
+
+
 @pytest.mark.parametrize("name", model_names())
 def test_every_model_can_be_told_as_json(uq, name):
     described = strict_json(uq("models", name, "--json").out)
@@ -292,6 +304,10 @@ MISTAKES = {
     "simulate linear --set x1": "--set x1: write it as NAME=VALUE with a number",
     "simulate linear --set x1=much": "--set x1=much: write it as NAME=VALUE with a number",
     "simulate linear --set x1=nan": "x1 = nan: ",
+    "simulate linear --set x1=inf": "x1 = inf: must lie within 0.0 to 1.0 [1]",
+    "simulate sample_models:MOUNTED --set mount_stiffness=1e3": (
+        "mount_stiffness = 1000.0: must lie within 10000.0 to inf [N m-1]"
+    ),
     "simulate linear --set x5=1": "x5 = 1.0: no such parameter of model 'linear'",
     "simulate linear --setting fail_how": "--setting fail_how: write it as NAME=VALUE",
     "simulate linear --setting fail_how=3": "setting fail_how = 3: must be one of nan, inf",

@@ -129,6 +129,29 @@ def test_the_line_is_drawn_at_one_in_a_million():
     assert problem((0.0, 1e3), "normal", mean=1.0, sd=sd * 1.001) is not None
 
 
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("lognormal", {"mean": 1e6, "cv": 0.3}),
+        ("lognormal", {"median": 1e6, "sigma": 2.0}),
+        ("normal", {"mean": 1e6, "sd": 1e5}),
+        ("weibull", {"shape": 3.0, "scale": 1e6}),
+        ("gamma", {"shape": 9.0, "scale": 1e5}),
+    ],
+)
+def test_without_an_upper_bound_the_lower_tail_alone_counts(name, arguments):
+    frozen = law(name, **arguments).frozen()
+    suits, leaves, cuts = (float(frozen.ppf(p)) for p in (0.99e-6, 1.01e-6, 0.25))
+    assert problem((suits, inf), name, **arguments) is None
+    assert problem((leaves, inf), name, **arguments).text.startswith(
+        "has 1e-06 of its probability outside the parameter's bounds, "
+        f"{leaves!r} to inf [N m-1] (allowed: 1e-06)"
+    )
+    u = np.array([2.0**-53, 0.2, 0.6, 1.0 - 2.0**-53])
+    x = ppf_within(law(name, **arguments), u, (cuts, inf))
+    np.testing.assert_allclose(frozen.sf(x), 0.75 * (1.0 - u), rtol=1e-9)
+
+
 def test_a_truncated_normal_may_have_its_peak_outside():
     assert problem((1.0, 9.0), "truncated-normal", mean=0.0, sd=1.0, lower=1.0, upper=3.0) is None
 

@@ -2,22 +2,28 @@
 
 import json
 import tomllib
+from importlib.metadata import EntryPoint
 
 import pytest
 from jsonschema import Draft7Validator
 from study_text import UNIFORM, study_text
 
+from uq import registry
 from uq.registry import find_model, model_names
 from uq.schema import json_schema
 from uq.study_file import LAWS, AnalysisTable, DesignTable
 from uq.template import template
 
 
-@pytest.fixture(scope="module")
-def validator():
+def make_validator():
     schema = json.loads(json.dumps(json_schema(), allow_nan=False))
     Draft7Validator.check_schema(schema)
     return Draft7Validator(schema)
+
+
+@pytest.fixture(scope="module")
+def validator():
+    return make_validator()
 
 
 def faults(validator, changes=None, text=None):
@@ -98,6 +104,48 @@ def test_settings_of_a_model_carry_their_choices(validator):
     assert faults(validator, linear | {"settings": {"fail_how": "nan"}}) == set()
     assert faults(validator, linear | {"settings": {"fail_how": "no"}}) == {"settings/fail_how"}
     assert faults(validator, linear | {"settings": {"fail_above": "x"}}) == {"settings/fail_above"}
+
+
+@pytest.fixture
+def mounted(monkeypatch):
+    """Return a validator, and the entries of [fixed], where the model MOUNTED is installed."""
+    point = EntryPoint("mounted", "sample_models:MOUNTED", registry.GROUP)
+    monkeypatch.setattr(registry, "_entry_points", lambda: {"mounted": point})
+    validator = make_validator()
+    rule = next(rule for rule in validator.schema["allOf"] if "study" in rule["if"]["properties"])
+    return validator, rule["then"]["properties"]["fixed"]["properties"]
+
+
+@pytest.mark.parametrize(
+    ("fixed", "places"),
+    [
+        ("{}", set()),
+        ("{mount_stiffness = inf}", set()),
+        ("{mount_stiffness = 1e4}", set()),
+        ("{mount_stiffness = 9999.0}", {"fixed/mount_stiffness"}),
+        ("{mount_stiffness = -inf}", {"fixed/mount_stiffness"}),
+    ],
+)
+def test_a_bound_at_infinity_is_none(mounted, fixed, places):
+    validator, _ = mounted
+    law = {"distribution": "uniform", "lower": 1.0, "upper": 2.0}
+    changes = {
+        "study": {"model": "mounted"},
+        "uncertain": {"x1": None, "x2": None, "x3": None, "mass": law},
+    }
+    assert faults(validator, text=f"fixed = {fixed}\n{study_text(changes)}") == places
+
+
+def test_what_is_infinite_is_left_out(mounted):
+    _, entries = mounted
+    kept = {
+        name: {key: entry[key] for key in ("minimum", "maximum", "default") if key in entry}
+        for name, entry in entries.items()
+    }
+    assert kept == {
+        "mount_stiffness": {"minimum": 1e4},
+        "mass": {"minimum": 0.0, "maximum": 1e3, "default": 2.0},
+    }
 
 
 def test_an_editor_can_explain_every_key(validator):

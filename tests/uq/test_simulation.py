@@ -1,10 +1,14 @@
 """One row of a model, by name and with everything it says about itself."""
 
+from math import inf
+
 import numpy as np
 import pytest
 import sample_models
+import xarray as xr
 
 import uq
+from uq import store
 from uq.errors import InputError
 
 
@@ -51,6 +55,16 @@ def test_all_mistakes_are_told_at_once():
         strict=True,
     ):
         assert words in line
+
+
+@pytest.mark.parametrize(("given", "sag"), [({}, 0.0), ({"mount_stiffness": 1e4}, 2 * 9.81e-4)])
+def test_a_rigid_part_is_computed_and_kept_in_a_file(folder, given, sag):
+    ds = uq.simulate(sample_models.MOUNTED, given)
+    assert ds["sag"].values == [sag]
+    store.write(ds, folder / "row.nc")
+    with xr.open_dataset("row.nc") as kept:
+        assert kept["mount_stiffness"].item() == given.get("mount_stiffness", inf)
+        assert kept["mount_stiffness"].attrs["role"] == "fixed"
 
 
 def test_an_unknown_model_is_refused():

@@ -5,6 +5,7 @@ import tomllib
 
 import numpy as np
 import pytest
+from sample_models import MOUNTED
 
 from uq.registry import find_model, model_names
 from uq.sampling import row_block
@@ -33,6 +34,15 @@ def test_every_commented_entry_is_a_default(name):
     assert data["fixed"].keys() | data["uncertain"].keys() == set(model.parameter_names)
     assert set(data["settings"]) == set(model.setting_names)
     assert study.identity == study_from_text(template(model)).identity
+
+
+def test_a_parameter_that_is_infinite_unless_given_stays_fixed():
+    text = template(MOUNTED)
+    study = study_from_text(text, model="sample_models:MOUNTED")
+    assert list(study.uncertain) == ["mass"]
+    fixed = text.partition("[fixed]")[2].partition("[uncertain.mass]")[0]
+    assert "# k: stiffness of the mount; 10000.0 to inf [N m-1]\n#mount_stiffness = inf\n" in fixed
+    assert "mount_stiffness" not in text.replace(fixed, "")
 
 
 @pytest.mark.parametrize("name", model_names())

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 
 import numpy as np
 import pytest
+from sample_models import MOUNTED
 from study_text import study_text
 
 from uq.contract import Model, Output, Parameter, Setting
@@ -128,6 +129,25 @@ def test_settings_that_do_not_go_together_are_told_by_the_model():
 )
 def test_a_parameter_is_checked_against_its_declaration(name, value, problem):
     assert parameter_problem(TOY, name, value) == problem
+
+
+@pytest.mark.parametrize(
+    ("value", "problem"),
+    [
+        (inf, None),
+        (1e308, None),
+        (1e3, "must lie within 10000.0 to inf [N m-1]"),
+        (-inf, "must lie within 10000.0 to inf [N m-1]"),
+        (nan, "must lie within 10000.0 to inf [N m-1]"),
+        (10**400, "must be a number"),
+    ],
+)
+def test_a_bound_at_infinity_belongs_to_what_is_admissible(value, problem):
+    assert parameter_problem(MOUNTED, "mount_stiffness", value) == problem
+
+
+def test_infinity_lies_outside_finite_bounds():
+    assert parameter_problem(MOUNTED, "mass", inf) == "must lie within 0.0 to 1000.0 [kg]"
 
 
 def test_a_study_tells_what_is_wrong_with_settings_and_categories():

@@ -1,0 +1,309 @@
+"""Dormand and Prince's method of order 8(5,3), with dense output and guarded modes.
+
+`integrator` compiles the method for one system. Between two changes of mode a system obeys
+smooth equations, and its guards say how long: functions of the state that are positive while the
+mode lasts. The integrator stops where the first of them becomes negative, located on the dense
+output, and hands back to the machine, which changes the mode and goes on.
+
+What is compiled here caches on disk only as part of a kernel that calls it and is itself defined
+at the level of a module: call it from one, never from Python.
+
+Coefficients, error estimate and step control are those of E. Hairer, S. P. Norsett, G. Wanner,
+"Solving Ordinary Differential Equations I", Sec. II.5 and II.10, as in scipy's ``DOP853``.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate._ivp import dop853_coefficients as tableau
+
+from models.numerics.jit import kernel
+
+REACHED_END, GUARDED, OUT_OF_BUDGET, STUCK = 0, 1, 2, 3
+"""Why an integration stopped. Stuck: the error asks for steps below the resolution of time."""
+
+_A, _B, _C = tableau.A, tableau.B, tableau.C
+_E3, _E5, _D = tableau.E3, tableau.E5, tableau.D
+_STAGES, _ALL_STAGES, _POWER = 12, 16, 7
+_SAFETY, _SHRINK, _GROW = 0.9, 0.2, 10.0
+_RESOLUTION = 4e-16  # of an event, relative to the time since the step began
+_HALVINGS = 60
+
+
+class Outcome(NamedTuple):
+    """How an integration ended.
+
+    Attributes
+    ----------
+    status : int
+        `REACHED_END`, `GUARDED`, `OUT_OF_BUDGET` or `STUCK`.
+    time : float
+        Reached.
+    guard : int
+        The guard that became negative, else -1.
+    step : float
+        To be tried next.
+    steps : int
+        Tried, rejected ones included.
+    sampled : int
+        Number of samples taken.
+    """
+
+    status: int
+    time: float
+    guard: int
+    step: float
+    steps: int
+    sampled: int
+
+
+@kernel
+def _no_guards(t, y, p, guard):
+    pass
+
+
+def integrator(
+    rhs: Callable[..., None],
+    guards: Callable[..., None] = _no_guards,
+    guard_count: int = 0,
+    looks: int = 4,
+) -> Callable[..., Outcome]:
+    """Compile the method for one system.
+
+    Parameters
+    ----------
+    rhs : kernel
+        ``rhs(t, y, p, dy)`` sets dy to the time derivative of y.
+    guards : kernel
+        ``guards(t, y, p, guard)`` sets guard[i], i < guard_count, positive while the mode lasts.
+        A guard may start at zero, if it then opens.
+    guard_count : int
+    looks : int
+        Instants in each step at which the guards are looked at. A guard that is negative between
+        two looks only, goes unseen.
+
+    Returns
+    -------
+    kernel
+        ``integrate(t, end, y, step, p, relative, absolute, budget, times, samples)`` advances y
+        in place from t to end > t or to where a guard becomes negative, and returns an `Outcome`.
+        `step` is tried first, 0 for a guess; p goes to `rhs` and `guards` as it is. The error of
+        a step in y[i] is kept below absolute[i] + relative |y[i]|, root mean square over i. At
+        most `budget` steps are tried. samples[j] is set to the state at times[j], ascending and
+        not before t, as far as the integration gets; a state at a mode's end is the one before
+        the change.
+    """
+
+    @kernel
+    def guess(t, end, y, p, relative, absolute, k, trial):
+        """Return a first step (Sec. II.4); k[0] holds the derivative at t."""
+        d0 = d1 = d2 = 0.0
+        for i in range(len(y)):
+            scale = absolute[i] + relative * abs(y[i])
+            d0 += (y[i] / scale) ** 2
+            d1 += (k[0, i] / scale) ** 2
+        d0, d1 = math.sqrt(d0 / len(y)), math.sqrt(d1 / len(y))
+        h = 1e-6 if min(d0, d1) < 1e-5 else 0.01 * d0 / d1
+        h = min(h, end - t)
+        for i in range(len(y)):
+            trial[i] = y[i] + h * k[0, i]
+        rhs(t + h, trial, p, k[1])
+        for i in range(len(y)):
+            scale = absolute[i] + relative * abs(y[i])
+            d2 += ((k[1, i] - k[0, i]) / scale) ** 2
+        d2 = math.sqrt(d2 / len(y)) / h
+        steepest = max(d1, d2)
+        longest = max(1e-6, 1e-3 * h) if steepest <= 1e-15 else (0.01 / steepest) ** 0.125
+        return min(100 * h, longest)
+
+    @kernel
+    def stages(first, last, t, h, y, p, k, trial):
+        """Evaluate the stages first <= s < last."""
+        for s in range(first, last):
+            for i in range(len(y)):
+                trial[i] = 0.0
+            for j in range(s):
+                a = _A[s, j]
+                if a != 0.0:
+                    for i in range(len(y)):
+                        trial[i] += a * k[j, i]
+            for i in range(len(y)):
+                trial[i] = y[i] + h * trial[i]
+            rhs(t + _C[s] * h, trial, p, k[s])
+
+    @kernel
+    def attempt(t, h, y, p, relative, absolute, k, new):
+        """Try a step: set `new`, and return its error in units of the one allowed."""
+        stages(1, _STAGES, t, h, y, p, k, new)
+        e3 = e5 = 0.0
+        for i in range(len(y)):
+            rise = third = fifth = 0.0
+            for j in range(_STAGES):
+                rise += _B[j] * k[j, i]
+                third += _E3[j] * k[j, i]
+                fifth += _E5[j] * k[j, i]
+            new[i] = y[i] + h * rise
+            scale = absolute[i] + relative * max(abs(y[i]), abs(new[i]))
+            e3 += (third / scale) ** 2
+            e5 += (fifth / scale) ** 2
+        return 0.0 if e5 == 0 else h * e5 / math.sqrt((e5 + 0.01 * e3) * len(y))
+
+    @kernel
+    def densify(t, h, y, p, k, new, dense, trial):
+        """Set dense (7, n), the coefficients of the dense output over an accepted step."""
+        stages(_STAGES + 1, _ALL_STAGES, t, h, y, p, k, trial)
+        for i in range(len(y)):
+            rise = new[i] - y[i]
+            dense[0, i] = rise
+            dense[1, i] = h * k[0, i] - rise
+            dense[2, i] = 2 * rise - h * (k[_STAGES, i] + k[0, i])
+            for q in range(3, _POWER):
+                total = 0.0
+                for j in range(_ALL_STAGES):
+                    total += _D[q - 3, j] * k[j, i]
+                dense[q, i] = h * total
+
+    @kernel
+    def interpolate(theta, y, dense, out):
+        """Set out to the state at the fraction theta of a step."""
+        rest = 1 - theta
+        for i in range(len(y)):
+            value = dense[6, i] * theta
+            value = (value + dense[5, i]) * rest
+            value = (value + dense[4, i]) * theta
+            value = (value + dense[3, i]) * rest
+            value = (value + dense[2, i]) * theta
+            value = (value + dense[1, i]) * rest
+            out[i] = y[i] + (value + dense[0, i]) * theta
+
+    @kernel
+    def leaving(which, low, high, f_low, f_high, t, h, y, p, dense, trial, guard):
+        """Return where in (low, high] a guard that is negative at high becomes so.
+
+        A bracket is narrowed by the ITP method of I. F. D. Oliveira and R. H. C. Takahashi, ACM
+        Trans. Math. Softw. 47 (2020) 5: it needs at most one evaluation more than bisection.
+        """
+        start = low
+        for _ in range(_HALVINGS):
+            if f_low > 0:
+                break
+            middle = start + 0.5 * (high - start)
+            interpolate(middle, y, dense, trial)
+            guards(t + middle * h, trial, p, guard)
+            if guard[which] > 0:
+                low, f_low = middle, guard[which]
+            else:
+                high, f_high = middle, guard[which]
+        if not f_low > 0:
+            return start
+        width = high - low
+        resolution = _RESOLUTION * high
+        slack = resolution * 2.0 ** math.ceil(math.log2(width / resolution))
+        strength = 0.2 / width
+        while high - low > 2 * resolution:
+            middle = 0.5 * (low + high)
+            secant = (f_low * high - f_high * low) / (f_low - f_high)
+            inward = math.copysign(1.0, middle - secant)
+            push = min(strength * (high - low) ** 2, abs(middle - secant))
+            radius = max(slack - 0.5 * (high - low), 0.0)
+            at = secant + inward * push
+            if abs(at - middle) > radius:
+                at = middle - inward * radius
+            interpolate(at, y, dense, trial)
+            guards(t + at * h, trial, p, guard)
+            if guard[which] > 0:
+                low, f_low = at, guard[which]
+            else:
+                high, f_high = at, guard[which]
+            slack *= 0.5
+        return high
+
+    @kernel
+    def integrate(t, end, y, step, p, relative, absolute, budget, times, samples):
+        k = np.empty((_ALL_STAGES, len(y)))
+        dense = np.empty((_POWER, len(y)))
+        new, trial = np.empty((2, len(y)))
+        before, after, guard = np.empty((3, max(guard_count, 1)))
+        sampled = steps = 0
+        status, which = OUT_OF_BUDGET, -1
+        while sampled < len(times) and times[sampled] <= t:
+            samples[sampled] = y
+            sampled += 1
+        rhs(t, y, p, k[0])
+        guards(t, y, p, before)
+        if step <= 0:
+            step = guess(t, end, y, p, relative, absolute, k, trial)
+        held = False  # after a rejection the step may not grow at once
+        while steps < budget:
+            if t >= end:
+                status = REACHED_END
+                break
+            shortest = 10 * np.spacing(abs(t))
+            if not step > shortest:
+                status = STUCK
+                break
+            last = end - t <= step * (1 + 1e-12)
+            h = end - t if last else step
+            reached = end if last else t + h
+            steps += 1
+            error = attempt(t, h, y, p, relative, absolute, k, new)
+            if not error < 1:
+                factor = _SAFETY * error**-0.125
+                step = h * (factor if factor > _SHRINK else _SHRINK)
+                held = True
+                continue
+            factor = _GROW if error == 0 else min(_GROW, _SAFETY * error**-0.125)
+            factor = min(factor, 1.0) if held else factor
+            held = False
+            # A step cut short by the end says little of the next one.
+            step = max(step, h * factor) if last else h * factor
+            rhs(t + h, new, p, k[_STAGES])
+
+            dense_wanted = guard_count > 0 and looks > 1
+            if not dense_wanted:
+                guards(t + h, new, p, after)
+                for i in range(guard_count):
+                    dense_wanted |= after[i] < 0
+            dense_wanted |= sampled < len(times) and times[sampled] <= reached
+            if dense_wanted:
+                densify(t, h, y, p, k, new, dense, trial)
+
+            leave = left = 0.0
+            for look in range(looks if dense_wanted and guard_count > 0 else 0):
+                right = (look + 1) / looks
+                interpolate(right, y, dense, trial)
+                guards(t + right * h, trial, p, after)
+                for i in range(guard_count):
+                    if after[i] < 0:
+                        at = leaving(
+                            i, left, right, before[i], after[i], t, h, y, p, dense, trial, guard
+                        )
+                        if which < 0 or at < leave:
+                            which, leave = i, at
+                if which >= 0:
+                    break
+                left = right
+                before[:] = after
+            before[:] = after
+
+            if which >= 0:
+                reached = t + leave * h
+            while sampled < len(times) and times[sampled] <= reached:
+                interpolate((times[sampled] - t) / h, y, dense, samples[sampled])
+                sampled += 1
+            if which >= 0:
+                interpolate(leave, y, dense, trial)
+                t = reached
+                y[:] = trial
+                status = GUARDED
+                break
+            t = reached
+            y[:] = new
+            k[0] = k[_STAGES]
+        if status == OUT_OF_BUDGET and t >= end:
+            status = REACHED_END
+        return Outcome(status, t, which, step, steps, sampled)
+
+    return integrate

@@ -1,0 +1,40 @@
+"""The vibrator: two unbalanced motors on one body, which must synchronise by themselves.
+
+After J. Michalczyk and G. Cieplok, "Disturbances in self-synchronisation of vibrators in vibratory
+machines", Arch. Min. Sci. 59 (2014).
+"""
+
+from typing import Any
+
+from models.vibrator.parameters import OUTPUTS, Params, Settings, coordinates
+from uq.contract import Model, Trajectory
+
+
+def _batch(x: Any, seed: Any, settings: Settings) -> Any:
+    from models.vibrator.batch import batch  # numba only when something is computed
+
+    return batch(x, seed, settings)
+
+
+def _simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
+    from models.vibrator.trajectory import simulate
+
+    return simulate(params, settings, seed)
+
+
+MODEL = Model(
+    name="vibrator",
+    title="vibratory machine whose two unbalanced motors must synchronise by themselves",
+    version="1",
+    parameters=Params,
+    settings=Settings,
+    outputs=OUTPUTS,
+    batch=_batch,
+    simulate=_simulate,
+    coordinates=coordinates,
+    block=256,
+    references=(
+        "J. Michalczyk, G. Cieplok, Disturbances in self-synchronisation of vibrators in vibratory "
+        "machines, Arch. Min. Sci. 59 (2014)",
+    ),
+)

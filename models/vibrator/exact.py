@@ -1,0 +1,218 @@
+"""Error-controlled propagation of one machine: the yardstick of the vibrator.
+
+The equations are integrated by `models.numerics.dop853`; the flights of the feed begin and end
+where its contact force, or its height, vanishes.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models.numerics.dop853 import GUARDED, Outcome, integrator
+from models.numerics.jit import kernel
+from models.vibrator import equations, extended
+from models.vibrator.parameters import Params
+from models.vibrator.system import System
+
+STEPS_PER_TURN = 400
+_SPARE_STEPS = 10_000
+_TURNED, _FEED = 0, 1  # guards
+
+
+class Task(NamedTuple):
+    """A mode of motion.
+
+    Attributes
+    ----------
+    system : System
+    last_angle : float
+        psi_1 at which to stop [rad].
+    riding : bool
+        Whether the feed lies on the deck.
+    work : ndarray
+        See `models.vibrator.extended.workspace`.
+    """
+
+    system: System
+    last_angle: float
+    riding: bool
+    work: Any
+
+
+class Motion(NamedTuple):
+    """How one machine moved.
+
+    Attributes
+    ----------
+    status : int
+        `REACHED_END`, `GUARDED` (the turns are done), `OUT_OF_BUDGET` or `STUCK`, of
+        `models.numerics.dop853`.
+    time : float
+        [s] since the start.
+    state : ndarray
+        At that time.
+    samples : ndarray, shape (k, len(state))
+        At the times asked for, NaN from where the motion ended.
+    """
+
+    status: int
+    time: float
+    state: NDArray[np.float64]
+    samples: NDArray[np.float64]
+
+
+@kernel
+def _rigid_rates(t, y, task, dy):
+    for i in range(equations.DEGREES):
+        dy[i] = y[equations.DEGREES + i]
+    equations.acceleration(task.system, y, dy[equations.DEGREES :])
+
+
+@kernel
+def _rigid_guards(t, y, task, guard):
+    guard[_TURNED] = task.last_angle - y[3]
+
+
+@kernel
+def _extended_rates(t, y, task, dy):
+    for i in range(extended.DEGREES):
+        dy[i] = y[extended.DEGREES + i]
+    extended.acceleration(task.system, task.riding, y, task.work, dy[extended.DEGREES :])
+
+
+@kernel
+def _extended_guards(t, y, task, guard):
+    guard[_TURNED] = task.last_angle - y[3]
+    if task.riding:
+        deck = extended.deck_acceleration(task.system, True, y, task.work)
+        guard[_FEED] = deck + task.system.feed_gravity
+    else:
+        guard[_FEED] = y[7]
+
+
+_integrate_rigid = integrator(_rigid_rates, _rigid_guards, 1, looks=1)
+_integrate_extended = integrator(_extended_rates, _extended_guards, 2)
+
+
+@kernel
+def _run_rigid(system, state, last_angle, end, absolute, budget, times, samples, work):
+    task = Task(system, last_angle, True, work)
+    return _integrate_rigid(0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples)
+
+
+@kernel
+def _run_extended(system, state, last_angle, end, absolute, budget, times, samples, work):
+    riding = state[7] == 0 and state[extended.DEGREES + 7] == 0
+    time = step = 0.0
+    steps = sampled = 0
+    while True:
+        ended = _integrate_extended(
+            time,
+            end,
+            state,
+            step,
+            Task(system, last_angle, riding, work),
+            0.0,
+            absolute,
+            budget - steps,
+            times[sampled:],
+            samples[sampled:],
+        )
+        time, step = ended.time, ended.step
+        steps += ended.steps
+        sampled += ended.sampled
+        if ended.status != GUARDED or ended.guard == _TURNED:
+            break
+        if riding:
+            state[7] = state[extended.DEGREES + 7] = 0.0
+        else:
+            extended.land(system, state, work)
+        riding = not riding
+    return Outcome(ended.status, time, ended.guard, step, steps, sampled)
+
+
+def is_extended(system: System) -> bool:
+    """Whether a machine needs the equations of `models.vibrator.extended`."""
+    return bool(system.exact or system.slides or system.rocks or system.feed_mass)
+
+
+def start(params: Params, system: System) -> NDArray[np.float64]:
+    """Return the state of one machine at rest, at its initial phases.
+
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    system : System
+        The same machine, prepared.
+
+    Returns
+    -------
+    ndarray, shape (10,) or (16,)
+        See `models.vibrator.equations.DEGREES` and `models.vibrator.extended.DEGREES`.
+    """
+    row = Params._make(np.array([value]) for value in params)
+    (state,) = equations.initial_state(row)
+    return extended.extend(state) if is_extended(system) else state
+
+
+def propagate(
+    system: System,
+    state: ArrayLike,
+    duration: float,
+    tolerance: float,
+    turns: float = math.inf,
+    times: ArrayLike = (),
+) -> Motion:
+    """Follow one machine.
+
+    Parameters
+    ----------
+    system : System
+    state : array_like, shape (10,) or (16,)
+        At time 0, as `start` returns it; the longer one for the extended machine.
+    duration : float
+        [s]
+    tolerance : float
+        Error allowed in a step, in units of the motion: static unbalance over mass, this over
+        the radius of gyration, a radian, and these times the synchronous speed.
+    turns : float
+        Stop when vibrator 1 has made so many, if the time is not up before.
+    times : array_like, shape (k,)
+        Ascending, when to sample the state [s].
+
+    Returns
+    -------
+    Motion
+    """
+    state = np.array(state, float)
+    times = np.ascontiguousarray(times, float)
+    samples = np.full((len(times), len(state)), np.nan)
+    run = _run_rigid if len(state) == 2 * equations.DEGREES else _run_extended
+    revolutions = duration * _speed(system) / (2 * np.pi)
+    ended = run(
+        system,
+        state,
+        state[3] + 2 * np.pi * turns,
+        float(duration),
+        tolerance * _scales(system, len(state) // 2),
+        int(STEPS_PER_TURN * revolutions) + _SPARE_STEPS,
+        times,
+        samples,
+        extended.workspace(),
+    )
+    return Motion(ended.status, ended.time, state, samples)
+
+
+def _speed(m: System) -> float:
+    return max(m.synchronous_speed_1, m.synchronous_speed_2)
+
+
+def _scales(m: System, degrees: int) -> NDArray[np.float64]:
+    """Return the size of each component of the state, of x, y, alpha, psi, u, chi, height."""
+    shift = (m.unbalance_1 + m.unbalance_2) / m.mass
+    turn = shift / math.sqrt(m.inertia / m.mass)
+    sizes = np.array([shift, shift, turn, 1.0, 1.0, shift, turn, shift])[:degrees]
+    return np.concatenate([sizes, sizes * _speed(m)])

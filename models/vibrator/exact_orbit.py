@@ -1,0 +1,305 @@
+"""Synchronous running of any vibrator as a periodic orbit: shooting with the exact propagator.
+
+The map P takes a state at psi_1 = 0 to the one where vibrator 1 has next turned once. A fixed
+point, psi_2 having turned once as well, is a periodic orbit; the eigenvalues of its derivative are
+the Floquet multipliers but for the trivial 1. The derivative is taken by central differences.
+
+What cannot move is no part of P: coordinates of rigid mounts and, if the feed rides at psi_1 = 0,
+its height. If it flies there, height and its rate count. The flight may then begin or end at
+any other phase: P stays smooth as long as the same changes happen in the same order.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.numerics.dop853 import GUARDED, Outcome
+from models.vibrator import exact, extended, theory
+from models.vibrator.measures import Measures, first_harmonic, measure
+from models.vibrator.parameters import Params
+from models.vibrator.system import System, system
+
+TIGHTEST = 1e-11  # tolerance of orbits, if that of the runs is wider
+SAMPLES = 256  # of an orbit
+ITERATIONS = 15
+_NUDGE = 1e-4  # of central differences, in units of the propagator's scales
+_CLOSE, _STALLED = 1e-9, 1e-6  # a step this small was the last; or this small, and not shrinking
+_BOLDEST = 0.5  # largest step of psi_2 and of log(speed)
+_SLOWEST = 5.0  # longest turn tried, in turns at the guessed speed
+_ANCHOR, _PSI_2 = 3, 4
+_NEVER_LEAVES = 1e30  # gravity that keeps a feed without mass on the deck [m s-2]
+_RIGID = 5  # degrees of freedom of the rigid machine without feed
+
+
+@dataclass
+class Machine:
+    """One machine, ready to be run.
+
+    Attributes
+    ----------
+    params : Params
+    system : System
+    scales : ndarray
+        Size of each component of the state.
+    work : ndarray
+        See `models.vibrator.extended.workspace`.
+    budget : int
+        Steps that may still be tried.
+    """
+
+    params: Params
+    system: System
+    scales: NDArray[np.float64]
+    work: NDArray[np.float64]
+    budget: int
+
+    @property
+    def degrees(self) -> int:
+        """Number of degrees of freedom, half the length of a state."""
+        return len(self.scales) // 2
+
+    def rides(self, state: NDArray[np.float64]) -> bool:
+        """Whether the feed lies on the deck."""
+        return self.degrees == _RIGID or state[7] == 0 == state[extended.DEGREES + 7]
+
+    def free(self, riding: bool) -> NDArray[np.intp]:
+        """Return the components of the state that the map P has."""
+        m = self.system
+        moves = [True] * 3 + [False] + [True]
+        spins = [True] * 5
+        if self.degrees > _RIGID:
+            more = [bool(m.slides), bool(m.rocks), not riding]
+            moves, spins = moves + more, spins + more
+        return np.flatnonzero(moves + spins)
+
+    def run(
+        self,
+        state: NDArray[np.float64],
+        duration: float,
+        tolerance: float,
+        turns: float = math.inf,
+        times: NDArray[np.float64] = np.empty(0),
+    ) -> tuple[Outcome, NDArray[np.float64]]:
+        """Advance `state` in place, for some time or turns of vibrator 1; return samples too."""
+        samples = np.full((len(times), len(state)), np.nan)
+        kernel = exact._run_rigid if self.degrees == _RIGID else exact._run_extended
+        ended = kernel(
+            self.system,
+            state,
+            state[_ANCHOR] + 2 * np.pi * turns,
+            float(duration),
+            tolerance * self.scales,
+            self.budget,
+            times,
+            samples,
+            self.work,
+        )
+        self.budget -= ended.steps
+        return ended, samples
+
+
+class Orbit(NamedTuple):
+    """Synchronous running.
+
+    Attributes
+    ----------
+    state : ndarray
+        At psi_1 = 0.
+    period : float
+        [s]
+    multiplier : float
+        Largest modulus of a Floquet multiplier but for the trivial 1.
+    measures : Measures
+        Over one revolution, disphasing in (-pi, pi], amplitude of the first harmonic of alpha.
+    ripple : float
+        Largest deviation of psi_1 - psi_2 from its mean [rad].
+    """
+
+    state: NDArray[np.float64]
+    period: float
+    multiplier: float
+    measures: Measures
+    ripple: float
+
+
+def prepare(params: Params, kinematics: str, budget: int) -> Machine:
+    """Return a machine ready to be run.
+
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    kinematics : {"small", "exact"}
+    budget : int
+        Steps that may be tried.
+    """
+    m = system(params, kinematics)
+    if not m.feed_mass:
+        m = m._replace(feed_gravity=_NEVER_LEAVES)
+    degrees = extended.DEGREES if exact.is_extended(m) else _RIGID
+    return Machine(params, m, exact._scales(m, degrees), extended.workspace(), budget)
+
+
+def proposal(machine: Machine) -> NDArray[np.float64] | None:
+    """Return the state at psi_1 = 0 of the synchronous running that the averaged theory foresees.
+
+    None if there is none that is stable. The feed rides.
+    """
+    guess = theory.disphasing(machine.params)
+    if not guess.stable[0]:
+        return None
+    w = float(guess.speed[0])
+    motion = theory.steady_motion(machine.params, guess.speed, guess.angle)
+    state = np.zeros(2 * machine.degrees)
+    places = (0, 1, 2) if machine.degrees == _RIGID else (0, 1, 2, 5, 6)
+    for i, amplitude in zip(places, motion, strict=False):
+        state[i], state[machine.degrees + i] = amplitude[0].real, -w * amplitude[0].imag
+    state[_PSI_2] = -guess.angle[0]
+    state[machine.degrees + _ANCHOR] = state[machine.degrees + _PSI_2] = w
+    return state
+
+
+def anchored(machine: Machine, state: NDArray[np.float64], tolerance: float) -> NDArray[np.float64]:
+    """Return the state when psi_1 is next a multiple of 2 pi, whole turns taken off."""
+    state = state.copy()
+    part = 1 - (state[_ANCHOR] / (2 * np.pi)) % 1
+    machine.run(state, _longest_turn(machine, state), tolerance, part)
+    state[_PSI_2] -= 2 * np.pi * np.round(state[_PSI_2] / (2 * np.pi))
+    state[_ANCHOR] = 0.0
+    return state
+
+
+def find_orbit(machine: Machine, guess: NDArray[np.float64], tolerance: float) -> Orbit | None:
+    """Find the periodic orbit near a guess, by Newton's method.
+
+    The derivative of P is taken anew only where it no longer makes the steps shrink well.
+
+    Parameters
+    ----------
+    machine : Machine
+    guess : ndarray
+        State at psi_1 = 0.
+    tolerance : float
+        See `models.vibrator.exact.propagate`; tightened to `TIGHTEST`.
+
+    Returns
+    -------
+    Orbit or None
+        None if the search does not converge, or takes more than a quarter of the machine's budget.
+    """
+    before = machine.budget
+    machine.budget = before // 4
+    used = machine.budget
+    tolerance = min(tolerance, TIGHTEST)
+    fixed = _fixed_point(machine, guess, tolerance)
+    orbit = None if fixed is None else _describe(machine, fixed, tolerance)
+    machine.budget = before - (used - machine.budget)
+    return orbit
+
+
+def _longest_turn(machine: Machine, state: NDArray[np.float64]) -> float:
+    speed = max(state[machine.degrees + _ANCHOR], 1e-2 * machine.system.synchronous_speed_1)
+    return _SLOWEST * 2 * np.pi / speed
+
+
+def _revolved(
+    machine: Machine, state: NDArray[np.float64], tolerance: float
+) -> tuple[NDArray[np.float64], float] | None:
+    """Return the state after vibrator 1 has turned once, turns taken off, and the time it took."""
+    end = state.copy()
+    ended, _ = machine.run(end, _longest_turn(machine, state), tolerance, 1.0)
+    if ended.status != GUARDED or not np.isfinite(end).all():
+        return None
+    end[_ANCHOR] = 0.0
+    end[_PSI_2] -= 2 * np.pi
+    return end, ended.time
+
+
+def _derivative(
+    machine: Machine, state: NDArray[np.float64], free: NDArray[np.intp], tolerance: float
+) -> NDArray[np.float64] | None:
+    """Return the derivative of P in units of the scales."""
+    scales = machine.scales[free]
+    matrix = np.empty((len(free), len(free)))
+    for column, i in enumerate(free):
+        ends = []
+        for side in (1.0, -1.0):
+            nudged = state.copy()
+            nudged[i] += side * _NUDGE * machine.scales[i]
+            revolved = _revolved(machine, nudged, tolerance)
+            if revolved is None:
+                return None
+            ends.append(revolved[0][free])
+        matrix[:, column] = (ends[0] - ends[1]) / (2 * _NUDGE * scales)
+    return matrix
+
+
+def _fixed_point(
+    machine: Machine, guess: NDArray[np.float64], tolerance: float
+) -> NDArray[np.float64] | None:
+    state, matrix, before = guess, None, math.inf
+    riding = machine.rides(state)
+    for _ in range(ITERATIONS):
+        revolved = _revolved(machine, state, tolerance)
+        if revolved is None:
+            return None
+        end, _ = revolved
+        if machine.rides(end) != riding:
+            # Newton's method has to know whether the feed's height is part of P.
+            state, riding, matrix = end, not riding, None
+            continue
+        free = machine.free(riding)
+        scales = machine.scales[free]
+        if matrix is None:
+            matrix = _derivative(machine, state, free, tolerance)
+            if matrix is None:
+                return None
+            before = math.inf
+        try:
+            step = np.linalg.solve(np.eye(len(free)) - matrix, (end - state)[free] / scales)
+        except np.linalg.LinAlgError:
+            return None
+        size = float(np.abs(step).max())
+        if not math.isfinite(size):
+            return None
+        bold = np.abs(step[np.isin(free, [_PSI_2, machine.degrees + _ANCHOR])]).sum()
+        state = state.copy()
+        state[free] += step * scales * min(1.0, _BOLDEST / max(bold, _CLOSE))
+        if size < _CLOSE or (size < _STALLED and size > 0.3 * before):
+            return state
+        if size > 0.1 * before:
+            matrix = None
+        before = size
+    return None
+
+
+def _describe(
+    machine: Machine, state: NDArray[np.float64], tolerance: float
+) -> Orbit | None:
+    matrix = _derivative(machine, state, machine.free(machine.rides(state)), tolerance)
+    revolved = _revolved(machine, state, tolerance)
+    if matrix is None or revolved is None:
+        return None
+    period = revolved[1]
+    interval = period / SAMPLES
+    _, samples = machine.run(
+        state.copy(), period, tolerance, times=interval * np.arange(SAMPLES + 1)
+    )
+    if not np.isfinite(samples).all():
+        return None
+    measures = measure(machine.system, samples, interval)
+    dphi = samples[:, _ANCHOR] - samples[:, _PSI_2]
+    mean = math.remainder(measures.disphasing, 2 * np.pi)
+    return Orbit(
+        state,
+        period,
+        float(np.abs(np.linalg.eigvals(matrix)).max()),
+        measures._replace(
+            disphasing=np.pi if mean == -np.pi else mean,
+            angular_amplitude=first_harmonic(samples[:-1, 2]),
+        ),
+        float(np.abs(dphi - measures.disphasing).max()),
+    )

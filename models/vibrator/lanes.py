@@ -1,0 +1,268 @@
+"""The fast propagator: sixteen rigid machines abreast, Runge-Kutta steps of fixed length.
+
+All loops over lanes are straight lines, so lanes never diverge and a row's bits do not depend on
+its neighbours. See `models.numerics.tsit5`.
+"""
+
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.numerics.jit import inlined, kernel
+from models.numerics.sincos import cosine_sine, nearest
+from models.numerics.tsit5 import LANES, STAGES, combiner, layout
+from models.vibrator.rigid import Rigid, accelerations
+from models.vibrator.system import System
+
+Array = NDArray[np.float64]
+
+STATE = 10  # x, y, alpha, psi_1, psi_2 and their rates
+CONSTANTS = len(Rigid._fields)
+_combine = combiner(STATE)
+_Y, _NEW, _K, _SIZE = layout(STATE)
+_WHOLE = STATE * LANES
+
+STABLE = 0.8
+"""Step times the fastest rate of a machine: what keeps the method stable with room to spare."""
+
+_TURN = 2 * np.pi
+
+# What `advance` notes of each row.
+(
+    POWER_1,
+    POWER_2,
+    ALPHA_LOW,
+    ALPHA_HIGH,
+    LEFT_LOW,
+    LEFT_HIGH,
+    RIGHT_LOW,
+    RIGHT_HIGH,
+    ANGLE_LOW,
+    ANGLE_HIGH,
+    EXCURSION,
+    LAST_OUT,
+) = range(12)
+NOTES = 12
+
+
+def pack(system: System) -> Array:
+    """Return the constants of n machines, shape (n, CONSTANTS)."""
+    return np.stack([getattr(system, name) for name in Rigid._fields], axis=1)
+
+
+def aligned(size: int) -> Array:
+    """Return float64 zeros that start on a cache line: whole vectors then never straddle two."""
+    raw = np.zeros(size + 8)
+    skip = (-raw.ctypes.data // 8) % 8
+    return raw[skip : skip + size]
+
+
+@inlined
+def machine(c, lane):
+    """Return the constants of one lane."""
+    return Rigid(
+        c[lane],
+        c[LANES + lane],
+        c[2 * LANES + lane],
+        c[3 * LANES + lane],
+        c[4 * LANES + lane],
+        c[5 * LANES + lane],
+        c[6 * LANES + lane],
+        c[7 * LANES + lane],
+        c[8 * LANES + lane],
+        c[9 * LANES + lane],
+        c[10 * LANES + lane],
+        c[11 * LANES + lane],
+        c[12 * LANES + lane],
+        c[13 * LANES + lane],
+        c[14 * LANES + lane],
+        c[15 * LANES + lane],
+        c[16 * LANES + lane],
+        c[17 * LANES + lane],
+        c[18 * LANES + lane],
+        c[19 * LANES + lane],
+        c[20 * LANES + lane],
+        c[21 * LANES + lane],
+        c[22 * LANES + lane],
+        c[23 * LANES + lane],
+        c[24 * LANES + lane],
+        c[25 * LANES + lane],
+        c[26 * LANES + lane],
+    )
+
+
+@kernel
+def slopes(c, h, y, k):
+    """Set k to the rates of change of the states y of all lanes, times the step."""
+    for lane in range(LANES):
+        m, step = machine(c, lane), h[lane]
+        c_1, s_1 = cosine_sine(m.working_angle + y[3 * LANES + lane])
+        c_2, s_2 = cosine_sine(m.working_angle - y[4 * LANES + lane])
+        x, y_, alpha = y[lane], y[LANES + lane], y[2 * LANES + lane]
+        vx, vy, va = y[5 * LANES + lane], y[6 * LANES + lane], y[7 * LANES + lane]
+        w_1, w_2 = y[8 * LANES + lane], y[9 * LANES + lane]
+        motion = accelerations(m, c_1, s_1, c_2, s_2, x, y_, alpha, vx, vy, va, w_1, w_2)
+        k[lane] = step * vx
+        k[LANES + lane] = step * vy
+        k[2 * LANES + lane] = step * va
+        k[3 * LANES + lane] = step * w_1
+        k[4 * LANES + lane] = step * w_2
+        k[5 * LANES + lane] = step * motion.x
+        k[6 * LANES + lane] = step * motion.y
+        k[7 * LANES + lane] = step * motion.alpha
+        k[8 * LANES + lane] = step * motion.psi_1
+        k[9 * LANES + lane] = step * motion.psi_2
+
+
+@kernel
+def load(table, first, out):
+    """Bring up to LANES rows of an (n, q) table into lanes; spare lanes repeat the last row."""
+    last = table.shape[0] - 1
+    for lane in range(LANES):
+        for i in range(table.shape[1]):
+            out[i * LANES + lane] = table[min(first + lane, last), i]
+
+
+@kernel
+def store(lanes, first, table):
+    """Bring lanes back into their rows of an (n, q) table."""
+    for n in range(first, min(first + LANES, table.shape[0])):
+        for i in range(table.shape[1]):
+            table[n, i] = lanes[i * LANES + n - first]
+
+
+@kernel
+def _begin(notes):
+    for lane in range(LANES):
+        for i in (POWER_1, POWER_2, EXCURSION):
+            notes[i * LANES + lane] = 0.0
+        for i in (ALPHA_LOW, LEFT_LOW, RIGHT_LOW, ANGLE_LOW):
+            notes[i * LANES + lane] = np.inf
+        for i in (ALPHA_HIGH, LEFT_HIGH, RIGHT_HIGH, ANGLE_HIGH):
+            notes[i * LANES + lane] = -np.inf
+        notes[LAST_OUT * LANES + lane] = -1.0
+
+
+@kernel
+def _note(c, y, new, target, h, step, band, notes):
+    """Take in the step from the old state to the new one."""
+    for lane in range(LANES):
+        cosine, sine = c[_COS * LANES + lane], c[_SIN * LANES + lane]
+        lag_1 = c[_SYNCHRONOUS_1 * LANES + lane] - new[8 * LANES + lane]
+        lag_2 = c[_SYNCHRONOUS_2 * LANES + lane] - new[9 * LANES + lane]
+        d_1 = c[_SLIP_1 * LANES + lane] * c[_SLIP_1 * LANES + lane] + lag_1 * lag_1
+        d_2 = c[_SLIP_2 * LANES + lane] * c[_SLIP_2 * LANES + lane] + lag_2 * lag_2
+        inverse = 1 / (d_1 * d_2)
+        torque_1 = c[_TORQUE_1 * LANES + lane] * lag_1 * (d_2 * inverse)
+        torque_2 = c[_TORQUE_2 * LANES + lane] * lag_2 * (d_1 * inverse)
+        notes[POWER_1 * LANES + lane] += torque_1 * new[8 * LANES + lane]
+        notes[POWER_2 * LANES + lane] += torque_2 * new[9 * LANES + lane]
+        x, y_, alpha = new[lane], new[LANES + lane], new[2 * LANES + lane]
+        along = cosine * x + sine * y_
+        lever = c[_SPACING * LANES + lane] * sine * alpha
+        left, right = along - lever, along + lever
+        angle = new[3 * LANES + lane] - new[4 * LANES + lane]
+        low, high = notes[ALPHA_LOW * LANES + lane], notes[ALPHA_HIGH * LANES + lane]
+        notes[ALPHA_LOW * LANES + lane] = alpha if alpha < low else low
+        notes[ALPHA_HIGH * LANES + lane] = alpha if alpha > high else high
+        low, high = notes[LEFT_LOW * LANES + lane], notes[LEFT_HIGH * LANES + lane]
+        notes[LEFT_LOW * LANES + lane] = left if left < low else low
+        notes[LEFT_HIGH * LANES + lane] = left if left > high else high
+        low, high = notes[RIGHT_LOW * LANES + lane], notes[RIGHT_HIGH * LANES + lane]
+        notes[RIGHT_LOW * LANES + lane] = right if right < low else low
+        notes[RIGHT_HIGH * LANES + lane] = right if right > high else high
+        low, high = notes[ANGLE_LOW * LANES + lane], notes[ANGLE_HIGH * LANES + lane]
+        notes[ANGLE_LOW * LANES + lane] = angle if angle < low else low
+        notes[ANGLE_HIGH * LANES + lane] = angle if angle > high else high
+        # The square of the displacement is a cubic in a step; its vertex where its rate vanishes.
+        x_0, y_0 = y[lane], y[LANES + lane]
+        far_0, far = x_0 * x_0 + y_0 * y_0, x * x + y_ * y_
+        out_0 = 2 * h[lane] * (x_0 * y[5 * LANES + lane] + y_0 * y[6 * LANES + lane])
+        out = 2 * h[lane] * (x * new[5 * LANES + lane] + y_ * new[6 * LANES + lane])
+        turned = (out_0 > 0.0) & (out < 0.0)
+        part = out_0 / (out_0 - out) if turned else 1.0
+        rest = 1.0 - part
+        vertex = rest * rest * ((1.0 + 2.0 * part) * far_0 + part * out_0)
+        vertex += part * part * ((1.0 + 2.0 * rest) * far - rest * out)
+        peak = notes[EXCURSION * LANES + lane]
+        notes[EXCURSION * LANES + lane] = vertex if vertex > peak else peak
+        # The last time the disphasing angle came into its band.
+        off_0 = y[3 * LANES + lane] - y[4 * LANES + lane] - target[lane]
+        off = angle - target[lane]
+        off_0 = abs(off_0 - _TURN * nearest(off_0 / _TURN))
+        off = abs(off - _TURN * nearest(off / _TURN))
+        came = (off_0 > band) & (off <= band)
+        part = (off_0 - band) / (off_0 - off) if came else 0.0
+        last = notes[LAST_OUT * LANES + lane]
+        notes[LAST_OUT * LANES + lane] = step + part if came else last
+
+
+_SYNCHRONOUS_1 = Rigid._fields.index("synchronous_speed_1")
+_SYNCHRONOUS_2 = Rigid._fields.index("synchronous_speed_2")
+_SLIP_1, _SLIP_2 = Rigid._fields.index("slip_1"), Rigid._fields.index("slip_2")
+_TORQUE_1, _TORQUE_2 = Rigid._fields.index("torque_1"), Rigid._fields.index("torque_2")
+_SPACING = Rigid._fields.index("half_spacing")
+_COS, _SIN = CONSTANTS, CONSTANTS + 1
+
+
+@kernel
+def _advance(constants, h, state, target, steps, band, notes, work):
+    c, w, note, step_size, aim = work
+    y, new = w[_Y : _Y + _WHOLE], w[_NEW : _NEW + _WHOLE]
+    for first in range(0, state.shape[0], LANES):
+        load(constants, first, c)
+        load(state, first, y)
+        load(h, first, step_size)
+        load(target, first, aim)
+        for lane in range(LANES):
+            angle = c[4 * LANES + lane]
+            c[_COS * LANES + lane], c[_SIN * LANES + lane] = np.cos(angle), np.sin(angle)
+        _begin(note)
+        for step in range(steps):
+            for stage in range(1, STAGES + 1):
+                k = w[_K + (stage - 1) * _WHOLE : _K + stage * _WHOLE]
+                slopes(c, step_size, y if stage == 1 else new, k)
+                _combine(stage, w)
+            _note(c, y, new, aim, step_size, float(step), band, note)
+            y[:] = new
+        store(y, first, state)
+        store(note, first, notes)
+
+
+def advance(
+    constants: Array, h: Array, state: Array, target: Array, steps: int, band: float
+) -> Array:
+    """Advance n machines by some steps.
+
+    Parameters
+    ----------
+    constants : ndarray, shape (n, CONSTANTS)
+        Of `pack`.
+    h : ndarray, shape (n,)
+        Step [s].
+    state : ndarray, shape (n, STATE)
+        Updated in place.
+    target : ndarray, shape (n,)
+        Disphasing angle about which the band is [rad]; NaN for none.
+    steps : int
+    band : float
+        [rad]
+
+    Returns
+    -------
+    ndarray, shape (n, NOTES)
+        Sums over the steps of the motors' powers before bearing loss [W]; lowest and highest
+        rotation [rad], displacement along xi of the left and the right end of the deck [m], and
+        disphasing angle [rad]; largest squared displacement of C [m2]; when the disphasing angle
+        last came into its band [steps], -1 if it did not.
+    """
+    notes = np.empty((len(state), NOTES))
+    work = (
+        aligned((CONSTANTS + 2) * LANES),
+        aligned(_SIZE),
+        aligned(NOTES * LANES),
+        aligned(LANES),
+        aligned(LANES),
+    )
+    _advance(constants, h[:, None], state, target[:, None], steps, band, notes, work)
+    return notes

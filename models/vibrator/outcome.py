@@ -1,0 +1,77 @@
+"""What becomes of a machine that is switched on: the numbers of n machines, however found."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.vibrator.parameters import REGIMES
+
+LOCKED_0, LOCKED_PI, ASYNCHRONOUS, CAPTURED, STALLED = range(len(REGIMES))
+
+STALLED_BELOW = 0.05  # of the synchronous speed
+CAPTURED_BELOW = 0.8
+BAND = 0.05  # of the disphasing angle about its mean, when synchronised [rad]
+
+
+class Outcome(NamedTuple):
+    """The steady state that n machines reach, and how they reach it.
+
+    Attributes
+    ----------
+    disphasing, multiplier : ndarray, shape (n,)
+        Mean of psi_1 - psi_2 [rad] and largest Floquet multiplier; NaN unless locked.
+    angular_amplitude, stroke_left, stroke_right : ndarray, shape (n,)
+        [rad, m, m]
+    speed, power_1, power_2 : ndarray, shape (n,)
+        [rad s-1, W, W]
+    synchronisation_time : ndarray, shape (n,)
+        [s]; infinite where they do not lock, the time simulated where that is not known.
+    censored : ndarray of bool, shape (n,)
+        Where it is not known.
+    max_excursion : ndarray, shape (n,)
+        [m]
+    regime : ndarray of int8, shape (n,)
+        Index into `REGIMES`, -1 if unknown.
+    """
+
+    disphasing: NDArray[np.float64]
+    multiplier: NDArray[np.float64]
+    angular_amplitude: NDArray[np.float64]
+    stroke_left: NDArray[np.float64]
+    stroke_right: NDArray[np.float64]
+    speed: NDArray[np.float64]
+    power_1: NDArray[np.float64]
+    power_2: NDArray[np.float64]
+    synchronisation_time: NDArray[np.float64]
+    censored: NDArray[np.bool_]
+    max_excursion: NDArray[np.float64]
+    regime: NDArray[np.int8]
+
+    @staticmethod
+    def nothing(n: int) -> "Outcome":
+        """Return what is known of n machines before they are run."""
+        known = {"censored": np.zeros(n, bool), "regime": np.full(n, -1, np.int8)}
+        return Outcome(**{name: known.get(name, np.full(n, np.nan)) for name in Outcome._fields})
+
+
+def wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return an angle in (-pi, pi]."""
+    return np.pi - np.mod(np.pi - angle, 2 * np.pi)
+
+
+def locked_regime(disphasing: NDArray[np.float64]) -> NDArray[np.int8]:
+    """Return the regime of locked machines."""
+    return np.where(np.abs(disphasing) < np.pi / 2, LOCKED_0, LOCKED_PI).astype(np.int8)
+
+
+def unlocked_regime(
+    speed_1: NDArray[np.float64],
+    speed_2: NDArray[np.float64],
+    synchronous_1: NDArray[np.float64],
+    synchronous_2: NDArray[np.float64],
+) -> NDArray[np.int8]:
+    """Return the regime of machines that are not locked at speed, by their mean speeds."""
+    slower = np.minimum(speed_1 / synchronous_1, speed_2 / synchronous_2)
+    regime = np.where(slower < CAPTURED_BELOW, CAPTURED, ASYNCHRONOUS)
+    return np.where(slower < STALLED_BELOW, STALLED, regime).astype(np.int8)

@@ -1,0 +1,66 @@
+"""One labelled time history of the vibrator, from its start."""
+
+import math
+
+import numpy as np
+
+from models.vibrator import equations, exact, extended
+from models.vibrator.parameters import Params, Settings
+from models.vibrator.system import system
+from uq.contract import Trajectory
+
+LONGEST = 10.0  # s
+SAMPLES_PER_TURN = 50
+
+
+def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
+    """Follow one machine through its start, for ten seconds or the longest start simulated.
+
+    Parameters
+    ----------
+    params : Params
+    settings : Settings
+        The tolerance is kept whichever propagator is chosen for a batch.
+    seed : int
+        Not used: the vibrator is deterministic.
+
+    Returns
+    -------
+    Trajectory
+        It ends early where the step budget does.
+    """
+    m = system(params, settings.kinematics)
+    duration = min(LONGEST, settings.run_up)
+    speed = max(m.synchronous_speed_1, m.synchronous_speed_2)
+    count = math.ceil(duration * speed / (2 * np.pi) * SAMPLES_PER_TURN)
+    time = np.linspace(0.0, duration, count + 1)
+    motion = exact.propagate(m, exact.start(params, m), duration, settings.tolerance, times=time)
+    reached = time <= motion.time
+    q, v = np.split(motion.samples[reached].T, 2)
+    x, y, alpha, psi_1, psi_2 = q[: equations.DEGREES]
+    if m.exact:
+        lift, shrink = np.sin(alpha), np.cos(alpha) - 1
+    else:
+        lift, shrink = alpha, np.zeros_like(alpha)
+    cos, sin = math.cos(m.working_angle), math.sin(m.working_angle)
+    left, right = (
+        (x + end * shrink) * cos + (y + end * lift) * sin
+        for end in (-m.half_spacing, m.half_spacing)
+    )
+    quantities = {
+        "x": ("m", "horizontal displacement of C", x),
+        "y": ("m", "vertical displacement of C", y),
+        "alpha": ("rad", "rotation of the body", alpha),
+        "disphasing_angle": ("rad", "psi_1 - psi_2, with all its turns", psi_1 - psi_2),
+        "speed_1": ("rad s-1", "speed of vibrator 1", v[3]),
+        "speed_2": ("rad s-1", "speed of vibrator 2", v[4]),
+        "displacement_left": ("m", "displacement of the left deck end along xi", left),
+        "displacement_right": ("m", "displacement of the right deck end along xi", right),
+    }
+    if len(q) == extended.DEGREES:
+        quantities |= {
+            "mount_displacement": ("m", "displacement of the motor set on its mount", q[5]),
+            "mount_rotation": ("rad", "rotation of the motor set on its mount", q[6]),
+            "feed_height": ("m", "height of the feed above the deck", q[7]),
+        }
+    return Trajectory(time[reached], quantities)

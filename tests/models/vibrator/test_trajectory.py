@@ -1,0 +1,55 @@
+"""The labelled time history."""
+
+import numpy as np
+import pytest
+
+from models.vibrator import exact
+from models.vibrator.parameters import Params, Settings
+from models.vibrator.system import system
+from models.vibrator.trajectory import simulate
+
+
+@pytest.mark.parametrize("kinematics", ["small", "exact"])
+def test_it_shows_the_start(kinematics):
+    p = Params(support_half_spacing=1.5)
+    settings = Settings(kinematics=kinematics, run_up=3.0, tolerance=1e-10)
+    history = simulate(p, settings)
+    values = {name: series for name, (_, _, series) in history.quantities.items()}
+    assert history.time[0] == 0
+    assert history.time[-1] == 3
+    assert {len(series) for series in values.values()} == {len(history.time)}
+    assert values["speed_1"][0] == 0
+    assert 140 < values["speed_1"][-1] < 157
+    hanging = -2 * (np.pi / 2 + p.working_angle)
+    np.testing.assert_allclose(values["disphasing_angle"][0], hanging, rtol=1e-14)
+    m = system(p, kinematics)
+    end = exact.propagate(m, exact.start(p, m), 3.0, 1e-10).state
+    got = [values[name][-1] for name in ("x", "y", "alpha")]
+    np.testing.assert_allclose(got, end[:3], rtol=0, atol=1e-9)
+    # A rigid deck: its ends' displacements along xi differ by its rotation alone.
+    tilt = values["displacement_right"] - values["displacement_left"]
+    expected = values["alpha"] * np.sin(p.working_angle)
+    if kinematics == "exact":
+        expected = np.cos(values["alpha"] - p.working_angle) - np.cos(p.working_angle)
+    np.testing.assert_allclose(tilt, 3 * expected, rtol=0, atol=1e-14)
+    along = values["x"] * np.cos(p.working_angle) + values["y"] * np.sin(p.working_angle)
+    middle = (values["displacement_right"] + values["displacement_left"]) / 2
+    np.testing.assert_allclose(middle, along, atol=1e-15)
+
+
+def test_it_ends_at_ten_seconds_and_shows_feed_and_mount_where_there_are_any():
+    plain = simulate(Params(), Settings(tolerance=1e-4))
+    assert plain.time[-1] == 10
+    assert "feed_height" not in plain.quantities
+    p = Params(feed_mass=100.0, mount_stiffness=2e7)
+    history = simulate(p, Settings(run_up=2.0, tolerance=1e-5))
+    assert history.quantities["feed_height"][2].max() > 0
+    assert history.quantities["feed_height"][2].min() == 0
+    assert np.ptp(history.quantities["mount_displacement"][2]) > 1e-4
+
+
+def test_it_stops_where_the_budget_ends():
+    p = Params(mount_stiffness=1e17, mount_damping_ratio=1.0)
+    history = simulate(p, Settings(run_up=1.0))
+    assert history.time[-1] < 1
+    assert np.isfinite(history.quantities["x"][2]).all()
