@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 CHUNK_SECONDS = 0.5
 """Work in a chunk, unless the caller says how many rows."""
 
-_BLOCK_SECONDS = 4.0  # longest chunk for the sake of a whole block of the kernel
+_BLOCK_SECONDS = 2.0  # longest chunk for the sake of a whole block of the kernel
 _FIRST_ROWS = 16
 _IN_FLIGHT = 4  # chunks at least, also while workers start
 _GROWTH = 4  # of the chunks of the pilot
@@ -116,11 +116,12 @@ class Job:
         """Run the other rows on workers, and here until the first of them is there."""
         arrived: SimpleQueue[Future] = SimpleQueue()
         flying: dict[Future, tuple[int, Rows]] = {}
-        size = self._chunk_rows()
         while not self.complete:
             # No more chunks in flight than keep the workers busy.
             while self._next < self.store.total and len(flying) < max(_IN_FLIGHT, 2 * crew.threads):
-                start, some = self._take(size)
+                # Towards the end smaller ones, so that all workers finish together.
+                share = ceil((self.store.total - self._next) / max(1, crew.threads))
+                start, some = self._take(min(self._chunk_rows(), self._whole(share)))
                 future = crew.client.submit(
                     evaluate_rows,
                     self.study.model_reference,
@@ -134,14 +135,16 @@ class Job:
                 flying[future] = start, some
                 future.add_done_callback(arrived.put)
             if not crew.threads and self._next < self.store.total:
-                self._here(size)
+                self._here(self._chunk_rows())
             try:
                 future = arrived.get(timeout=_POLL_SECONDS)
             except Empty:
                 crew.watch()
                 continue
             start, some = flying.pop(future)
-            self._keep(start, some, _result(future, start, len(some.x)))
+            chunk, seconds = _result(future, start, len(some.x))
+            self._row_seconds = seconds / len(some.x)
+            self._keep(start, some, chunk)
 
     def _here(self, size: int) -> float:
         """Run the next rows in this process; return the seconds it took."""
@@ -183,12 +186,12 @@ class Job:
         return self._group * ceil(size / self._group)
 
 
-def _result(future: "Future", start: int, count: int) -> Chunk:
+def _result(future: "Future", start: int, count: int) -> tuple[Chunk, float]:
     from distributed import KilledWorker
 
     rows = f"rows {start} to {start + count - 1}"
     try:
-        chunk: Chunk = future.result()
+        result: tuple[Chunk, float] = future.result()
     except (InputError, RunError):
         raise
     except KilledWorker:
@@ -196,4 +199,4 @@ def _result(future: "Future", start: int, count: int) -> Chunk:
     except Exception as error:
         reason = " ".join(str(error.__cause__ or error).split())
         raise RunError(f"a worker could not compute {rows}: {reason}") from error
-    return chunk
+    return result

@@ -158,7 +158,10 @@ class StudyFile(_Table):
 
     study: StudyTable
     design: DesignTable
-    fixed: dict[str, float] = Field({}, description="parameter = value: overrides the nominal")
+    # A parameter's bounds say whether it may be infinite.
+    fixed: dict[str, Annotated[float, Field(allow_inf_nan=True)]] = Field(
+        {}, description="parameter = value: overrides the nominal"
+    )
     uncertain: dict[str, Law] = Field(description="one table per parameter that varies")
     settings: dict[str, Any] = Field({}, description="numerical settings of the model")
     analysis: AnalysisTable = Field(default_factory=AnalysisTable)

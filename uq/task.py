@@ -3,6 +3,7 @@
 Apart from the rest, so that a worker imports no more than the model and what runs it.
 """
 
+import time
 from functools import cache
 from typing import Any
 
@@ -23,10 +24,11 @@ def evaluate_rows(
     x: NDArray[np.float64],
     seed: NDArray[np.uint64],
     start: int,
-) -> Chunk:
-    """Run some rows in a worker process: one dask task, given plain data only.
+) -> tuple[Chunk, float]:
+    """Run some rows in a worker process, and say how many seconds that took.
 
-    A worker that lacks the model would not survive the arrival of one of its objects.
+    One dask task, given plain data only: a worker that lacks the model would not survive the
+    arrival of one of its objects.
     """
     model = _find_model(reference)
     if model.version != version:
@@ -34,4 +36,6 @@ def evaluate_rows(
             f"a worker has version {model.version} of model '{model.name}', "
             f"this process has {version}: install the same on both"
         )
-    return evaluate(model, model.settings(**settings), x, seed, start)
+    began = time.perf_counter()
+    chunk = evaluate(model, model.settings(**settings), x, seed, start)
+    return chunk, time.perf_counter() - began

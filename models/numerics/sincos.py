@@ -13,7 +13,7 @@ _ROUNDER = 6755399441055744.0
 
 @inlined
 def nearest(x):
-    """Return the whole number nearest to x, for \\|x\\| < 2^51."""
+    """Return the whole number nearest to x, for abs(x) < 2^51."""
     return (x + _ROUNDER) - _ROUNDER
 
 
@@ -22,7 +22,7 @@ def cosine_sine(x):
     """Return cos x and sin x.
 
     The argument is reduced to a quarter turn about 0, where two polynomials (of the Cephes kind)
-    are exact to the last bit or two; measured, the error is at most 3e-16 for \\|x\\| < 1e5.
+    are exact to the last bit or two; measured, the error is at most 3e-16 for abs(x) < 1e5.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from models.numerics.dop853 import GUARDED, Outcome
 from models.vibrator import exact, extended, theory
@@ -25,6 +25,7 @@ from models.vibrator.system import System, system
 TIGHTEST = 1e-11  # tolerance of orbits, if that of the runs is wider
 SAMPLES = 256  # of an orbit
 ITERATIONS = 15
+_DERIVATIVES = 4
 _NUDGE = 1e-4  # of central differences, in units of the propagator's scales
 _CLOSE, _STALLED = 1e-9, 1e-6  # a step this small was the last; or this small, and not shrinking
 _BOLDEST = 0.5  # largest step of psi_2 and of log(speed)
@@ -32,73 +33,6 @@ _SLOWEST = 5.0  # longest turn tried, in turns at the guessed speed
 _ANCHOR, _PSI_2 = 3, 4
 _NEVER_LEAVES = 1e30  # gravity that keeps a feed without mass on the deck [m s-2]
 _RIGID = 5  # degrees of freedom of the rigid machine without feed
-
-
-@dataclass
-class Machine:
-    """One machine, ready to be run.
-
-    Attributes
-    ----------
-    params : Params
-    system : System
-    scales : ndarray
-        Size of each component of the state.
-    work : ndarray
-        See `models.vibrator.extended.workspace`.
-    budget : int
-        Steps that may still be tried.
-    """
-
-    params: Params
-    system: System
-    scales: NDArray[np.float64]
-    work: NDArray[np.float64]
-    budget: int
-
-    @property
-    def degrees(self) -> int:
-        """Number of degrees of freedom, half the length of a state."""
-        return len(self.scales) // 2
-
-    def rides(self, state: NDArray[np.float64]) -> bool:
-        """Whether the feed lies on the deck."""
-        return self.degrees == _RIGID or state[7] == 0 == state[extended.DEGREES + 7]
-
-    def free(self, riding: bool) -> NDArray[np.intp]:
-        """Return the components of the state that the map P has."""
-        m = self.system
-        moves = [True] * 3 + [False] + [True]
-        spins = [True] * 5
-        if self.degrees > _RIGID:
-            more = [bool(m.slides), bool(m.rocks), not riding]
-            moves, spins = moves + more, spins + more
-        return np.flatnonzero(moves + spins)
-
-    def run(
-        self,
-        state: NDArray[np.float64],
-        duration: float,
-        tolerance: float,
-        turns: float = math.inf,
-        times: NDArray[np.float64] = np.empty(0),
-    ) -> tuple[Outcome, NDArray[np.float64]]:
-        """Advance `state` in place, for some time or turns of vibrator 1; return samples too."""
-        samples = np.full((len(times), len(state)), np.nan)
-        kernel = exact._run_rigid if self.degrees == _RIGID else exact._run_extended
-        ended = kernel(
-            self.system,
-            state,
-            state[_ANCHOR] + 2 * np.pi * turns,
-            float(duration),
-            tolerance * self.scales,
-            self.budget,
-            times,
-            samples,
-            self.work,
-        )
-        self.budget -= ended.steps
-        return ended, samples
 
 
 class Orbit(NamedTuple):
@@ -123,24 +57,6 @@ class Orbit(NamedTuple):
     multiplier: float
     measures: Measures
     ripple: float
-
-
-def prepare(params: Params, kinematics: str, budget: int) -> Machine:
-    """Return a machine ready to be run.
-
-    Parameters
-    ----------
-    params : Params
-        Each field a float.
-    kinematics : {"small", "exact"}
-    budget : int
-        Steps that may be tried.
-    """
-    m = system(params, kinematics)
-    if not m.feed_mass:
-        m = m._replace(feed_gravity=_NEVER_LEAVES)
-    degrees = extended.DEGREES if exact.is_extended(m) else _RIGID
-    return Machine(params, m, exact._scales(m, degrees), extended.workspace(), budget)
 
 
 def proposal(machine: Machine) -> NDArray[np.float64] | None:
@@ -241,7 +157,7 @@ def _fixed_point(
     machine: Machine, guess: NDArray[np.float64], tolerance: float
 ) -> NDArray[np.float64] | None:
     state, matrix, before = guess, None, math.inf
-    riding = machine.rides(state)
+    riding, derivatives = machine.rides(state), 0
     for _ in range(ITERATIONS):
         revolved = _revolved(machine, state, tolerance)
         if revolved is None:
@@ -254,7 +170,10 @@ def _fixed_point(
         free = machine.free(riding)
         scales = machine.scales[free]
         if matrix is None:
+            if derivatives == _DERIVATIVES:
+                return None
             matrix = _derivative(machine, state, free, tolerance)
+            derivatives += 1
             if matrix is None:
                 return None
             before = math.inf
@@ -276,9 +195,7 @@ def _fixed_point(
     return None
 
 
-def _describe(
-    machine: Machine, state: NDArray[np.float64], tolerance: float
-) -> Orbit | None:
+def _describe(machine: Machine, state: NDArray[np.float64], tolerance: float) -> Orbit | None:
     matrix = _derivative(machine, state, machine.free(machine.rides(state)), tolerance)
     revolved = _revolved(machine, state, tolerance)
     if matrix is None or revolved is None:

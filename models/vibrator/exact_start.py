@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from models.numerics.dop853 import OUT_OF_BUDGET, STUCK
 from models.vibrator import exact
 from models.vibrator.exact_orbit import Machine, Orbit, anchored, find_orbit, prepare, proposal
-from models.vibrator.measures import excursion, measure, refine
+from models.vibrator.measures import Measures, measure
 from models.vibrator.outcome import (
     ASYNCHRONOUS,
     BAND,
@@ -26,6 +26,7 @@ from models.vibrator.outcome import (
 )
 from models.vibrator.parameters import Params, Rows, Settings
 from models.vibrator.system import System
+from models.vibrator.track import LAST, Track
 from uq.contract import Status
 
 SAMPLES_PER_TURN = 32  # at the larger synchronous speed
@@ -36,68 +37,6 @@ _NEAR = 0.03  # of the orbit's disphasing angle: certain to stay [rad]
 _ALIKE = 0.01  # of the orbit's speed, likewise
 _STEADY = 0.02  # range of the disphasing angle in a look that is worth a search [rad]
 _LOCKED = 0.2  # range in the last second below which motors are locked [rad]
-_LAST = 1.0  # [s]
-
-
-class Track:
-    """A run-up sampled at equal intervals of time, as far as it has gone.
-
-    Attributes
-    ----------
-    interval : float
-        [s]
-    count : int
-        Samples after the first.
-    excursion : float
-        Largest displacement of C so far [m].
-    """
-
-    def __init__(self, state: NDArray[np.float64], interval: float) -> None:
-        self.interval = interval
-        self.count = 0
-        self.excursion = 0.0
-        self._keep = math.ceil(_LAST / interval) + 1
-        self._states = state[None]
-        self._angles = [self._angle(self._states)]
-
-    @staticmethod
-    def _angle(states: NDArray[np.float64]) -> NDArray[np.float64]:
-        rate = states.shape[1] // 2
-        return np.stack([states[:, 3] - states[:, 4], states[:, rate + 3] - states[:, rate + 4]])
-
-    def add(self, samples: NDArray[np.float64]) -> None:
-        """Append samples."""
-        joined = np.concatenate([self._states[-1:], samples])
-        self.excursion = max(self.excursion, excursion(joined, self.interval))
-        self.count += len(samples)
-        self._states = np.concatenate([self._states, samples])[-max(self._keep, LOOK + 1) :]
-        self._angles.append(self._angle(samples))
-
-    @property
-    def time(self) -> float:
-        """Of the last sample [s]."""
-        return self.count * self.interval
-
-    def last(self, samples: int = 0) -> NDArray[np.float64]:
-        """Return the last states, one more than so many; those of the last second by default."""
-        return self._states[-(samples + 1 if samples else self._keep) :]
-
-    def last_time_off(self, mean: float) -> float:
-        """Return the last time psi_1 - psi_2 is out of the band about its mean, 0 if never."""
-        angle, rate = np.concatenate(self._angles, axis=1)
-        off = wrapped(angle - mean)
-        out = np.flatnonzero(np.abs(off) > BAND)
-        if not len(out):
-            return 0.0
-        i = out[-1]
-        if i == self.count:
-            return self.time
-        # Unwrapped: both ends on the branch of the first.
-        ends = off[i] + angle[i : i + 2] - angle[i]
-        gap = np.abs(wrapped(refine(ends[:, None], rate[i : i + 2, None], self.interval)[0]))
-        k = np.flatnonzero(gap > BAND)[-1]
-        part = (k + (gap[k] - BAND) / (gap[k] - gap[k + 1])) / (len(gap) - 1)
-        return float(self.interval * (i + part))
 
 
 def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
@@ -134,7 +73,7 @@ def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
     state = exact.start(params, machine.system)
     speed = max(machine.system.synchronous_speed_1, machine.system.synchronous_speed_2)
     wanted = math.ceil(settings.run_up * speed * SAMPLES_PER_TURN / (2 * np.pi))
-    track = Track(state, settings.run_up / wanted)
+    track = Track(state, settings.run_up / wanted, LOOK)
     guess = proposal(machine)
     orbit, next_search = None, LOOK
     while track.count < wanted:
@@ -148,10 +87,139 @@ def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
         if orbit is not None and _stays_at(orbit, track):
             _describe_orbit(orbit, track, out)
             return Status.OK
-        if track.count >= next_search and _is_steady(machine.system, track):
+        arriving = orbit is not None and _approaches(orbit, track)
+        if track.count >= next_search and not arriving and _is_steady(machine.system, track):
             orbit = _search(machine, guess, state, settings.tolerance) or orbit
             guess = None
             # Each search costs some dozens of turns; where they fail, ever fewer.
-            next_search = 2 * track.count
+            next_search = 4 * track.count
     _describe_end(machine, track, orbit, state, settings.tolerance, out)
     return Status.OK
+
+
+def _search(
+    machine: Machine,
+    guess: NDArray[np.float64] | None,
+    state: NDArray[np.float64],
+    tolerance: float,
+) -> Orbit | None:
+    """Look for a stable orbit at working speed: near the guess, else near the state."""
+    m = machine.system
+    slowest = CAPTURED_BELOW * max(m.synchronous_speed_1, m.synchronous_speed_2)
+    for near in (guess, anchored(machine, state, tolerance)):
+        orbit = None if near is None else find_orbit(machine, near, tolerance)
+        if orbit and orbit.multiplier < 1 and 2 * np.pi / orbit.period >= slowest:
+            return orbit
+    return None
+
+
+def _speeds(states: NDArray[np.float64], interval: float) -> NDArray[np.float64]:
+    """Return the mean speeds of both vibrators."""
+    return (states[-1, 3:5] - states[0, 3:5]) / (interval * (len(states) - 1))
+
+
+def _by_turns(states: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the mean of psi_1 - psi_2 over each turn at synchronous speed."""
+    angle = states[1:, 3] - states[1:, 4]
+    turn = min(SAMPLES_PER_TURN, len(angle))
+    return angle[len(angle) % turn :].reshape(-1, turn).mean(axis=1)
+
+
+def _is_steady(m: System, track: Track) -> bool:
+    states = track.last(LOOK)
+    speed_1, speed_2 = _speeds(states, track.interval)
+    return bool(
+        np.ptp(_by_turns(states)) < _STEADY
+        and speed_1 >= CAPTURED_BELOW * m.synchronous_speed_1
+        and speed_2 >= CAPTURED_BELOW * m.synchronous_speed_2
+    )
+
+
+def _stays_at(orbit: Orbit, track: Track) -> bool:
+    """Whether the last look was so near a stable orbit that the machine will not leave it."""
+    states = track.last(LOOK)
+    mean = orbit.measures.disphasing
+    ratio = _speeds(states, track.interval) * orbit.period / (2 * np.pi)
+    within = np.abs(wrapped(states[:, 3] - states[:, 4] - mean)) < BAND
+    return bool(
+        (np.abs(wrapped(_by_turns(states) - mean)) < _NEAR).all()
+        and (np.abs(ratio - 1) < _ALIKE).all()
+        and (within.all() or orbit.ripple >= BAND)
+    )
+
+
+def _approaches(orbit: Orbit, track: Track) -> bool:
+    off = np.abs(wrapped(_by_turns(track.last(LOOK)) - orbit.measures.disphasing))
+    return bool(off[-1] < off[0])
+
+
+def _describe_orbit(orbit: Orbit, track: Track, out: Outcome) -> None:
+    """Set the outcome of a machine that has come to an orbit."""
+    seen = orbit.measures
+    out.disphasing[:], out.multiplier[:] = seen.disphasing, orbit.multiplier
+    _describe(seen, track, out)
+    out.speed[:] = 2 * np.pi / orbit.period
+    out.regime[:] = locked_regime(out.disphasing)
+    out.synchronisation_time[:] = track.last_time_off(seen.disphasing)
+    if orbit.ripple >= BAND:
+        out.synchronisation_time[:] = np.inf
+    elif out.synchronisation_time[0] > track.time - LOOK * track.interval:
+        out.synchronisation_time[:], out.censored[:] = track.time, True
+
+
+def _describe(seen: Measures, track: Track, out: Outcome) -> None:
+    out.angular_amplitude[:] = seen.angular_amplitude
+    out.stroke_left[:], out.stroke_right[:] = seen.stroke_left, seen.stroke_right
+    out.speed[:] = (seen.speed_1 + seen.speed_2) / 2
+    out.power_1[:], out.power_2[:] = seen.power_1, seen.power_2
+    out.max_excursion[:] = track.excursion
+
+
+def _describe_last_second(m: System, track: Track, out: Outcome) -> bool:
+    """Set the outcome of a machine that is at no orbit; tell whether its motors are locked."""
+    states = track.last()
+    seen = measure(m, states, track.interval)
+    _describe(seen, track, out)
+    w_1, w_2, top_1, top_2 = np.array(
+        [[seen.speed_1], [seen.speed_2], [m.synchronous_speed_1], [m.synchronous_speed_2]]
+    )
+    out.regime[:] = unlocked_regime(w_1, w_2, top_1, top_2)
+    locked = out.regime[0] == ASYNCHRONOUS and np.ptp(_by_turns(states)) < _LOCKED
+    if locked:
+        out.disphasing[:] = wrapped(np.array([seen.disphasing]))
+        out.regime[:] = locked_regime(out.disphasing)
+    return bool(locked)
+
+
+def _describe_end(
+    machine: Machine,
+    track: Track,
+    orbit: Orbit | None,
+    state: NDArray[np.float64],
+    tolerance: float,
+    out: Outcome,
+) -> None:
+    """Set the outcome of a machine that has come to no orbit for certain until the end."""
+    locked = _describe_last_second(machine.system, track, out)
+    out.synchronisation_time[:] = np.inf
+    if not locked:
+        return
+    if orbit is None or not _approaches(orbit, track):
+        orbit = _search(machine, None, state, tolerance)
+    if orbit is not None and (
+        _approaches(orbit, track)
+        or abs(wrapped(out.disphasing - orbit.measures.disphasing)[0]) < _NEAR
+    ):
+        _describe_orbit(orbit, track, out)
+        return
+    came = track.last_time_off(out.disphasing[0])
+    if came < track.time - LAST:
+        out.synchronisation_time[:] = came
+
+
+def _describe_unfinished(m: System, track: Track, out: Outcome) -> Status:
+    """Set the outcome of a machine whose steps are used up."""
+    if track.time >= LAST:
+        _describe_last_second(m, track, out)
+    out.synchronisation_time[:], out.censored[:] = track.time, True
+    return Status.OUT_OF_BUDGET

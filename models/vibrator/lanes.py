@@ -4,7 +4,6 @@ All loops over lanes are straight lines, so lanes never diverge and a row's bits
 its neighbours. See `models.numerics.tsit5`.
 """
 
-
 import numpy as np
 from numpy.typing import NDArray
 

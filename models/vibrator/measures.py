@@ -132,8 +132,6 @@ def _mean(value: NDArray[np.float64]) -> float:
     return float(np.mean((value[1:] + value[:-1]) / 2))
 
 
-def _kloss(
-    torque: float, slip: float, lag: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _kloss(torque: float, slip: float, lag: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the motor torque of (22), (23) before bearing loss."""
     return torque * lag / (slip**2 + lag**2)

@@ -21,7 +21,7 @@ def machines() -> Rows:
     rows = np.array(list(itertools.product(DAMPING_RATIOS, STIFFNESSES_X, OFFSETS))).T
     nominal = {name: np.full(8, value) for name, value in Params._field_defaults.items()}
     varied = dict(zip(("damping_ratio", "stiffness_x", "support_offset"), rows, strict=True))
-    return Params(**nominal | varied)  # type: ignore[arg-type]
+    return Params(**nominal | varied)
 
 
 def main() -> None:

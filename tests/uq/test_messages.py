@@ -98,11 +98,11 @@ ONE_FAULT = [
     ),
     (
         {"uncertain": {"x3": None}, "fixed": {"x3": nan}},
-        "[fixed] x3 = nan: must be a finite number",
+        f"[fixed] x3 = nan: must lie within {BOUNDS}",
     ),
     (
         {"uncertain": {"x3": None}, "fixed": {"x3": -inf}},
-        "[fixed] x3 = -inf: must be a finite number",
+        f"[fixed] x3 = -inf: must lie within {BOUNDS}",
     ),
     # laws
     (

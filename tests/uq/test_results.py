@@ -120,6 +120,19 @@ def test_an_example_stands_beside_each_failing_status(write_study):
     assert np.array_equal(ds["status"] == Status.RAISED, ds["x1"] > 0.5)
 
 
+@pytest.mark.parametrize("more", ["", "[fixed]\nmount_stiffness = inf"])
+def test_a_fixed_parameter_may_be_infinite(write_study, more):
+    law = 'distribution = "uniform", lower = 1.0, upper = 2.0'
+    path = write_study(model="mounted", uncertain=("mass",), law=law, more=more)
+    study = load_study(path, "sample_models:MOUNTED")
+    runner.run(study, "mounted.nc", workers=0)
+    ds = results.open_result("mounted.nc")
+    assert ds["mount_stiffness"].item() == np.inf
+    assert ds["mount_stiffness"].attrs["role"] == "fixed"
+    assert not ds["sag"].any()
+    assert runner.finished(study, Path("mounted.nc")).identical(ds)
+
+
 def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):
     _, path = kinds
     (folder / "notes.txt").write_text("no netCDF at all")

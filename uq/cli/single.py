@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from uq import results, store
+from uq.cli.catalogue import finite
 from uq.cli.printing import duration, grid, heading, number, print_json
 from uq.contract import Model, Status
 from uq.elements import elements_of
@@ -78,7 +79,7 @@ def as_json(model: Model, ds: xr.Dataset) -> dict[str, Any]:
                 names[state].append(element)
     return {
         "model": model.name,
-        "inputs": {name: ds[name].item() for name in model.parameter_names},
+        "inputs": finite({name: ds[name].item() for name in model.parameter_names}),
         "outputs": outputs,
         "status": {"code": status.label, "meaning": _meaning(ds, status)},
         **names,

@@ -1,0 +1,104 @@
+"""One vibrator to be run and run again by the exact propagator, within a budget of steps."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models.numerics.dop853 import Outcome
+from models.vibrator import equations, exact, extended
+from models.vibrator.parameters import Params
+from models.vibrator.system import System, system
+
+PSI_1, PSI_2, HEIGHT = 3, 4, 7
+"""Places in the state."""
+
+_RIGID = equations.DEGREES
+_NEVER_LEAVES = 1e30  # gravity that keeps a feed without mass on the deck [m s-2]
+
+
+@dataclass
+class Machine:
+    """One machine, ready to be run.
+
+    Attributes
+    ----------
+    params : Params
+    system : System
+    scales : ndarray
+        Size of each component of the state.
+    work : ndarray
+        See `models.vibrator.extended.workspace`.
+    budget : int
+        Steps that may still be tried.
+    """
+
+    params: Params
+    system: System
+    scales: NDArray[np.float64]
+    work: NDArray[np.float64]
+    budget: int
+
+    @property
+    def degrees(self) -> int:
+        """Number of degrees of freedom, half the length of a state."""
+        return len(self.scales) // 2
+
+    def rides(self, state: NDArray[np.float64]) -> bool:
+        """Whether the feed lies on the deck."""
+        return self.degrees == _RIGID or state[7] == 0 == state[extended.DEGREES + 7]
+
+    def free(self, riding: bool) -> NDArray[np.intp]:
+        """Return the components of the state that the map P has."""
+        m = self.system
+        moves = [True] * 3 + [False] + [True]
+        spins = [True] * 5
+        if self.degrees > _RIGID:
+            more = [bool(m.slides), bool(m.rocks), not riding]
+            moves, spins = moves + more, spins + more
+        return np.flatnonzero(moves + spins)
+
+    def run(
+        self,
+        state: NDArray[np.float64],
+        duration: float,
+        tolerance: float,
+        turns: float = math.inf,
+        times: ArrayLike = (),
+    ) -> tuple[Outcome, NDArray[np.float64]]:
+        """Advance `state` in place, for some time or turns of vibrator 1; return samples too."""
+        times = np.ascontiguousarray(times, float)
+        samples = np.full((len(times), len(state)), np.nan)
+        kernel = exact._run_rigid if self.degrees == _RIGID else exact._run_extended
+        ended = kernel(
+            self.system,
+            state,
+            state[_ANCHOR] + 2 * np.pi * turns,
+            float(duration),
+            tolerance * self.scales,
+            self.budget,
+            times,
+            samples,
+            self.work,
+        )
+        self.budget -= ended.steps
+        return ended, samples
+
+
+def prepare(params: Params, kinematics: str, budget: int) -> Machine:
+    """Return a machine ready to be run.
+
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    kinematics : {"small", "exact"}
+    budget : int
+        Steps that may be tried.
+    """
+    m = system(params, kinematics)
+    if not m.feed_mass:
+        m = m._replace(feed_gravity=_NEVER_LEAVES)
+    degrees = extended.DEGREES if exact.is_extended(m) else _RIGID
+    return Machine(params, m, exact._scales(m, degrees), extended.workspace(), budget)

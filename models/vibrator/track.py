@@ -1,0 +1,73 @@
+"""A run-up of one vibrator, sampled as it goes."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.vibrator.measures import excursion, refine
+from models.vibrator.outcome import BAND, wrapped
+
+LAST = 1.0  # [s]
+
+
+class Track:
+    """A run-up sampled at equal intervals of time, as far as it has gone.
+
+    Attributes
+    ----------
+    interval : float
+        [s]
+    count : int
+        Samples after the first.
+    excursion : float
+        Largest displacement of C so far [m].
+    """
+
+    def __init__(self, state: NDArray[np.float64], interval: float, look: int) -> None:
+        self.interval = interval
+        self.count = 0
+        self.excursion = 0.0
+        self._keep = max(math.ceil(LAST / interval), look) + 1
+        self._second = math.ceil(LAST / interval)
+        self._states = state[None]
+        self._angles = [self._angle(self._states)]
+
+    @staticmethod
+    def _angle(states: NDArray[np.float64]) -> NDArray[np.float64]:
+        rate = states.shape[1] // 2
+        return np.stack([states[:, 3] - states[:, 4], states[:, rate + 3] - states[:, rate + 4]])
+
+    def add(self, samples: NDArray[np.float64]) -> None:
+        """Append samples."""
+        joined = np.concatenate([self._states[-1:], samples])
+        self.excursion = max(self.excursion, excursion(joined, self.interval))
+        self.count += len(samples)
+        self._states = np.concatenate([self._states, samples])[-self._keep :]
+        self._angles.append(self._angle(samples))
+
+    @property
+    def time(self) -> float:
+        """Of the last sample [s]."""
+        return self.count * self.interval
+
+    def last(self, intervals: int = 0) -> NDArray[np.float64]:
+        """Return the last states, at the ends of so many intervals; 0 for the last second."""
+        return self._states[-(intervals or self._second) - 1 :]
+
+    def last_time_off(self, mean: float) -> float:
+        """Return the last time psi_1 - psi_2 is out of the band about its mean, 0 if never."""
+        angle, rate = np.concatenate(self._angles, axis=1)
+        off = wrapped(angle - mean)
+        out = np.flatnonzero(np.abs(off) > BAND)
+        if not len(out):
+            return 0.0
+        i = out[-1]
+        if i == self.count:
+            return self.time
+        # Unwrapped: both ends on the branch of the first.
+        ends = off[i] + angle[i : i + 2] - angle[i]
+        gap = np.abs(wrapped(refine(ends[:, None], rate[i : i + 2, None], self.interval)[0]))
+        k = np.flatnonzero(gap > BAND)[-1]
+        part = (k + (gap[k] - BAND) / (gap[k] - gap[k + 1])) / (len(gap) - 1)
+        return float(self.interval * (i + part))

@@ -1,0 +1,193 @@
+"""Periodic orbits: they close, their multipliers are true, and what cannot be found is said."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from machines import SYMMETRIC, plausible
+
+from models.numerics.dop853 import GUARDED
+from models.vibrator import equations, exact, orbit
+from models.vibrator.lanes import pack
+from models.vibrator.parameters import Params
+from models.vibrator.system import systems
+from models.vibrator.theory import disphasing, steady_motion
+
+RIGID = {"mount_stiffness": np.inf, "mount_rotational_stiffness": np.inf, "feed_mass": 0.0}
+MACHINES = plausible(10, seed=1, **RIGID)
+TURN = np.where(np.isin(np.arange(orbit.STATE), (3, 4)), 2 * np.pi, 0.0)
+
+
+def guess(p, off=0.0):
+    """Return the state of the averaged theory at psi_1 = 0, with an angle added, and its period."""
+    at = disphasing(p)
+    w, angle = at.speed, at.angle + off
+    motion = steady_motion(p, w, angle)
+    state = np.zeros((len(w), orbit.STATE))
+    for i, amplitude in enumerate(motion[:3]):
+        state[:, i], state[:, 5 + i] = amplitude.real, (1j * w * amplitude).real
+    state[:, 4], state[:, 8], state[:, 9] = -angle, w, w
+    return state, 2 * np.pi / w
+
+
+def find(p, steps, off=0.0):
+    return orbit.find_orbits(pack(systems(p)), *guess(p, off), steps)
+
+
+def mean_angle(p, orbits, steps):
+    trace = orbit.follow(pack(systems(p)), orbits.state, orbits.period, steps)
+    return (trace[:, :, 3] - trace[:, :, 4]).mean(axis=1)
+
+
+def gap(m, state, period):
+    """Return by how much one machine misses its start after a turn of vibrator 1, scaled."""
+    motion = exact.propagate(m, state, 2 * period, 1e-13, turns=1)
+    assert motion.status == GUARDED
+    miss = (motion.state - state - TURN) / exact._scales(m, equations.DEGREES)
+    return max(abs(miss).max(), abs(motion.time / period - 1))
+
+
+def passage(m, start, period):
+    """Return the derivative of the map from one passage of psi_1 = 0 to the next."""
+    scales = 1e-5 * exact._scales(m, equations.DEGREES)
+    columns = []
+    for i in orbit.FREE:
+        change = scales * (np.arange(orbit.STATE) == i)
+        above, below = (
+            exact.propagate(m, start + s * change, 2 * period, 1e-13, turns=1).state
+            for s in (1, -1)
+        )
+        columns.append((above - below)[orbit.FREE] / (2 * scales[i]))
+    return np.array(columns).T
+
+
+def test_orbits_close_on_themselves():
+    orbits = find(MACHINES, 192)
+    assert orbits.found.all()
+    assert np.all(orbits.state[:, 3] == 0)
+    for i in range(10):
+        assert gap(systems(MACHINES).row(i), orbits.state[i], orbits.period[i]) < 1e-9
+
+
+@pytest.mark.parametrize("off", [0.0, np.pi])
+def test_the_multiplier_is_that_of_the_passages(off):
+    """Of stable orbits, and of the unstable ones with the vibrators the other way round."""
+    orbits = find(MACHINES, 96, off)
+    assert orbits.found.sum() > 3
+    assert np.all((orbits.multiplier[orbits.found] > 1) == bool(off))
+    for i in np.flatnonzero(orbits.found)[:5]:
+        m = systems(MACHINES).row(i)
+        values = np.linalg.eigvals(passage(m, orbits.state[i], orbits.period[i]))
+        np.testing.assert_allclose(orbits.multiplier[i], abs(values).max(), rtol=1e-5)
+
+
+def test_the_disphasing_angle_converges_with_order_5():
+    coarse, middle, fine, exact_angle = (
+        mean_angle(MACHINES, find(MACHINES, steps), steps) for steps in (12, 24, 48, 192)
+    )
+    errors = abs(np.array([coarse, middle, fine]) - exact_angle).max(axis=1)
+    assert errors[1] < 1e-7
+    assert np.all(np.log2(errors[:-1] / errors[1:]) > 4.8)
+
+
+def test_following_ends_where_the_orbit_does():
+    orbits = find(MACHINES, 48)
+    trace = orbit.follow(pack(systems(MACHINES)), orbits.state, orbits.period, 48)
+    np.testing.assert_allclose(trace[:, -1] - TURN, orbits.state, rtol=0, atol=1e-9)
+    for i in (0, 7):
+        m, times = systems(MACHINES).row(i), orbits.period[i] * np.arange(1, 49) / 48
+        motion = exact.propagate(m, orbits.state[i], times[-1], 1e-13, times=times)
+        errors = (trace[i] - motion.samples) / exact._scales(m, equations.DEGREES)
+        assert abs(errors).max() < 1e-8
+
+
+def assert_found_or_said(p, state, period):
+    """Try guesses; what is found must be an orbit."""
+    m = systems(p)
+    orbits = orbit.find_orbits(pack(m), state, period, 48)
+    for i in np.flatnonzero(orbits.found):
+        assert gap(m.row(i), orbits.state[i], orbits.period[i]) < 1e-6
+    return orbits
+
+
+def test_from_a_guess_far_away_an_orbit_is_found_or_none():
+    rng = np.random.default_rng(8)
+    p = plausible(60, seed=9, **RIGID)
+    state = rng.normal(size=(60, orbit.STATE)) * np.repeat([1e-2, 1.0], 5)
+    state[:, 3], state[:, 4] = 0.0, rng.uniform(-np.pi, np.pi, 60)
+    state[:, 8:] = rng.uniform(-20, 400, size=(60, 2))
+    orbits = assert_found_or_said(p, state, 10 ** rng.uniform(-3, 0, 60))
+    assert 0 < orbits.found.sum() < 60
+    assert np.all(orbits.period[orbits.found] > 0)
+
+
+def test_guesses_that_are_no_numbers_harm_nobody():
+    constants = pack(systems(MACHINES))
+    expected = find(MACHINES, 24)
+    state, period = guess(MACHINES)
+    state[2], state[4, 8], period[6] = np.nan, np.inf, np.nan
+    period[8] = 1e300
+    orbits = orbit.find_orbits(constants, state, period, 24)
+    spoilt = np.isin(np.arange(10), (2, 4, 6, 8))
+    np.testing.assert_array_equal(orbits.found, ~spoilt)
+    for got, alone in zip(orbits, expected, strict=True):
+        np.testing.assert_array_equal(got[~spoilt], alone[~spoilt])
+
+
+def test_motors_that_cannot_synchronise_have_no_orbit():
+    p = plausible(10, seed=1, **RIGID, synchronous_speed_2=110.0, breakdown_speed_2=100.0)
+    state, _ = guess(MACHINES)
+    state[:, 9] = 110.0
+    assert not assert_found_or_said(p, state, np.full(10, 2 * np.pi / 156)).found.any()
+
+
+def test_a_machine_has_the_same_bits_in_any_company():
+    p = plausible(37, seed=3, **RIGID)
+    constants, (state, period) = pack(systems(p)), guess(p)
+    found = np.isfinite(period)
+    together = orbit.find_orbits(constants, state, period, 24)
+    assert together.found[found].sum() > 30
+    order = np.random.default_rng(4).permutation(37)
+    shuffled = orbit.find_orbits(constants[order], state[order], period[order], 24)
+    for got, expected in zip(shuffled, together, strict=True):
+        np.testing.assert_array_equal(got, expected[order])
+    for i in range(0, 37, 4):
+        alone = orbit.find_orbits(constants[[i]], state[[i]], period[[i]], 24)
+        for got, expected in zip(alone, together, strict=True):
+            np.testing.assert_array_equal(got, expected[[i]])
+
+
+def test_a_symmetric_machine_runs_in_phase():
+    p = Params._make(np.array([value]) for value in SYMMETRIC)
+    orbits = find(p, 24, off=0.3)
+    assert orbits.found.all() and orbits.multiplier[0] < 1
+    assert abs(mean_angle(p, orbits, 24)[0]) < 1e-12
+
+
+SCRIPT = """
+import numpy as np
+import test_orbit
+p = test_orbit.Params._make(field[:1] for field in test_orbit.MACHINES)
+found, state, period, multiplier = test_orbit.find(p, 8)
+trace = test_orbit.orbit.follow(test_orbit.pack(test_orbit.systems(p)), state, period, 8)
+print(np.concatenate([found, state[0], period, multiplier, trace[0, 3]]).tolist())
+"""
+
+
+def test_plain_python_agrees_with_compiled_code():
+    here, results = Path(__file__).resolve(), []
+    paths = os.pathsep.join([str(here.parent), str(here.parents[3])])
+    for disable in ("0", "1"):
+        done = subprocess.run(
+            [sys.executable, "-c", SCRIPT],
+            env={**os.environ, "NUMBA_DISABLE_JIT": disable, "PYTHONPATH": paths},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        results.append(np.array(eval(done.stdout)))
+    assert len(results[0]) == 23 and results[0][0]
+    np.testing.assert_allclose(results[1], results[0], rtol=1e-9, atol=1e-13)

@@ -1,0 +1,209 @@
+"""The fast propagator against the error-controlled one, and the notes it takes."""
+
+import numpy as np
+import pytest
+from machines import plausible
+
+from models.vibrator import equations, exact, lanes
+from models.vibrator.system import systems
+from models.vibrator.theory import disphasing
+
+ROWS, TURNS, DURATION = 6, 25, 1.0
+BAND, DENSER = 0.05, 10
+RIGID = {
+    "mount_stiffness": np.inf,
+    "mount_rotational_stiffness": np.inf,
+    "feed_mass": 0.0,
+}
+MACHINES = plausible(ROWS, seed=1, **RIGID)
+SYSTEMS = systems(MACHINES)
+CONSTANTS = lanes.pack(SYSTEMS)
+TARGET = disphasing(MACHINES).angle
+
+
+def at_rest():
+    return equations.initial_state(MACHINES)
+
+
+def under_way():
+    """Return vibrators at full speed, a body at rest, and many turns between the angles."""
+    state = at_rest()
+    state[:, 3], state[:, 4] = 0.1 + 6 * np.pi, 0.6 - TARGET
+    state[:, 8] = state[:, 9] = disphasing(MACHINES).speed
+    return state
+
+
+STARTS = {"at rest": at_rest(), "under way": under_way()}
+
+
+def advance(start, steps, target=TARGET):
+    """Return the states after a second, and the notes."""
+    state = start.copy()
+    h = np.full(len(state), DURATION / steps)
+    return state, lanes.advance(CONSTANTS, h, state, target, steps, BAND)
+
+
+@pytest.fixture(scope="module", params=STARTS)
+def start(request):
+    return STARTS[request.param]
+
+
+@pytest.fixture(scope="module")
+def ends(start):
+    return np.array(
+        [exact.propagate(SYSTEMS.row(i), start[i], DURATION, 1e-13).state for i in range(ROWS)]
+    )
+
+
+def scaled_errors(state, expected):
+    scales = [exact._scales(SYSTEMS.row(i), equations.DEGREES) for i in range(ROWS)]
+    return (abs(state - expected) / scales).max(axis=1)
+
+
+def test_it_agrees_with_the_exact_propagator(start, ends):
+    assert np.all(ends[:, 3] - start[:, 3] > 20)
+    state, _ = advance(start, 48 * TURNS)
+    np.testing.assert_allclose(state[:, 3:5], ends[:, 3:5], rtol=0, atol=1e-8)
+    assert np.all(scaled_errors(state, ends) < 1e-8)
+
+
+def test_its_errors_fall_with_the_fifth_power_of_the_step_or_faster(start, ends):
+    coarse, middle, fine = (scaled_errors(advance(start, TURNS * n)[0], ends) for n in (8, 16, 32))
+    assert np.all(coarse / middle > 2**5)
+    assert np.all(middle / fine > 2**5)
+
+
+def some(rows):
+    """Return that many machines, each with a step of its own, to be run for 60 steps."""
+    p = plausible(rows, seed=4, **RIGID)
+    rng = np.random.default_rng(5)
+    state = equations.initial_state(p)
+    state[:, 3:5] += rng.uniform(-4, 4, size=(rows, 2))
+    state[:, 8:] = rng.uniform(100, 160, size=(rows, 2))
+    h = rng.uniform(5e-4, 1e-3, rows)
+    return lanes.pack(systems(p)), h, state, rng.uniform(-1, 1, rows)
+
+
+def bits(constants, h, state, target, rows):
+    """Return states and notes of those rows, run together."""
+    out = state[rows]
+    notes = lanes.advance(constants[rows], h[rows], out, target[rows], 60, 0.3)
+    return np.concatenate([out, notes], axis=1)
+
+
+def test_a_row_has_the_same_bits_in_any_company():
+    count = 2 * lanes.LANES + 5
+    case = some(count)
+    sound = np.array([i for i in range(count) if i not in (3, 20, 36)])
+    together = bits(*case, np.arange(count))
+    assert np.isfinite(together).all() and (together[:, -1] >= 0).any()
+    for column, row in ((0, 3), (1, 20), (2, 36)):  # constants, step, state
+        case[column][row] = np.nan
+    order = np.random.default_rng(6).permutation(count)
+    np.testing.assert_array_equal(bits(*case, np.arange(count))[sound], together[sound])
+    shuffled = bits(*case, order)[np.argsort(order)]
+    np.testing.assert_array_equal(shuffled[sound], together[sound])
+    for i in sound[::5]:
+        np.testing.assert_array_equal(bits(*case, [i])[0], together[i])
+
+
+def test_a_run_in_two_parts_is_the_run_in_one():
+    parts, steps, start = (700, 500), 1200, STARTS["under way"]
+    whole, notes = advance(start, steps)
+    state, h = start.copy(), np.full(ROWS, DURATION / steps)
+    first, second = (lanes.advance(CONSTANTS, h, state, TARGET, n, BAND) for n in parts)
+    np.testing.assert_array_equal(state, whole)
+    for i in (lanes.POWER_1, lanes.POWER_2):
+        np.testing.assert_allclose(first[:, i] + second[:, i], notes[:, i], rtol=1e-13)
+    for i in (lanes.ALPHA_LOW, lanes.LEFT_LOW, lanes.RIGHT_LOW, lanes.ANGLE_LOW):
+        lower = np.minimum(first[:, i], second[:, i])
+        np.testing.assert_array_equal(lower, notes[:, i])
+    for i in (lanes.ALPHA_HIGH, lanes.LEFT_HIGH, lanes.RIGHT_HIGH, lanes.ANGLE_HIGH):
+        higher = np.maximum(first[:, i], second[:, i])
+        np.testing.assert_array_equal(higher, notes[:, i])
+    peak = np.maximum(first[:, lanes.EXCURSION], second[:, lanes.EXCURSION])
+    np.testing.assert_array_equal(peak, notes[:, lanes.EXCURSION])
+    early, late = first[:, lanes.LAST_OUT], second[:, lanes.LAST_OUT]
+    assert (early >= 0).any() and (late >= 0).any()
+    last = np.where(late >= 0, late + parts[0], early)
+    np.testing.assert_allclose(last, notes[:, lanes.LAST_OUT], rtol=1e-14)
+
+
+@pytest.fixture(scope="module")
+def path(start):
+    """Return the exact states at ten instants of each of 1200 steps, the start first."""
+    times = np.linspace(0, DURATION, 48 * TURNS * DENSER + 1)
+    return np.array(
+        [
+            exact.propagate(SYSTEMS.row(i), start[i], DURATION, 1e-12, times=times).samples
+            for i in range(ROWS)
+        ]
+    )
+
+
+@pytest.fixture(scope="module")
+def notes(start):
+    return advance(start, 48 * TURNS)[1]
+
+
+def seen(path):
+    """Return rotation, displacements of the deck's ends along xi, and disphasing angle."""
+    p = MACHINES
+    x, y, alpha, psi_1, psi_2 = np.moveaxis(path, 2, 0)[:5]
+    cos, sin = np.cos(p.working_angle)[:, None], np.sin(p.working_angle)[:, None]
+    left, right = (
+        x * cos + (y + side * p.support_half_spacing[:, None] * alpha) * sin for side in (-1, 1)
+    )
+    return np.array([alpha, left, right, psi_1 - psi_2])
+
+
+LOWS = [lanes.ALPHA_LOW, lanes.LEFT_LOW, lanes.RIGHT_LOW, lanes.ANGLE_LOW]
+HIGHS = [lanes.ALPHA_HIGH, lanes.LEFT_HIGH, lanes.RIGHT_HIGH, lanes.ANGLE_HIGH]
+
+
+def test_extremes_are_those_of_the_steps_and_near_those_of_the_motion(path, notes):
+    lows, highs = notes[:, LOWS].T, notes[:, HIGHS].T
+    at_steps, always = seen(path[:, DENSER::DENSER]), seen(path)
+    span = np.ptp(always, axis=2)
+    assert np.all(span > 1e-5)
+    assert np.all(abs(lows - at_steps.min(axis=2)) < 1e-7 * span)
+    assert np.all(abs(highs - at_steps.max(axis=2)) < 1e-7 * span)
+    assert np.all(abs(lows - always.min(axis=2)) < 5e-3 * span)
+    assert np.all(abs(highs - always.max(axis=2)) < 5e-3 * span)
+
+
+def test_powers_are_those_of_the_motors(path, notes):
+    p, steps = MACHINES, 48 * TURNS
+    for i, note in ((1, lanes.POWER_1), (2, lanes.POWER_2)):
+        speed = path[:, :, 7 + i]
+        w_s = getattr(p, f"synchronous_speed_{i}")[:, None]
+        slip, lag = w_s - getattr(p, f"breakdown_speed_{i}")[:, None], w_s - speed
+        breakdown = (p.overload_capacity * getattr(p, f"rated_torque_{i}"))[:, None]
+        power = 2 * breakdown * slip * lag / (slip**2 + lag**2) * speed
+        at_steps, mean = power[:, DENSER::DENSER].sum(axis=1), power.mean(axis=1)
+        size = abs(power).mean(axis=1)
+        assert np.all(abs(notes[:, note] - at_steps) < 1e-8 * steps * size)
+        assert np.all(abs(notes[:, note] / steps - mean) < 5e-3 * size)
+
+
+def test_the_largest_displacement_is_found_between_steps(path, notes):
+    squared = path[:, :, 0] ** 2 + path[:, :, 1] ** 2
+    np.testing.assert_allclose(notes[:, lanes.EXCURSION], squared.max(axis=1), rtol=1e-5)
+
+
+def test_the_last_time_into_the_band(path, notes):
+    off = abs(np.angle(np.exp(1j * (seen(path)[3] - TARGET[:, None]))))
+    came = (off[:, :-1] > BAND) & (off[:, 1:] <= BAND)
+    assert 1 < came.any(axis=1).sum() < ROWS
+    for i in range(ROWS):
+        last = -1.0
+        if came[i].any():
+            j = np.flatnonzero(came[i])[-1]
+            last = (j + (off[i, j] - BAND) / (off[i, j] - off[i, j + 1])) / DENSER
+        np.testing.assert_allclose(notes[i, lanes.LAST_OUT], last, rtol=0, atol=0.2)
+
+
+def test_without_a_target_there_is_no_band():
+    _, notes = advance(STARTS["under way"], 48 * TURNS, np.full(ROWS, np.nan))
+    assert np.all(notes[:, lanes.LAST_OUT] == -1)
+    assert np.isfinite(notes).all()
