@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from models.numerics.dop853 import OUT_OF_BUDGET, STUCK
 from models.vibrator import exact
-from models.vibrator.exact_orbit import Machine, Orbit, anchored, find_orbit, prepare, proposal
+from models.vibrator.exact_orbit import Orbit, anchored, find_orbit, proposal
+from models.vibrator.machine import Machine, prepare
 from models.vibrator.measures import Measures, measure
 from models.vibrator.outcome import (
     ASYNCHRONOUS,
@@ -33,6 +34,7 @@ SAMPLES_PER_TURN = 32  # at the larger synchronous speed
 TURNS = 8  # in a look
 LOOK = SAMPLES_PER_TURN * TURNS
 BUDGET = 80_000  # steps of one machine, searches of orbits included: about a second
+_LOOKING = 10  # steps that a look is worth beside those it takes
 _NEAR = 0.03  # of the orbit's disphasing angle: certain to stay [rad]
 _ALIKE = 0.01  # of the orbit's speed, likewise
 _STEADY = 0.02  # range of the disphasing angle in a look that is worth a search [rad]
@@ -71,7 +73,9 @@ def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
     """Set the outcome of one machine, fields of shape (1,)."""
     machine = prepare(params, settings.kinematics, BUDGET)
     state = exact.start(params, machine.system)
-    speed = max(machine.system.synchronous_speed_1, machine.system.synchronous_speed_2)
+    speed = np.max([machine.system.synchronous_speed_1, machine.system.synchronous_speed_2])
+    if not math.isfinite(speed):
+        return Status.NON_FINITE
     wanted = math.ceil(settings.run_up * speed * SAMPLES_PER_TURN / (2 * np.pi))
     track = Track(state, settings.run_up / wanted, LOOK)
     guess = proposal(machine)
@@ -81,6 +85,7 @@ def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
         ended, samples = machine.run(state, times[-1], settings.tolerance, times=times)
         if ended.status == STUCK or not np.isfinite(samples[: ended.sampled]).all():
             return Status.NON_FINITE
+        machine.budget -= _LOOKING
         track.add(samples[: ended.sampled])
         if ended.status == OUT_OF_BUDGET:
             return _describe_unfinished(machine.system, track, out)
@@ -149,8 +154,9 @@ def _stays_at(orbit: Orbit, track: Track) -> bool:
 
 
 def _approaches(orbit: Orbit, track: Track) -> bool:
+    """Whether the last look drew nearer to an orbit with every turn."""
     off = np.abs(wrapped(_by_turns(track.last(LOOK)) - orbit.measures.disphasing))
-    return bool(off[-1] < off[0])
+    return bool((np.diff(off) < 0).all())
 
 
 def _describe_orbit(orbit: Orbit, track: Track, out: Outcome) -> None:
@@ -199,7 +205,7 @@ def _describe_end(
     tolerance: float,
     out: Outcome,
 ) -> None:
-    """Set the outcome of a machine that has come to no orbit for certain until the end."""
+    """Set the outcome of a machine that is not known to have come to an orbit."""
     locked = _describe_last_second(machine.system, track, out)
     out.synchronisation_time[:] = np.inf
     if not locked:

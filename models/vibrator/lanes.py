@@ -25,11 +25,13 @@ STABLE = 0.8
 """Step times the fastest rate of a machine: what keeps the method stable with room to spare."""
 
 _TURN = 2 * np.pi
+_DEAD = 1e-140
 
 # What `advance` notes of each row.
 (
     POWER_1,
     POWER_2,
+    ANGLE,
     ALPHA_LOW,
     ALPHA_HIGH,
     LEFT_LOW,
@@ -39,9 +41,10 @@ _TURN = 2 * np.pi
     ANGLE_LOW,
     ANGLE_HIGH,
     EXCURSION,
-    LAST_OUT,
-) = range(12)
-NOTES = 12
+    LAST_ENTRY,
+) = range(13)
+NOTES = 13
+SUMS = 3  # the first ones are sums over the steps
 
 
 def pack(system: System) -> Array:
@@ -133,13 +136,13 @@ def store(lanes, first, table):
 @kernel
 def _begin(notes):
     for lane in range(LANES):
-        for i in (POWER_1, POWER_2, EXCURSION):
+        for i in (POWER_1, POWER_2, ANGLE, EXCURSION):
             notes[i * LANES + lane] = 0.0
         for i in (ALPHA_LOW, LEFT_LOW, RIGHT_LOW, ANGLE_LOW):
             notes[i * LANES + lane] = np.inf
         for i in (ALPHA_HIGH, LEFT_HIGH, RIGHT_HIGH, ANGLE_HIGH):
             notes[i * LANES + lane] = -np.inf
-        notes[LAST_OUT * LANES + lane] = -1.0
+        notes[LAST_ENTRY * LANES + lane] = -1.0
 
 
 @kernel
@@ -161,6 +164,7 @@ def _note(c, y, new, target, h, step, band, notes):
         lever = c[_SPACING * LANES + lane] * sine * alpha
         left, right = along - lever, along + lever
         angle = new[3 * LANES + lane] - new[4 * LANES + lane]
+        notes[ANGLE * LANES + lane] += angle
         low, high = notes[ALPHA_LOW * LANES + lane], notes[ALPHA_HIGH * LANES + lane]
         notes[ALPHA_LOW * LANES + lane] = alpha if alpha < low else low
         notes[ALPHA_HIGH * LANES + lane] = alpha if alpha > high else high
@@ -192,8 +196,8 @@ def _note(c, y, new, target, h, step, band, notes):
         off = abs(off - _TURN * nearest(off / _TURN))
         came = (off_0 > band) & (off <= band)
         part = (off_0 - band) / (off_0 - off) if came else 0.0
-        last = notes[LAST_OUT * LANES + lane]
-        notes[LAST_OUT * LANES + lane] = step + part if came else last
+        last = notes[LAST_ENTRY * LANES + lane]
+        notes[LAST_ENTRY * LANES + lane] = step + part if came else last
 
 
 _SYNCHRONOUS_1 = Rigid._fields.index("synchronous_speed_1")
@@ -211,6 +215,9 @@ def _advance(constants, h, state, target, steps, band, notes, work):
     for first in range(0, state.shape[0], LANES):
         load(constants, first, c)
         load(state, first, y)
+        # Vibrations that have died away: numbers near underflow would be ten times slower.
+        for j in range(_WHOLE):
+            y[j] = y[j] if abs(y[j]) > _DEAD else 0.0
         load(h, first, step_size)
         load(target, first, aim)
         for lane in range(LANES):
@@ -250,7 +257,8 @@ def advance(
     Returns
     -------
     ndarray, shape (n, NOTES)
-        Sums over the steps of the motors' powers before bearing loss [W]; lowest and highest
+        Sums over the steps of the motors' powers before bearing loss [W] and of the disphasing
+        angle [rad]; lowest and highest
         rotation [rad], displacement along xi of the left and the right end of the deck [m], and
         disphasing angle [rad]; largest squared displacement of C [m2]; when the disphasing angle
         last came into its band [steps], -1 if it did not.

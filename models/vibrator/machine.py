@@ -14,7 +14,6 @@ from models.vibrator.system import System, system
 PSI_1, PSI_2, HEIGHT = 3, 4, 7
 """Places in the state."""
 
-_RIGID = equations.DEGREES
 _NEVER_LEAVES = 1e30  # gravity that keeps a feed without mass on the deck [m s-2]
 
 
@@ -41,23 +40,27 @@ class Machine:
     budget: int
 
     @property
+    def is_extended(self) -> bool:
+        """Whether the state is that of `models.vibrator.extended`."""
+        return self.degrees == extended.DEGREES
+
+    @property
     def degrees(self) -> int:
         """Number of degrees of freedom, half the length of a state."""
         return len(self.scales) // 2
 
     def rides(self, state: NDArray[np.float64]) -> bool:
         """Whether the feed lies on the deck."""
-        return self.degrees == _RIGID or state[7] == 0 == state[extended.DEGREES + 7]
+        return not self.is_extended or state[HEIGHT] == 0 == state[self.degrees + HEIGHT]
 
     def free(self, riding: bool) -> NDArray[np.intp]:
-        """Return the components of the state that the map P has."""
+        """Return the components of the state that can differ while psi_1 does not."""
         m = self.system
-        moves = [True] * 3 + [False] + [True]
-        spins = [True] * 5
-        if self.degrees > _RIGID:
-            more = [bool(m.slides), bool(m.rocks), not riding]
-            moves, spins = moves + more, spins + more
-        return np.flatnonzero(moves + spins)
+        rates = [True, True, True, True, True, bool(m.slides), bool(m.rocks), not riding]
+        rates = rates[: self.degrees]
+        places = rates.copy()
+        places[PSI_1] = False
+        return np.flatnonzero(places + rates)
 
     def run(
         self,
@@ -70,11 +73,11 @@ class Machine:
         """Advance `state` in place, for some time or turns of vibrator 1; return samples too."""
         times = np.ascontiguousarray(times, float)
         samples = np.full((len(times), len(state)), np.nan)
-        kernel = exact._run_rigid if self.degrees == _RIGID else exact._run_extended
+        kernel = exact._run_extended if self.is_extended else exact._run_rigid
         ended = kernel(
             self.system,
             state,
-            state[_ANCHOR] + 2 * np.pi * turns,
+            state[PSI_1] + 2 * np.pi * turns,
             float(duration),
             tolerance * self.scales,
             self.budget,
@@ -100,5 +103,5 @@ def prepare(params: Params, kinematics: str, budget: int) -> Machine:
     m = system(params, kinematics)
     if not m.feed_mass:
         m = m._replace(feed_gravity=_NEVER_LEAVES)
-    degrees = extended.DEGREES if exact.is_extended(m) else _RIGID
+    degrees = extended.DEGREES if exact.is_extended(m) else equations.DEGREES
     return Machine(params, m, exact._scales(m, degrees), extended.workspace(), budget)

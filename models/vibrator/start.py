@@ -13,27 +13,24 @@ from numpy.typing import NDArray
 from models.vibrator import lanes
 from models.vibrator.equations import initial_state
 from models.vibrator.lanes import Array
+from models.vibrator.last_second import LAST, NEAR, STEPS, Live, learn, run_last_second
 from models.vibrator.outcome import (
     BAND,
     CAPTURED_BELOW,
     Outcome,
     locked_regime,
-    unlocked_regime,
-    wrapped,
 )
 from models.vibrator.parameters import Rows, Settings
-from models.vibrator.synchronous import Known, Machines, describe, propose, search
+from models.vibrator.synchronous import Known, Machines, describe, propose
 from uq.contract import Status
 
-STEPS = 12  # in a turn at synchronous speed, unless the machine is stiff
 LOOK = 96  # steps between two looks at a run
 BUDGET = 4000  # looks
-_NEAR = 0.03  # of the orbit's disphasing angle: certain to stay [rad]
 _STEADY = 0.02  # range of the disphasing angle in a look that is worth a search for an orbit [rad]
-_LOCKED = 0.2  # range in the last second below which motors are locked [rad]
-_LAST = 1.0  # [s]
+_EXPERIENCE = 32  # looks before a machine is taken to have settled out of step
+_SETTLED = 1e-3  # change of the mean speeds, from one half of the time to the next
+_APART = 0.02  # difference of the speeds, over the synchronous speed, that no locking bridges
 _RUNS = 3  # of a machine, each towards an orbit that the one before has shown
-_LONGEST_LAST = 1 << 20  # steps of the last second
 
 
 class _Plan(NamedTuple):
@@ -59,7 +56,7 @@ class _Plan(NamedTuple):
         per_turn = settings.steps_per_turn or STEPS
         turn = 2 * np.pi / machines.synchronous_speed.max(axis=1)
         step = np.minimum(turn / per_turn, lanes.STABLE / machines.fastest)
-        time = settings.run_up - _LAST
+        time = settings.run_up - LAST
         looks = np.ceil(time / (LOOK * step)).astype(np.int64)
         over = looks > BUDGET
         step = np.where(over | (looks == 0), step, time / (LOOK * np.maximum(looks, 1)))
@@ -88,12 +85,10 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
     rows = np.arange(n)
     for _ in range(_RUNS):
         rows = _run(machines, plan, known, rows, out, status, settings)
-        if not len(rows):
-            break
     unfinished = plan.over & np.isinf(out.synchronisation_time)
     status[unfinished] = Status.OUT_OF_BUDGET
     out.censored[:] = unfinished
-    reached = plan.step * plan.looks * LOOK + _LAST
+    reached = plan.step * plan.looks * LOOK + LAST
     out.synchronisation_time[unfinished] = reached[unfinished]
     return out, status
 
@@ -108,45 +103,63 @@ def _run(
     settings: Settings,
 ) -> NDArray[np.intp]:
     """Run machines from standstill; return those to be run again, towards another orbit."""
-    again = []
-    part, left = machines.take(rows), rows
-    state = initial_state(part.p)
-    came, far = np.zeros(len(rows)), np.zeros(len(rows))
+    again = [np.empty(0, np.intp)]
+    some, n = machines.take(rows), len(rows)
+    zeros = np.zeros((n, 2))
+    live = Live(rows, some, initial_state(some.p), zeros[:, 0], zeros[:, 0], zeros, zeros)
+    ending = plan.looks[rows] == 0
     look = 0
-    while len(left):
-        ending = plan.looks[left] <= look
+    while len(live.rows):
         if ending.any():
-            e = np.flatnonzero(ending)
-            some = left[e]
-            found = _end(part.take(e), state[e], came[e], far[e], some, known, out, settings)
-            again.append(some[found])
-            g = np.flatnonzero(~ending)
-            part, left, state, came, far = part.take(g), left[g], state[g], came[g], far[g]
-            continue
-        before = state[:, 3:5].copy()
-        step = plan.step[left]
-        notes = lanes.advance(part.constants, step, state, known.disphasing[left], LOOK, BAND)
-        last = notes[:, lanes.LAST_OUT]
-        came = np.where(last >= 0, (look * LOOK + last) * step, came)
-        far = np.maximum(far, notes[:, lanes.EXCURSION])
+            last = live.take(ending)
+            time = look * LOOK * plan.step[last.rows]
+            found = run_last_second(last, time, known, out, settings)
+            again.append(last.rows[found])
+            live = live.take(~ending)
+            if not len(live.rows):
+                break
+        before = live.state[:, 3:5].copy()
+        step, target = plan.step[live.rows], known.disphasing[live.rows]
+        notes = lanes.advance(live.machines.constants, step, live.state, target, LOOK, BAND)
+        came = notes[:, lanes.LAST_ENTRY]
+        live = live._replace(
+            came=np.where(came >= 0, (look * LOOK + came) * step, live.came),
+            far=np.maximum(live.far, notes[:, lanes.EXCURSION]),
+        )
         look += 1
-        speed = (state[:, 3:5] - before) / (LOOK * step)[:, None]
+        speed = (live.state[:, 3:5] - before) / (LOOK * step)[:, None]
         low, high = notes[:, lanes.ANGLE_LOW], notes[:, lanes.ANGLE_HIGH]
-        finite = np.isfinite(state).all(axis=1)
-        arrived = finite & _is_near(known, left, low, high, speed)
-        _note_locked(machines, known, left[arrived], came[arrived], far[arrived], out)
-        status[left[~finite]] = Status.NON_FINITE
+        finite = np.isfinite(live.state).all(axis=1)
+        status[live.rows[~finite]] = Status.NON_FINITE
+        arrived = finite & _is_near(known, live.rows, low, high, speed)
+        _note_locked(machines, known, live.take(arrived), out)
         going = finite & ~arrived
-        if look >= 8 and look & (look - 1) == 0:
-            fast = (speed >= CAPTURED_BELOW * part.synchronous_speed).all(axis=1)
-            waiting = np.flatnonzero(going & fast & (high - low < _STEADY))
-            found = _learn(part, state, waiting, left, known, settings)
-            again.append(left[waiting[found]])
-            going[waiting[found]] = False
-        if not going.all():
-            g = np.flatnonzero(going)
-            part, left, state, came, far = part.take(g), left[g], state[g], came[g], far[g]
-    return np.concatenate([np.empty(0, np.intp), *again])
+        settled = np.zeros(len(going), bool)
+        if look & (look - 1) == 0:
+            settled = (look >= _EXPERIENCE) & _has_settled(live, step * LOOK * look)
+            plan.over[live.rows[settled]] = False
+            live = live._replace(quarter=live.half, half=live.state[:, 3:5].copy())
+            fast = (speed >= CAPTURED_BELOW * live.machines.synchronous_speed).all(axis=1)
+            waiting = going & fast & (high - low < _STEADY)
+            if waiting.any():
+                steady = live.take(waiting)
+                found = learn(steady.machines, steady.state, steady.rows, known, settings)
+                again.append(steady.rows[found])
+                going[np.flatnonzero(waiting)[found]] = False
+        ending = (settled | (plan.looks[live.rows] <= look))[going]
+        live = live.take(going)
+    return np.concatenate(again)
+
+
+def _has_settled(live: Live, time: Array) -> NDArray[np.bool_]:
+    """Tell which machines run steadily, but slowly or out of step."""
+    earlier = (live.half - live.quarter) / (time / 4)[:, None]
+    later = (live.state[:, 3:5] - live.half) / (time / 2)[:, None]
+    top = live.machines.synchronous_speed
+    steady = np.abs(later - earlier) < _SETTLED * np.abs(later)
+    slow = (later < CAPTURED_BELOW * top).any(axis=1)
+    apart = np.abs(later[:, 0] - later[:, 1]) > _APART * top.max(axis=1)
+    return steady.all(axis=1) & (slow | apart)
 
 
 def _is_near(known: Known, rows: Any, low: Array, high: Array, speed: Array) -> Any:
@@ -156,75 +169,14 @@ def _is_near(known: Known, rows: Any, low: Array, high: Array, speed: Array) -> 
         turns = 2 * np.pi * np.round(((low + high) / 2 - target) / (2 * np.pi))
         off = np.maximum(np.abs(low - turns - target), np.abs(high - turns - target))
         ratio = speed * known.orbits.period[rows, None] / (2 * np.pi)
-        return known.found[rows] & (off < _NEAR) & (np.abs(ratio - 1) < 0.01).all(axis=1)
+        near = off < NEAR + known.ripple[rows]
+        return known.found[rows] & near & (np.abs(ratio - 1) < 0.01).all(axis=1)
 
 
-def _note_locked(
-    machines: Machines, known: Known, rows: Any, came: Array, far: Array, out: Outcome
-) -> None:
+def _note_locked(machines: Machines, known: Known, live: Live, out: Outcome) -> None:
+    rows = live.rows
     describe(machines, known, rows, out)
-    out.synchronisation_time[rows] = came
-    out.max_excursion[rows] = np.sqrt(far)
+    # One whose angle leaves the band in every revolution keeps leaving it.
+    out.synchronisation_time[rows] = np.where(known.ripple[rows] < BAND, live.came, np.inf)
+    out.max_excursion[rows] = np.sqrt(live.far)
     out.regime[rows] = locked_regime(known.disphasing[rows])
-
-
-def _learn(
-    part: Machines, state: Array, waiting: Any, left: Any, known: Known, settings: Settings
-) -> NDArray[np.bool_]:
-    """Search for the orbit near which machines are; tell where there is a new one."""
-    speed = state[waiting, 8:10].mean(axis=1)
-    angle = state[waiting, 3] - state[waiting, 4]
-    wanted = np.ones(len(waiting), bool)
-    other = search(part.take(waiting), speed, angle, wanted, settings.steps_per_turn)
-    rows = left[waiting]
-    with np.errstate(invalid="ignore"):
-        same = np.abs(wrapped(other.disphasing - known.disphasing[rows])) < _NEAR
-    new = other.found & ~same
-    known.learn(rows[new], other.take(new))
-    return new
-
-
-def _end(
-    part: Machines,
-    state: Array,
-    came: Array,
-    far: Array,
-    rows: NDArray[np.intp],
-    known: Known,
-    out: Outcome,
-    settings: Settings,
-) -> NDArray[np.bool_]:
-    """Run the last second; tell which machines turned out to be locked near a new orbit."""
-    turn = 2 * np.pi / part.synchronous_speed.max(axis=1)
-    per_turn = settings.steps_per_turn or STEPS
-    needed = _LAST * np.maximum(per_turn / turn, part.fastest / lanes.STABLE)
-    steps = 2 ** np.ceil(np.log2(np.minimum(needed, _LONGEST_LAST))).astype(np.int64)
-    new = np.zeros(len(rows), bool)
-    for count in np.unique(steps).tolist():
-        i = np.flatnonzero(steps == count)
-        some, here = part.take(i), state[i]
-        before = here[:, 3:5].copy()
-        h = np.full(len(i), _LAST / count)
-        notes = lanes.advance(some.constants, h, here, known.disphasing[rows[i]], count, BAND)
-        mean = (here[:, 3:5] - before) / _LAST
-        low, high = notes[:, lanes.ANGLE_LOW], notes[:, lanes.ANGLE_HIGH]
-        fast = (mean >= CAPTURED_BELOW * some.synchronous_speed).all(axis=1)
-        locked = np.flatnonzero(fast & (high - low < _LOCKED))
-        new[i[locked]] = _learn(some, here, locked, rows[i], known, settings)
-        _note_unlocked(rows[i], notes / [count, count, *[1] * (lanes.NOTES - 2)], mean, some, out)
-        out.max_excursion[rows[i]] = np.sqrt(np.maximum(far[i], notes[:, lanes.EXCURSION]))
-    return new
-
-
-def _note_unlocked(
-    rows: NDArray[np.intp], notes: Array, speed: Array, part: Machines, out: Outcome
-) -> None:
-    def half(low: int) -> Array:
-        return (notes[:, low + 1] - notes[:, low]) / 2
-
-    out.power_1[rows], out.power_2[rows] = notes[:, lanes.POWER_1], notes[:, lanes.POWER_2]
-    out.angular_amplitude[rows] = half(lanes.ALPHA_LOW)
-    out.stroke_left[rows], out.stroke_right[rows] = half(lanes.LEFT_LOW), half(lanes.RIGHT_LOW)
-    out.speed[rows] = speed.mean(axis=1)
-    out.synchronisation_time[rows] = np.inf
-    out.regime[rows] = unlocked_regime(*speed.T, *part.synchronous_speed.T)

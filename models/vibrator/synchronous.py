@@ -69,24 +69,28 @@ class Known(NamedTuple):
         With which they were found.
     disphasing : ndarray, shape (n,)
         Mean disphasing angle in (-pi, pi] [rad], NaN if none is known.
+    ripple : ndarray, shape (n,)
+        Largest departure of the disphasing angle from its mean in a revolution [rad].
     """
 
     found: NDArray[np.bool_]
     orbits: Orbits
     steps: NDArray[np.int64]
     disphasing: Array
+    ripple: Array
 
     def learn(self, rows: Any, other: "Known") -> None:
         """Take over what is known of the machines in `rows`."""
         self.found[rows], self.steps[rows] = other.found, other.steps
-        self.disphasing[rows] = other.disphasing
+        self.disphasing[rows], self.ripple[rows] = other.disphasing, other.ripple
         for mine, new in zip(self.orbits, other.orbits, strict=True):
             mine[rows] = new
 
     def take(self, rows: Any) -> "Known":
         """Return what is known of some of the machines."""
         orbits = Orbits._make(field[rows] for field in self.orbits)
-        return Known(self.found[rows], orbits, self.steps[rows], self.disphasing[rows])
+        others = (field[rows] for field in (self.steps, self.disphasing, self.ripple))
+        return Known(self.found[rows], orbits, *others)
 
 
 def propose(machines: Machines, steps: int) -> Known:
@@ -127,7 +131,8 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
     speed, angle = np.where(wanted, speed, 1.0), np.where(wanted, angle, 0.0)
     state, period = _harmonic(machines.p, speed, angle), 2 * np.pi / speed
     none = Orbits(np.zeros(n, bool), state, period, np.full(n, np.nan))
-    known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), np.full(n, np.nan))
+    unknown = np.full((2, n), np.nan)
+    known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), *unknown)
     needed = np.maximum(period * machines.fastest / lanes.STABLE, steps or STEPS)
     rung = np.array([*LADDER, 0])[np.searchsorted(LADDER, needed)]
     rung = np.where((rung > 0) & (steps > 0) & (needed <= steps), steps, rung)
@@ -136,12 +141,14 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
         constants = machines.constants[rows]
         orbits = find_orbits(constants, state[rows], period[rows], count)
         trace = follow(constants, orbits.state, orbits.period, count)
-        disphasing = wrapped((trace[:, :, 3] - trace[:, :, 4]).mean(axis=1))
+        angle = trace[:, :, 3] - trace[:, :, 4]
+        mean = angle.mean(axis=1)
+        ripple = np.abs(angle - mean[:, None]).max(axis=1)
         slowest = CAPTURED_BELOW * machines.synchronous_speed[rows].max(axis=1)
         fast = 2 * np.pi / orbits.period >= slowest
         found = orbits.found & (orbits.multiplier < 1) & fast
-        disphasing = np.where(found, disphasing, np.nan)
-        known.learn(rows, Known(found, orbits, np.full(len(rows), count), disphasing))
+        disphasing = np.where(found, wrapped(mean), np.nan)
+        known.learn(rows, Known(found, orbits, np.full(len(rows), count), disphasing, ripple))
     return known
 
 

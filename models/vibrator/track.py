@@ -14,6 +14,15 @@ LAST = 1.0  # [s]
 class Track:
     """A run-up sampled at equal intervals of time, as far as it has gone.
 
+    Parameters
+    ----------
+    state : ndarray
+        The first sample.
+    interval : float
+        [s]
+    look : int
+        Intervals that `last` will be asked for, if more than a second's.
+
     Attributes
     ----------
     interval : float
@@ -28,10 +37,11 @@ class Track:
         self.interval = interval
         self.count = 0
         self.excursion = 0.0
-        self._keep = max(math.ceil(LAST / interval), look) + 1
         self._second = math.ceil(LAST / interval)
-        self._states = state[None]
-        self._angles = [self._angle(self._states)]
+        self._keep = max(self._second, look) + 1
+        self._parts = [state[None].copy()]
+        self._kept = 1
+        self._angles = [self._angle(self._parts[0])]
 
     @staticmethod
     def _angle(states: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -40,10 +50,13 @@ class Track:
 
     def add(self, samples: NDArray[np.float64]) -> None:
         """Append samples."""
-        joined = np.concatenate([self._states[-1:], samples])
+        joined = np.concatenate([self._parts[-1][-1:], samples])
         self.excursion = max(self.excursion, excursion(joined, self.interval))
         self.count += len(samples)
-        self._states = np.concatenate([self._states, samples])[-self._keep :]
+        self._parts.append(samples)
+        self._kept += len(samples)
+        while self._kept - len(self._parts[0]) >= self._keep:
+            self._kept -= len(self._parts.pop(0))
         self._angles.append(self._angle(samples))
 
     @property
@@ -53,7 +66,12 @@ class Track:
 
     def last(self, intervals: int = 0) -> NDArray[np.float64]:
         """Return the last states, at the ends of so many intervals; 0 for the last second."""
-        return self._states[-(intervals or self._second) - 1 :]
+        wanted = (intervals or self._second) + 1
+        first, found = len(self._parts), 0
+        while first and found < wanted:
+            first -= 1
+            found += len(self._parts[first])
+        return np.concatenate(self._parts[first:])[-wanted:]
 
     def last_time_off(self, mean: float) -> float:
         """Return the last time psi_1 - psi_2 is out of the band about its mean, 0 if never."""

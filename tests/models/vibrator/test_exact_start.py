@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from models.vibrator import exact, exact_start, lanes, theory
-from models.vibrator.exact_orbit import find_orbit, prepare, proposal
+from models.vibrator.exact_orbit import find_orbit, proposal
 from models.vibrator.exact_start import outcomes
+from models.vibrator.machine import prepare
 from models.vibrator.measures import measure
 from models.vibrator.orbit import find_orbits
 from models.vibrator.outcome import ASYNCHRONOUS, CAPTURED, LOCKED_0, LOCKED_PI, STALLED
@@ -131,7 +132,7 @@ def test_a_run_of_a_minute_ends_on_the_orbit(p, settings):
         (out.power_2, m.torque_2, m.slip_2, m.synchronous_speed_2, states[:-1, rate + 4]),
     ):
         mean = np.mean(w * torque * (top - w) / (slip**2 + (top - w) ** 2))
-        np.testing.assert_allclose(power, mean, rtol=1e-5)
+        np.testing.assert_allclose(power, mean, rtol=1e-4 if p.feed_mass else 1e-7)
 
 
 def test_a_soft_rotational_mount_flips_the_locked_state():
@@ -145,8 +146,17 @@ def test_a_soft_rotational_mount_flips_the_locked_state():
     assert list(out.regime) == [LOCKED_PI, LOCKED_PI, LOCKED_0, LOCKED_0]
     np.testing.assert_allclose(np.abs(out.disphasing), [np.pi, np.pi, 0, 0], atol=1e-9)
     assert (out.multiplier < 1).all()
-    near = (out.multiplier[1], out.multiplier[2])
-    assert min(near) > max(out.multiplier[0], out.multiplier[3])
+    assert out.multiplier[1:3].min() > out.multiplier[[0, 3]].max()
+
+
+def test_an_approach_too_slow_for_the_start_is_censored():
+    p = SYMMETRIC._replace(mount_rotational_stiffness=4.75e6, initial_phase_1=0.3)
+    out, status = switched_on(p, settings=Settings(propagator="exact", run_up=20.0))
+    assert status[0] == Status.OK
+    assert out.regime[0] == LOCKED_PI
+    assert 0.99 < out.multiplier[0] < 1
+    assert out.censored[0]
+    assert out.synchronisation_time[0] == pytest.approx(20.0)
 
 
 def test_flexible_mounts_are_close_to_the_averaged_theory():
@@ -244,8 +254,9 @@ def test_a_machine_that_runs_out_of_steps_keeps_its_last_second(monkeypatch):
 
 def test_a_bad_row_harms_no_other():
     massless = Params(mount_rotational_stiffness=1e6, shaft_half_angle=0.0)
+    unknown = Params(synchronous_speed_2=math.nan)
     alone, _ = switched_on(ON_MOUNTS)
-    out, status = switched_on(massless, ON_MOUNTS, Params(body_mass=math.nan))
+    out, status = switched_on(massless, ON_MOUNTS, unknown)
     assert list(status) == [Status.NON_FINITE, Status.OK, Status.NON_FINITE]
     for field, value in zip(out, alone, strict=True):
         np.testing.assert_array_equal(field[1], value[0])
@@ -263,4 +274,5 @@ def test_slow_rotors_and_short_starts():
     )
     out, status = switched_on(p, settings=Settings(propagator="exact", run_up=1.0))
     assert status[0] == Status.OK
-    assert out.regime[0] == STALLED
+    assert 4 < out.speed[0] < 5
+    assert out.regime[0] in (LOCKED_0, LOCKED_PI)

@@ -123,10 +123,10 @@ def test_a_run_in_two_parts_is_the_run_in_one():
         np.testing.assert_array_equal(higher, notes[:, i])
     peak = np.maximum(first[:, lanes.EXCURSION], second[:, lanes.EXCURSION])
     np.testing.assert_array_equal(peak, notes[:, lanes.EXCURSION])
-    early, late = first[:, lanes.LAST_OUT], second[:, lanes.LAST_OUT]
+    early, late = first[:, lanes.LAST_ENTRY], second[:, lanes.LAST_ENTRY]
     assert (early >= 0).any() and (late >= 0).any()
     last = np.where(late >= 0, late + parts[0], early)
-    np.testing.assert_allclose(last, notes[:, lanes.LAST_OUT], rtol=1e-14)
+    np.testing.assert_allclose(last, notes[:, lanes.LAST_ENTRY], rtol=1e-14)
 
 
 @pytest.fixture(scope="module")
@@ -200,10 +200,10 @@ def test_the_last_time_into_the_band(path, notes):
         if came[i].any():
             j = np.flatnonzero(came[i])[-1]
             last = (j + (off[i, j] - BAND) / (off[i, j] - off[i, j + 1])) / DENSER
-        np.testing.assert_allclose(notes[i, lanes.LAST_OUT], last, rtol=0, atol=0.2)
+        np.testing.assert_allclose(notes[i, lanes.LAST_ENTRY], last, rtol=0, atol=0.2)
 
 
 def test_without_a_target_there_is_no_band():
     _, notes = advance(STARTS["under way"], 48 * TURNS, np.full(ROWS, np.nan))
-    assert np.all(notes[:, lanes.LAST_OUT] == -1)
+    assert np.all(notes[:, lanes.LAST_ENTRY] == -1)
     assert np.isfinite(notes).all()

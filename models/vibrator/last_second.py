@@ -1,0 +1,143 @@
+"""The last second of a run that has not led to a known orbit: means, and what they say."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.vibrator import lanes
+from models.vibrator.lanes import Array
+from models.vibrator.outcome import (
+    BAND,
+    CAPTURED_BELOW,
+    Outcome,
+    locked_regime,
+    unlocked_regime,
+    wrapped,
+)
+from models.vibrator.parameters import Settings
+from models.vibrator.synchronous import Known, Machines, search
+
+LAST = 1.0  # [s]
+STEPS = 12  # in a turn at synchronous speed, unless the machine is stiff
+NEAR = 0.03  # of the expected disphasing angle: the same motion [rad]
+_LOCKED = 0.2  # range of the disphasing angle below which motors are locked [rad]
+_LONGEST = 1 << 20  # steps
+
+
+class Live(NamedTuple):
+    """The machines that are still running.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (n,)
+    machines : Machines
+    state : ndarray, shape (n, 10)
+    came : ndarray, shape (n,)
+        When the disphasing angle last came into its band [s].
+    far : ndarray, shape (n,)
+        Largest squared displacement of C so far [m2].
+    half, quarter : ndarray, shape (n, 2)
+        psi_1 and psi_2 after a half and a quarter of the looks so far.
+    """
+
+    rows: NDArray[np.intp]
+    machines: Machines
+    state: Array
+    came: Array
+    far: Array
+    half: Array
+    quarter: Array
+
+    def take(self, chosen: NDArray[np.bool_]) -> "Live":
+        """Return some of them."""
+        i = np.flatnonzero(chosen)
+        return Live(self.rows[i], self.machines.take(i), *(field[i] for field in self[2:]))
+
+
+def learn(
+    part: Machines, state: Array, rows: NDArray[np.intp], known: Known, settings: Settings
+) -> NDArray[np.bool_]:
+    """Search for the orbit near which machines are; tell where there is a new one."""
+    speed, angle = state[:, 8:10].mean(axis=1), state[:, 3] - state[:, 4]
+    other = search(part, speed, angle, np.ones(len(rows), bool), settings.steps_per_turn)
+    with np.errstate(invalid="ignore"):
+        same = np.abs(wrapped(other.disphasing - known.disphasing[rows])) < NEAR
+    new = other.found & ~same
+    known.learn(rows[new], other.take(new))
+    return new
+
+
+def run_last_second(
+    live: Live, time: Array, known: Known, out: Outcome, settings: Settings
+) -> NDArray[np.bool_]:
+    """Run the last second; tell which machines turned out to be locked elsewhere than expected.
+
+    Parameters
+    ----------
+    live : Live
+        Its states are updated in place.
+    time : ndarray, shape (n,)
+        So far [s].
+    known : Known
+        Learns where they are locked.
+    out : Outcome
+        Updated in place.
+    settings : Settings
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    part, state, rows = live.machines, live.state, live.rows
+    turn = 2 * np.pi / part.synchronous_speed.max(axis=1)
+    per_turn = settings.steps_per_turn or STEPS
+    needed = LAST * np.maximum(per_turn / turn, part.fastest / lanes.STABLE)
+    steps = 2 ** np.ceil(np.log2(np.minimum(needed, _LONGEST))).astype(np.int64)
+    again = np.zeros(len(rows), bool)
+    for count in np.unique(steps).tolist():
+        i = np.flatnonzero(steps == count)
+        some, here, these = part.take(i), state[i], rows[i]
+        before = here[:, 3:5].copy()
+        h = np.full(len(i), LAST / count)
+        notes = lanes.advance(some.constants, h, here, known.disphasing[these], count, BAND)
+        speed = (here[:, 3:5] - before) / LAST
+        notes[:, : lanes.SUMS] /= count
+        _note_means(these, notes, speed, some, out)
+        out.max_excursion[these] = np.sqrt(np.maximum(live.far[i], notes[:, lanes.EXCURSION]))
+        last = notes[:, lanes.LAST_ENTRY]
+        inside = np.where(last >= 0, time[i] + last * LAST / count, live.came[i])
+        low, high = notes[:, lanes.ANGLE_LOW], notes[:, lanes.ANGLE_HIGH]
+        fast = (speed >= CAPTURED_BELOW * some.synchronous_speed).all(axis=1)
+        locked = np.flatnonzero(fast & (high - low < _LOCKED))
+        again[i[locked]] = learn(some.take(locked), here[locked], these[locked], known, settings)
+        # Locked, but on no orbit that was found: the means of the last second must do.
+        locked = locked[~again[i[locked]]]
+        mean = wrapped(notes[locked, lanes.ANGLE])
+        expected = known.disphasing[these[locked]]
+        with np.errstate(invalid="ignore"):
+            off = ~(np.abs(wrapped(mean - expected)) < NEAR)
+        known.found[these[locked[off]]] = False
+        known.disphasing[these[locked[off]]] = mean[off]
+        again[i[locked[off]]] = True
+        as_expected = these[locked[~off]]
+        out.disphasing[as_expected] = mean[~off]
+        out.synchronisation_time[as_expected] = inside[locked[~off]]
+        out.regime[as_expected] = locked_regime(mean[~off])
+    return again
+
+
+def _note_means(
+    rows: NDArray[np.intp], notes: Array, speed: Array, part: Machines, out: Outcome
+) -> None:
+    """Note the outputs of machines that are not locked, so far as is known."""
+
+    def half(low: int) -> Array:
+        return (notes[:, low + 1] - notes[:, low]) / 2
+
+    out.power_1[rows], out.power_2[rows] = notes[:, lanes.POWER_1], notes[:, lanes.POWER_2]
+    out.angular_amplitude[rows] = half(lanes.ALPHA_LOW)
+    out.stroke_left[rows], out.stroke_right[rows] = half(lanes.LEFT_LOW), half(lanes.RIGHT_LOW)
+    out.speed[rows] = speed.mean(axis=1)
+    out.synchronisation_time[rows] = np.inf
+    out.regime[rows] = unlocked_regime(*speed.T, *part.synchronous_speed.T)
