@@ -1,5 +1,6 @@
 """From rows of parameters to disphasing angles, start-up and regimes."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from models.vibrator import exact_start, start, theory
 from models.vibrator.outcome import Outcome
 from models.vibrator.parameters import Params, Rows, Settings
+from uq.contract import Status
 
 
 def batch(
@@ -31,13 +33,11 @@ def batch(
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
     fast = is_rigid(p) & (settings.kinematics == "small") & (settings.propagator == "fast")
-    outcome, status = Outcome.nothing(len(x)), np.zeros(len(x), np.int8)
-    for chosen, road in ((fast, start), (~fast, exact_start)):
-        rows = np.flatnonzero(chosen)
-        if len(rows):
-            part, status[rows] = road.outcomes(Params._make(f[rows] for f in p), settings)
-            for whole, some in zip(outcome, part, strict=True):
-                whole[rows] = some
+    outcome, status = Outcome.nothing(len(x)), np.full(len(x), Status.OK, np.int8)
+    _run(start.outcomes, p, np.flatnonzero(fast), settings, outcome, status)
+    # The exact propagator also follows what is too stiff for fixed steps.
+    slow = ~fast | (status == Status.NON_FINITE)
+    _run(exact_start.outcomes, p, np.flatnonzero(slow), settings, outcome, status)
     theirs = theory.disphasing(p)
     return {
         "disphasing_angle": outcome.disphasing,
@@ -54,6 +54,21 @@ def batch(
         "max_excursion": outcome.max_excursion,
         "regime": outcome.regime,
     }, status
+
+
+def _run(
+    road: Callable[[Rows, Settings], tuple[Outcome, NDArray[np.int8]]],
+    p: Rows,
+    rows: NDArray[np.intp],
+    settings: Settings,
+    outcome: Outcome,
+    status: NDArray[np.int8],
+) -> None:
+    if len(rows):
+        some, status[rows] = road(Params._make(field[rows] for field in p), settings)
+        whole: tuple[Any, ...] = outcome
+        for field, part in zip(whole, some, strict=True):
+            field[rows] = part
 
 
 def is_rigid(p: Rows) -> NDArray[np.bool_]:

@@ -97,13 +97,15 @@ _integrate_extended = integrator(_extended_rates, _extended_guards, 2)
 
 
 @kernel
-def _run_rigid(system, state, last_angle, end, absolute, budget, times, samples, work):
+def run_rigid(system, state, last_angle, end, absolute, budget, times, samples, work):
+    """Integrate the rigid machine; see `models.numerics.dop853` for the arguments."""
     task = Task(system, last_angle, True, work)
     return _integrate_rigid(0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples)
 
 
 @kernel
-def _run_extended(system, state, last_angle, end, absolute, budget, times, samples, work):
+def run_extended(system, state, last_angle, end, absolute, budget, times, samples, work):
+    """Integrate the extended machine through all flights of the feed, as `run_rigid`."""
     riding = state[7] == 0 and state[extended.DEGREES + 7] == 0
     time = step = 0.0
     steps = sampled = 0
@@ -190,14 +192,14 @@ def propagate(
     state = np.array(state, float)
     times = np.ascontiguousarray(times, float)
     samples = np.full((len(times), len(state)), np.nan)
-    run = _run_rigid if len(state) == 2 * equations.DEGREES else _run_extended
+    run = run_rigid if len(state) == 2 * equations.DEGREES else run_extended
     revolutions = duration * _speed(system) / (2 * np.pi)
     ended = run(
         system,
         state,
         state[3] + 2 * np.pi * turns,
         float(duration),
-        tolerance * _scales(system, len(state) // 2),
+        tolerance * scales_of(system, len(state) // 2),
         int(STEPS_PER_TURN * revolutions) + _SPARE_STEPS,
         times,
         samples,
@@ -210,7 +212,7 @@ def _speed(m: System) -> float:
     return max(m.synchronous_speed_1, m.synchronous_speed_2)
 
 
-def _scales(m: System, degrees: int) -> NDArray[np.float64]:
+def scales_of(m: System, degrees: int) -> NDArray[np.float64]:
     """Return the size of each component of the state, of x, y, alpha, psi, u, chi, height."""
     shift = (m.unbalance_1 + m.unbalance_2) / m.mass
     turn = shift / math.sqrt(m.inertia / m.mass)

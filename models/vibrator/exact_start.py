@@ -33,7 +33,7 @@ from uq.contract import Status
 SAMPLES_PER_TURN = 32  # at the larger synchronous speed
 TURNS = 8  # in a look
 LOOK = SAMPLES_PER_TURN * TURNS
-BUDGET = 80_000  # steps of one machine, searches of orbits included: about a second
+BUDGET = 150_000  # steps of one machine, searches of orbits included: some two seconds
 _LOOKING = 10  # steps that a look is worth beside those it takes
 _NEAR = 0.03  # of the orbit's disphasing angle: certain to stay [rad]
 _ALIKE = 0.01  # of the orbit's speed, likewise

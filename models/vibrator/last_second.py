@@ -16,7 +16,7 @@ from models.vibrator.outcome import (
     wrapped,
 )
 from models.vibrator.parameters import Settings
-from models.vibrator.synchronous import Known, Machines, search
+from models.vibrator.synchronous import Known, Machines, describe, search
 
 LAST = 1.0  # [s]
 STEPS = 12  # in a turn at synchronous speed, unless the machine is stiff
@@ -37,8 +37,6 @@ class Live(NamedTuple):
         When the disphasing angle last came into its band [s].
     far : ndarray, shape (n,)
         Largest squared displacement of C so far [m2].
-    half, quarter : ndarray, shape (n, 2)
-        psi_1 and psi_2 after a half and a quarter of the looks so far.
     """
 
     rows: NDArray[np.intp]
@@ -46,8 +44,6 @@ class Live(NamedTuple):
     state: Array
     came: Array
     far: Array
-    half: Array
-    quarter: Array
 
     def take(self, chosen: NDArray[np.bool_]) -> "Live":
         """Return some of them."""
@@ -99,6 +95,7 @@ def run_last_second(
         i = np.flatnonzero(steps == count)
         some, here, these = part.take(i), state[i], rows[i]
         before = here[:, 3:5].copy()
+        first = here[:, 3] - here[:, 4]
         h = np.full(len(i), LAST / count)
         notes = lanes.advance(some.constants, h, here, known.disphasing[these], count, BAND)
         speed = (here[:, 3:5] - before) / LAST
@@ -111,19 +108,27 @@ def run_last_second(
         fast = (speed >= CAPTURED_BELOW * some.synchronous_speed).all(axis=1)
         locked = np.flatnonzero(fast & (high - low < _LOCKED))
         again[i[locked]] = learn(some.take(locked), here[locked], these[locked], known, settings)
-        # Locked, but on no orbit that was found: the means of the last second must do.
         locked = locked[~again[i[locked]]]
-        mean = wrapped(notes[locked, lanes.ANGLE])
-        expected = known.disphasing[these[locked]]
+        where, mean = these[locked], wrapped(notes[locked, lanes.ANGLE])
+        target = known.disphasing[where]
         with np.errstate(invalid="ignore"):
-            off = ~(np.abs(wrapped(mean - expected)) < NEAR)
-        known.found[these[locked[off]]] = False
-        known.disphasing[these[locked[off]]] = mean[off]
-        again[i[locked[off]]] = True
-        as_expected = these[locked[~off]]
-        out.disphasing[as_expected] = mean[~off]
-        out.synchronisation_time[as_expected] = inside[locked[~off]]
-        out.regime[as_expected] = locked_regime(mean[~off])
+            off = [
+                np.abs(wrapped(angle[locked] - target))
+                for angle in (first, here[:, 3] - here[:, 4])
+            ]
+            near = np.abs(wrapped(mean - target)) < NEAR
+            coming = known.found[where] & ~near & (off[1] < off[0])
+        there = near | coming
+        # Locked, but on no orbit that was found: the means of the last second must do.
+        known.found[where[~there]] = False
+        known.disphasing[where[~there]] = mean[~there]
+        again[i[locked[~there]]] = True
+        out.disphasing[where[there]] = mean[there]
+        out.regime[where[there]] = locked_regime(mean[there])
+        late = time[i[locked]] + LAST
+        out.synchronisation_time[where[there]] = np.where(coming, late, inside[locked])[there]
+        out.censored[where[coming]] = True
+        describe(some.take(locked[there]), known.take(where[there]), out, where[there])
     return again
 
 

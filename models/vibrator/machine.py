@@ -14,8 +14,6 @@ from models.vibrator.system import System, system
 PSI_1, PSI_2, HEIGHT = 3, 4, 7
 """Places in the state."""
 
-_NEVER_LEAVES = 1e30  # gravity that keeps a feed without mass on the deck [m s-2]
-
 
 @dataclass
 class Machine:
@@ -73,7 +71,7 @@ class Machine:
         """Advance `state` in place, for some time or turns of vibrator 1; return samples too."""
         times = np.ascontiguousarray(times, float)
         samples = np.full((len(times), len(state)), np.nan)
-        kernel = exact._run_extended if self.is_extended else exact._run_rigid
+        kernel = exact.run_extended if self.is_extended else exact.run_rigid
         ended = kernel(
             self.system,
             state,
@@ -101,7 +99,5 @@ def prepare(params: Params, kinematics: str, budget: int) -> Machine:
         Steps that may be tried.
     """
     m = system(params, kinematics)
-    if not m.feed_mass:
-        m = m._replace(feed_gravity=_NEVER_LEAVES)
     degrees = extended.DEGREES if exact.is_extended(m) else equations.DEGREES
-    return Machine(params, m, exact._scales(m, degrees), extended.workspace(), budget)
+    return Machine(params, m, exact.scales_of(m, degrees), extended.workspace(), budget)

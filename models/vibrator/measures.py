@@ -102,15 +102,17 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
     # How a unit of `half_spacing` to the right of C moves along xi.
     arm = cos * (np.cos(turned) - 1) + sin * (np.sin(turned) if m.exact else alpha)
     arm_rate = spin * (sin * np.cos(turned) - cos * np.sin(turned))
-    strokes = []
-    for end in (-m.half_spacing, m.half_spacing):
+
+    def stroke(end: float) -> float:
         shift, rate = cos * x + sin * y + end * arm, cos * vx + sin * vy + end * arm_rate
-        strokes.append(_half_range(shift, rate, interval))
+        return _half_range(shift, rate, interval)
+
     duration = interval * (len(samples) - 1)
     return Measures(
         _mean(psi_1 - psi_2),
         _half_range(alpha, spin, interval),
-        *strokes,
+        stroke(-m.half_spacing),
+        stroke(m.half_spacing),
         float(psi_1[-1] - psi_1[0]) / duration,
         float(psi_2[-1] - psi_2[0]) / duration,
         _mean(w_1 * _kloss(m.torque_1, m.slip_1, m.synchronous_speed_1 - w_1)),

@@ -25,11 +25,8 @@ from models.vibrator.synchronous import Known, Machines, describe, propose
 from uq.contract import Status
 
 LOOK = 96  # steps between two looks at a run
-BUDGET = 4000  # looks
+BUDGET = 1000  # looks
 _STEADY = 0.02  # range of the disphasing angle in a look that is worth a search for an orbit [rad]
-_EXPERIENCE = 32  # looks before a machine is taken to have settled out of step
-_SETTLED = 1e-3  # change of the mean speeds, from one half of the time to the next
-_APART = 0.02  # difference of the speeds, over the synchronous speed, that no locking bridges
 _RUNS = 3  # of a machine, each towards an orbit that the one before has shown
 
 
@@ -87,7 +84,7 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
         rows = _run(machines, plan, known, rows, out, status, settings)
     unfinished = plan.over & np.isinf(out.synchronisation_time)
     status[unfinished] = Status.OUT_OF_BUDGET
-    out.censored[:] = unfinished
+    out.censored[:] |= unfinished
     reached = plan.step * plan.looks * LOOK + LAST
     out.synchronisation_time[unfinished] = reached[unfinished]
     return out, status
@@ -105,8 +102,7 @@ def _run(
     """Run machines from standstill; return those to be run again, towards another orbit."""
     again = [np.empty(0, np.intp)]
     some, n = machines.take(rows), len(rows)
-    zeros = np.zeros((n, 2))
-    live = Live(rows, some, initial_state(some.p), zeros[:, 0], zeros[:, 0], zeros, zeros)
+    live = Live(rows, some, initial_state(some.p), np.zeros(n), np.zeros(n))
     ending = plan.looks[rows] == 0
     look = 0
     while len(live.rows):
@@ -132,13 +128,9 @@ def _run(
         finite = np.isfinite(live.state).all(axis=1)
         status[live.rows[~finite]] = Status.NON_FINITE
         arrived = finite & _is_near(known, live.rows, low, high, speed)
-        _note_locked(machines, known, live.take(arrived), out)
+        _note_locked(known, live.take(arrived), out)
         going = finite & ~arrived
-        settled = np.zeros(len(going), bool)
         if look & (look - 1) == 0:
-            settled = (look >= _EXPERIENCE) & _has_settled(live, step * LOOK * look)
-            plan.over[live.rows[settled]] = False
-            live = live._replace(quarter=live.half, half=live.state[:, 3:5].copy())
             fast = (speed >= CAPTURED_BELOW * live.machines.synchronous_speed).all(axis=1)
             waiting = going & fast & (high - low < _STEADY)
             if waiting.any():
@@ -146,20 +138,9 @@ def _run(
                 found = learn(steady.machines, steady.state, steady.rows, known, settings)
                 again.append(steady.rows[found])
                 going[np.flatnonzero(waiting)[found]] = False
-        ending = (settled | (plan.looks[live.rows] <= look))[going]
+        ending = (plan.looks[live.rows] <= look)[going]
         live = live.take(going)
     return np.concatenate(again)
-
-
-def _has_settled(live: Live, time: Array) -> NDArray[np.bool_]:
-    """Tell which machines run steadily, but slowly or out of step."""
-    earlier = (live.half - live.quarter) / (time / 4)[:, None]
-    later = (live.state[:, 3:5] - live.half) / (time / 2)[:, None]
-    top = live.machines.synchronous_speed
-    steady = np.abs(later - earlier) < _SETTLED * np.abs(later)
-    slow = (later < CAPTURED_BELOW * top).any(axis=1)
-    apart = np.abs(later[:, 0] - later[:, 1]) > _APART * top.max(axis=1)
-    return steady.all(axis=1) & (slow | apart)
 
 
 def _is_near(known: Known, rows: Any, low: Array, high: Array, speed: Array) -> Any:
@@ -173,9 +154,9 @@ def _is_near(known: Known, rows: Any, low: Array, high: Array, speed: Array) -> 
         return known.found[rows] & near & (np.abs(ratio - 1) < 0.01).all(axis=1)
 
 
-def _note_locked(machines: Machines, known: Known, live: Live, out: Outcome) -> None:
+def _note_locked(known: Known, live: Live, out: Outcome) -> None:
     rows = live.rows
-    describe(machines, known, rows, out)
+    describe(live.machines, known.take(rows), out, rows)
     # One whose angle leaves the band in every revolution keeps leaving it.
     out.synchronisation_time[rows] = np.where(known.ripple[rows] < BAND, live.came, np.inf)
     out.max_excursion[rows] = np.sqrt(live.far)

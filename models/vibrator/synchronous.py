@@ -163,24 +163,25 @@ def _harmonic(p: Rows, speed: Array, angle: Array) -> Array:
     return state
 
 
-def describe(machines: Machines, known: Known, rows: NDArray[np.intp], out: Outcome) -> None:
-    """Note the outputs of the machines that run on their known orbits.
+def describe(machines: Machines, known: Known, out: Outcome, rows: NDArray[np.intp]) -> None:
+    """Note the outputs of machines that run on their orbits, where these are known.
 
     Parameters
     ----------
     machines : Machines
     known : Known
-    rows : ndarray of int
     out : Outcome
         Updated in place.
+    rows : ndarray of int, shape (n,)
+        Where in it the n machines are.
     """
-    for count in np.unique(known.steps[rows]).tolist():
-        some = rows[known.steps[rows] == count]
-        part, orbits = machines.take(some), known.take(some).orbits
+    for count in np.unique(known.steps[known.found]).tolist():
+        i = np.flatnonzero(known.found & (known.steps == count))
+        some, part, orbits = rows[i], machines.take(i), known.take(i).orbits
         trace = follow(part.constants, orbits.state, orbits.period, count)
         alpha, speed = trace[:, :, 2], trace[:, :, 8:10]
         phase = np.exp(-2j * np.pi * np.arange(1, count + 1) / count)
-        out.disphasing[some] = known.disphasing[some]
+        out.disphasing[some] = known.disphasing[i]
         out.multiplier[some] = orbits.multiplier
         out.angular_amplitude[some] = np.abs(2 * (alpha * phase).mean(axis=1))
         left, right = deck_ends(part.system, trace)

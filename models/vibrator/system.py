@@ -6,9 +6,12 @@ C is the mass centre of the bare body, the origin of all levers; see `models.vib
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.vibrator.parameters import Params, Rows
 from models.vibrator.theory import feed_gravity
+
+_NEVER_THROWN = 1e30  # gravity that keeps a feed without mass on the deck [m s-2]
 
 
 class System(NamedTuple):
@@ -188,10 +191,19 @@ def systems(p: Rows, kinematics: str = "small") -> System:
         rock_stiffness=rock_stiffness,
         rock_damping=2 * p.mount_damping_ratio * np.sqrt(rock_stiffness * set_inertia),
         feed_mass=p.feed_mass,
-        feed_gravity=feed_gravity(p) if np.any(p.feed_mass > 0) else np.zeros_like(m),
+        feed_gravity=_gravity(p),
         feed_position=p.feed_position,
         exact=np.full_like(m, kinematics == "exact"),
     )
+
+
+def _gravity(p: Rows) -> NDArray[np.float64]:
+    """Return the gravity of the feed; so large that what has no mass never takes off."""
+    loaded = p.feed_mass > 0
+    gravity = np.full(len(loaded), _NEVER_THROWN)
+    if loaded.any():
+        gravity[loaded] = feed_gravity(Params._make(field[loaded] for field in p))
+    return gravity
 
 
 def system(params: Params, kinematics: str = "small") -> System:

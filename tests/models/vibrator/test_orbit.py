@@ -46,13 +46,13 @@ def gap(m, state, period):
     """Return by how much one machine misses its start after a turn of vibrator 1, scaled."""
     motion = exact.propagate(m, state, 2 * period, 1e-13, turns=1)
     assert motion.status == GUARDED
-    miss = (motion.state - state - TURN) / exact._scales(m, equations.DEGREES)
+    miss = (motion.state - state - TURN) / exact.scales_of(m, equations.DEGREES)
     return max(abs(miss).max(), abs(motion.time / period - 1))
 
 
 def passage(m, start, period):
     """Return the derivative of the map from one passage of psi_1 = 0 to the next."""
-    scales = 1e-5 * exact._scales(m, equations.DEGREES)
+    scales = 1e-5 * exact.scales_of(m, equations.DEGREES)
     columns = []
     for i in orbit.FREE:
         change = scales * (np.arange(orbit.STATE) == i)
@@ -100,7 +100,7 @@ def test_following_ends_where_the_orbit_does():
     for i in (0, 7):
         m, times = systems(MACHINES).row(i), orbits.period[i] * np.arange(1, 49) / 48
         motion = exact.propagate(m, orbits.state[i], times[-1], 1e-13, times=times)
-        errors = (trace[i] - motion.samples) / exact._scales(m, equations.DEGREES)
+        errors = (trace[i] - motion.samples) / exact.scales_of(m, equations.DEGREES)
         assert abs(errors).max() < 1e-8
 
 

@@ -56,7 +56,7 @@ def ends(start):
 
 
 def scaled_errors(state, expected):
-    scales = [exact._scales(SYSTEMS.row(i), equations.DEGREES) for i in range(ROWS)]
+    scales = [exact.scales_of(SYSTEMS.row(i), equations.DEGREES) for i in range(ROWS)]
     return (abs(state - expected) / scales).max(axis=1)
 
 
