@@ -51,16 +51,16 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         "x": ("m", "horizontal displacement of C", x),
         "y": ("m", "vertical displacement of C", y),
         "alpha": ("rad", "rotation of the body", alpha),
-        "disphasing_angle": ("rad", "psi_1 - psi_2, with all its turns", psi_1 - psi_2),
+        "disphasing_angle": ("rad", "disphasing angle, not wrapped", psi_1 - psi_2),
         "speed_1": ("rad s-1", "speed of vibrator 1", v[3]),
         "speed_2": ("rad s-1", "speed of vibrator 2", v[4]),
-        "displacement_left": ("m", "displacement of the left deck end along xi", left),
-        "displacement_right": ("m", "displacement of the right deck end along xi", right),
+        "displacement_left": ("m", "left deck end along xi", left),
+        "displacement_right": ("m", "right deck end along xi", right),
     }
     if len(q) == extended.DEGREES:
         quantities |= {
-            "mount_displacement": ("m", "displacement of the motor set on its mount", q[5]),
-            "mount_rotation": ("rad", "rotation of the motor set on its mount", q[6]),
+            "mount_displacement": ("m", "motor set on its mount", q[5]),
+            "mount_rotation": ("rad", "rotation on the mount", q[6]),
             "feed_height": ("m", "height of the feed above the deck", q[7]),
         }
     return Trajectory(time[reached], quantities)
