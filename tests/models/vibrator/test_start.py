@@ -212,6 +212,43 @@ def moment_and_slope(p, w):
     return closed_forms.synchronising_moment(p.unbalance_1, w, b), slope
 
 
+def centre_and_inertia(p, w):
+    """Return the combined centre, J', and the isotropic M' of eqs (5) to (8)."""
+    at = closed_forms.combined_centre(
+        p.body_mass,
+        p.body_inertia,
+        p.unbalanced_mass,
+        p.shaft_distance,
+        p.shaft_half_angle,
+        p.axis_offset,
+    )
+    inertia = closed_forms.reduced_inertia(at.inertia, p.stiffness_y, p.support_half_spacing, w)
+    return at, inertia, closed_forms.reduced_mass(at.mass, p.stiffness_x, w)
+
+
+SOFT = {"stiffness_x": 1e5, "stiffness_y": 1e5, "support_offset": 0.0, "damping_ratio": 1e-3}
+
+
+def test_unequal_motors_run_apart_as_the_sixth_equation_says():
+    apart = np.array([0.05, 0.2, 0.5])
+    p = fleet(3, **SOFT, synchronous_speed_2=157 - apart, breakdown_speed_2=126 - apart)
+    out, _ = outcomes(p)
+    moment, slope = moment_and_slope(p, out.speed)
+    closed = closed_forms.disphasing_of_motors(apart, slope, moment)
+    assert out.disphasing == pytest.approx(closed, rel=0.01)
+
+
+def test_an_axis_off_centre_disphases_and_rocks_as_equations_seven_and_eight_say():
+    p = fleet(3, **SOFT, axis_offset=[-0.2, 0.02, 0.1])
+    out, _ = outcomes(p)
+    at, inertia, mass = centre_and_inertia(p, out.speed)
+    closed = closed_forms.disphasing_of_offset(at, inertia, mass, mass)
+    assert out.disphasing == pytest.approx(closed, rel=0.01)
+    rocking = closed_forms.angular_amplitude(out.disphasing, p.unbalance_1, at, inertia)
+    assert out.angular_amplitude == pytest.approx(rocking, rel=0.01)
+    assert (out.angular_amplitude > 1e-6).all()
+
+
 def test_synchronisation_ends_where_the_fourth_equation_says():
     p = fleet(stiffness_x=2.07e6, support_offset=0.0)
     moment, slope = moment_and_slope(p, 156.6)
