@@ -65,7 +65,7 @@ def learn(
 
 
 def run_last_second(
-    live: Live, time: Array, known: Known, out: Outcome, settings: Settings
+    live: Live, time: Array, known: Known, out: Outcome, settings: Settings, final: bool
 ) -> NDArray[np.bool_]:
     """Run the last second; tell which machines turned out to be locked elsewhere than expected.
 
@@ -80,6 +80,8 @@ def run_last_second(
     out : Outcome
         Updated in place.
     settings : Settings
+    final : bool
+        Whether nothing more can be learnt: locked machines are taken as they are.
 
     Returns
     -------
@@ -107,7 +109,9 @@ def run_last_second(
         low, high = notes[:, lanes.ANGLE_LOW], notes[:, lanes.ANGLE_HIGH]
         fast = (speed >= CAPTURED_BELOW * some.synchronous_speed).all(axis=1)
         locked = np.flatnonzero(fast & (high - low < _LOCKED))
-        again[i[locked]] = learn(some.take(locked), here[locked], these[locked], known, settings)
+        if not final:
+            part_of, at = some.take(locked), these[locked]
+            again[i[locked]] = learn(part_of, here[locked], at, known, settings)
         locked = locked[~again[i[locked]]]
         where, mean = these[locked], wrapped(notes[locked, lanes.ANGLE])
         target = known.disphasing[where]
@@ -118,7 +122,7 @@ def run_last_second(
             ]
             near = np.abs(wrapped(mean - target)) < NEAR
             coming = known.found[where] & ~near & (off[1] < off[0])
-        there = near | coming
+        there = near | coming | final
         # Locked, but on no orbit that was found: the means of the last second must do.
         known.found[where[~there]] = False
         known.disphasing[where[~there]] = mean[~there]

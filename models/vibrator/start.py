@@ -80,9 +80,13 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
     n = len(known.found)
     out, status = Outcome.nothing(n), np.full(n, Status.OK, np.int8)
     rows = np.arange(n)
-    for _ in range(_RUNS):
-        rows = _run(machines, plan, known, rows, out, status, settings)
-    unfinished = plan.over & np.isinf(out.synchronisation_time)
+    for run in range(_RUNS):
+        final = run == _RUNS - 1
+        rows = _run(machines, plan, known, rows, out, settings, final)
+    lost = ~np.isfinite(out.speed)
+    out.regime[lost] = -1
+    status[lost] = Status.NON_FINITE
+    unfinished = plan.over & np.isinf(out.synchronisation_time) & np.isnan(out.disphasing) & ~lost
     status[unfinished] = Status.OUT_OF_BUDGET
     out.censored[:] |= unfinished
     reached = plan.step * plan.looks * LOOK + LAST
@@ -96,10 +100,13 @@ def _run(
     known: Known,
     rows: NDArray[np.intp],
     out: Outcome,
-    status: NDArray[np.int8],
     settings: Settings,
+    final: bool,
 ) -> NDArray[np.intp]:
-    """Run machines from standstill; return those to be run again, towards another orbit."""
+    """Run machines from standstill; return those to be run again, towards another orbit.
+
+    In a final run there are none.
+    """
     again = [np.empty(0, np.intp)]
     some, n = machines.take(rows), len(rows)
     live = Live(rows, some, initial_state(some.p), np.zeros(n), np.zeros(n))
@@ -109,7 +116,7 @@ def _run(
         if ending.any():
             last = live.take(ending)
             time = look * LOOK * plan.step[last.rows]
-            found = run_last_second(last, time, known, out, settings)
+            found = run_last_second(last, time, known, out, settings, final)
             again.append(last.rows[found])
             live = live.take(~ending)
             if not len(live.rows):
@@ -126,11 +133,10 @@ def _run(
         speed = (live.state[:, 3:5] - before) / (LOOK * step)[:, None]
         low, high = notes[:, lanes.ANGLE_LOW], notes[:, lanes.ANGLE_HIGH]
         finite = np.isfinite(live.state).all(axis=1)
-        status[live.rows[~finite]] = Status.NON_FINITE
         arrived = finite & _is_near(known, live.rows, low, high, speed)
         _note_locked(known, live.take(arrived), out)
         going = finite & ~arrived
-        if look & (look - 1) == 0:
+        if not final and look & (look - 1) == 0:
             fast = (speed >= CAPTURED_BELOW * live.machines.synchronous_speed).all(axis=1)
             waiting = going & fast & (high - low < _STEADY)
             if waiting.any():
