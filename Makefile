@@ -35,6 +35,7 @@ notebook: $(NOTEBOOK)
 
 bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam
+	@$(BIN)/python -m benchmarks.vibrator
 
 clean:
 	rm -rf .venv

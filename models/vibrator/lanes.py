@@ -20,6 +20,7 @@ CONSTANTS = len(Rigid._fields)
 _combine = combiner(STATE)
 _Y, _NEW, _K, _SIZE = layout(STATE)
 _WHOLE = STATE * LANES
+_K_2, _K_3, _K_4, _K_5, _K_6 = (_K + i * _WHOLE for i in range(1, STAGES))
 
 STABLE = 0.8
 """Step times the fastest rate of a machine: what keeps the method stable with room to spare."""
@@ -212,6 +213,8 @@ _COS, _SIN = CONSTANTS, CONSTANTS + 1
 def _advance(constants, h, state, target, steps, band, notes, work):
     c, w, note, step_size, aim = work
     y, new = w[_Y : _Y + _WHOLE], w[_NEW : _NEW + _WHOLE]
+    k_1, k_2, k_3 = w[_K : _K + _WHOLE], w[_K_2 : _K_2 + _WHOLE], w[_K_3 : _K_3 + _WHOLE]
+    k_4, k_5, k_6 = w[_K_4 : _K_4 + _WHOLE], w[_K_5 : _K_5 + _WHOLE], w[_K_6 : _K_6 + _WHOLE]
     for first in range(0, state.shape[0], LANES):
         load(constants, first, c)
         load(state, first, y)
@@ -225,10 +228,18 @@ def _advance(constants, h, state, target, steps, band, notes, work):
             c[_COS * LANES + lane], c[_SIN * LANES + lane] = np.cos(angle), np.sin(angle)
         _begin(note)
         for step in range(steps):
-            for stage in range(1, STAGES + 1):
-                k = w[_K + (stage - 1) * _WHOLE : _K + stage * _WHOLE]
-                slopes(c, step_size, y if stage == 1 else new, k)
-                _combine(stage, w)
+            slopes(c, step_size, y, k_1)
+            _combine(1, w)
+            slopes(c, step_size, new, k_2)
+            _combine(2, w)
+            slopes(c, step_size, new, k_3)
+            _combine(3, w)
+            slopes(c, step_size, new, k_4)
+            _combine(4, w)
+            slopes(c, step_size, new, k_5)
+            _combine(5, w)
+            slopes(c, step_size, new, k_6)
+            _combine(6, w)
             _note(c, y, new, aim, step_size, float(step), band, note)
             y[:] = new
         store(y, first, state)

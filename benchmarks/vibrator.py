@@ -1,0 +1,238 @@
+"""The vibrator: run-ups and steady states beside other tools, at equal error.
+
+Prints what a start from standstill costs in our lanes, by scipy, by our exact propagator and by
+heyoka, which is optional: it is no dependency of the project, and without it its lines are left
+out. Then the steady state beside shooting one machine at a time; the rows of the shipped study;
+and the averaged theory. Each tool has its cheapest setting that reaches the error, on the same
+rows; everything on one core, in one run. Compilation is left out, and so is what heyoka and
+shooting need to set up.
+"""
+
+import time
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from benchmarks.shooting import rates, shoot
+from models.vibrator import MODEL, equations, exact, exact_orbit, lanes, theory
+from models.vibrator.machine import prepare
+from models.vibrator.parameters import Params
+from models.vibrator.synchronous import Machines, propose
+from models.vibrator.system import systems
+from uq.sampling import row_block
+from uq.study import load_study
+
+try:
+    from benchmarks.taylor import Taylor
+except ModuleNotFoundError as missing:
+    if missing.name != "heyoka":
+        raise
+    Taylor = None
+
+ROWS, KNOWN, ONE_BY_ONE = 512, 16, 4  # in all; with a reference; timed where one row takes long
+DURATION = 5.0  # [s]
+REPEAT = 5
+STUDY = Path(__file__).parent.parent / "studies" / "vibrator-tolerances.toml"
+
+
+def clock(function, repeat=REPEAT):
+    """Return the result and the best time of some calls [s], after one that warms up."""
+    best = np.inf
+    result = function()
+    for _ in range(repeat):
+        began = time.perf_counter()
+        result = function()
+        best = min(best, time.perf_counter() - began)
+    return result, best
+
+
+def scattered(n):
+    """Return nominal machines whose springs, motors and geometry scatter a little."""
+    rng = np.random.default_rng(1)
+    fields = {name: np.full(n, float(value)) for name, value in Params._field_defaults.items()}
+    for name in ("stiffness_x", "stiffness_y", "rated_torque_1", "rated_torque_2", "unbalance_1"):
+        fields[name] *= 1 + 0.01 * rng.uniform(-1, 1, n)
+    fields["axis_offset"] += 0.005 * rng.uniform(-1, 1, n)
+    return Params(**fields)
+
+
+P = scattered(ROWS)
+SYSTEM = systems(P)
+START = equations.initial_state(P)
+CONSTANTS = np.repeat(lanes.pack(SYSTEM), lanes.LANES, axis=1)  # of each row, in all lanes
+
+
+def angle_of(states):
+    return states[:, 3] - states[:, 4]
+
+
+def by_scipy(rows, tolerance):
+    ends = []
+    for i in range(rows):
+        c, scales = CONSTANTS[i], exact.scales_of(SYSTEM.row(i), equations.DEGREES)
+        run = solve_ivp(
+            rates,
+            (0.0, DURATION),
+            START[i],
+            "DOP853",
+            [DURATION],
+            args=(c,),
+            rtol=tolerance,
+            atol=tolerance * scales,
+        )
+        ends.append(run.y[:, -1])
+    return np.array(ends)
+
+
+def by_exact(rows, tolerance):
+    runs = (exact.propagate(SYSTEM.row(i), START[i], DURATION, tolerance) for i in range(rows))
+    return np.array([run.state for run in runs])
+
+
+def by_lanes(rows, steps):
+    """Return the states at the end, with all that has to be set up."""
+    p = Params._make(field[:rows] for field in P)
+    state, constants = equations.initial_state(p), lanes.pack(systems(p))
+    nowhere = np.full(rows, np.nan)
+    lanes.advance(constants, np.full(rows, DURATION / steps), state, nowhere, steps, 0.0)
+    return state
+
+
+def cheapest(settings, error, goal):
+    """Return the first setting, from cheap to dear, with an error below the goal, and the error."""
+    for setting in settings:
+        reached = error(setting)
+        if reached <= goal:
+            return setting, reached
+    raise RuntimeError(f"no setting reaches {goal}")
+
+
+def compare(rivals, known, goal):
+    """Print the tools' settings, errors and times, and the ratios of times to the first tool's.
+
+    Parameters
+    ----------
+    rivals : dict of str to (function, settings, int)
+        ``function(rows, setting)`` returns the angles [rad]; from cheap to dear; rows to time.
+    known : ndarray, shape (k,)
+        Angles [rad] of the first rows.
+    goal : float
+        Largest error [rad].
+    """
+    print(f"  largest error of {len(known)} rows at most {goal:.0e} rad")
+    chosen = {
+        name: cheapest(
+            settings,
+            lambda setting, run=run: np.abs(run(len(known), setting) - known).max(),
+            goal,
+        )
+        for name, (run, settings, _) in rivals.items()
+    }
+    best = dict.fromkeys(rivals, np.inf)
+    for _ in range(REPEAT):  # by turns, so that a busy host is unfair to nobody
+        for name, (run, _, rows) in rivals.items():
+            setting, _ = chosen[name]
+            _, seconds = clock(lambda run=run, n=rows, s=setting: run(n, s), repeat=1)
+            best[name] = min(best[name], seconds / rows)
+    first = next(iter(best.values()))
+    for name, (setting, error) in chosen.items():
+        each = best[name]
+        print(
+            f"    {name:32s} {setting:9.3g} {error:9.1e} {each * 1e3:9.4f} ms {each / first:7.1f}"
+        )
+
+
+def run_ups():
+    print(f"Run-up of {DURATION:g} s: setting, error, time per row, ratio")
+    known = angle_of(by_scipy(KNOWN, 1e-12))
+    tolerances = 10.0 ** -np.arange(2, 13, 0.5)
+    rivals = {
+        "lanes, steps": (
+            lambda n, steps: angle_of(by_lanes(n, steps)),
+            [round(300 * 1.1**k) for k in range(40)],
+            ROWS,
+        ),
+        "exact propagator, tolerance": (
+            lambda n, tolerance: angle_of(by_exact(n, tolerance)),
+            tolerances,
+            KNOWN,
+        ),
+        "scipy DOP853, compiled, rtol": (
+            lambda n, tolerance: angle_of(by_scipy(n, tolerance)),
+            tolerances,
+            ONE_BY_ONE,
+        ),
+    }
+    if Taylor is None:
+        print("  heyoka is not installed and left out")
+    else:
+        made = {}
+
+        def by_taylor(n, tolerance):
+            if tolerance not in made:
+                made[tolerance] = Taylor(SYSTEM, tolerance)
+            return angle_of(made[tolerance].advance(START[:n], DURATION))
+
+        rivals["heyoka, batches of 8, tolerance"] = by_taylor, tolerances, ROWS
+    for goal in (1e-4, 1e-8):
+        compare(rivals, known, goal)
+
+
+def steady_states():
+    print("Steady state: setting, error, time per row, ratio")
+    budget = 10**9  # steps
+    ones = [
+        prepare(Params._make(float(field[i]) for field in P), "small", budget) for i in range(KNOWN)
+    ]
+    guesses = [exact_orbit.proposal(one) for one in ones]
+    orbits = [
+        exact_orbit.find_orbit(one, guess, 1e-12) for one, guess in zip(ones, guesses, strict=True)
+    ]
+    known = np.array([orbit.measures.disphasing for orbit in orbits])
+
+    def by_shooting(n, steps):
+        return np.array(
+            [
+                shoot(CONSTANTS[i], guesses[i], 2 * np.pi / guesses[i][8], ones[i].scales, steps)
+                for i in range(n)
+            ]
+        )
+
+    def by_theory_and_newton(n, steps):
+        p = Params._make(field[:n] for field in P)
+        return propose(Machines.prepared(p), steps).disphasing
+
+    rivals = {
+        "lanes, steps a turn": (by_theory_and_newton, (16, 20, 24, 36, 48, 72, 96), ROWS),
+        "shooting, steps a turn": (by_shooting, [round(16 * 1.1**k) for k in range(60)], KNOWN),
+    }
+    compare(rivals, known, 1e-8)
+
+
+def study():
+    tolerances = load_study(STUDY)
+    some = row_block(tolerances, 0, ROWS)
+    (outputs, _), seconds = clock(lambda: MODEL.batch(some.x, some.seed, tolerances.settings))
+    print(f"Shipped study: {ROWS / seconds:.0f} rows per second and core")
+    pair = np.stack([outputs["disphasing_angle"], outputs["theory_disphasing_angle"]])
+    pair = pair[:, np.isfinite(pair).all(axis=0)]
+    rest = 1 - np.corrcoef(pair)[0, 1] ** 2
+    print(
+        f"  {pair.shape[1]} rows locked: correlation of theory and simulation 1 - {rest / 2:.1e},"
+        f" variance left by the theory as a control variate {rest:.1e}"
+    )
+
+
+def averaged_theory():
+    n = 8 * ROWS
+    p = scattered(n)
+    _, seconds = clock(lambda: theory.disphasing(p))
+    print(f"Averaged theory: {n / seconds:.3g} machines per second")
+
+
+if __name__ == "__main__":
+    run_ups()
+    steady_states()
+    study()
+    averaged_theory()
