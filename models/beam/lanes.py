@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 
 from models.beam.modal import Array, Beams, Record, steady_response
 from models.beam.parameters import Settings
+from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
 
-LANES = 16
 LADDER = tuple(base << k for k in range(8) for base in (64, 96))
 COMPLIANCE = 0.01
 UNSTABLE = 0.03  # compliance from which on the corrections below may feed themselves
@@ -425,15 +425,8 @@ def advance(
         growth,
         np.cos(phase),
         np.sin(phase),
-        _aligned(groups * _UNROLL * _MODE * LANES),
-        _aligned(_HEAD * LANES),
+        aligned(groups * _UNROLL * _MODE * LANES),
+        aligned(_HEAD * LANES),
         tuple(record),
     )
     return record
-
-
-def _aligned(size: int) -> Array:
-    """Return float64 zeros that start on a cache line: whole vectors then never straddle two."""
-    raw = np.zeros(size + 8)
-    skip = (-raw.ctypes.data // 8) % 8
-    return raw[skip : skip + size]

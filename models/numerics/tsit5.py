@@ -7,9 +7,9 @@ offsets known to the compiler: only then is a sum over seven arrays vectorised.
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from models.numerics.blocks import LANES
 from models.numerics.jit import kernel
 
-LANES = 16
 STAGES = 6
 
 _A21 = 0.161

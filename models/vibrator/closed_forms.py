@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from models.vibrator.outcome import wrapped
+
 
 class Centre(NamedTuple):
     """The body with both unbalanced masses on their shafts, about its mass centre.
@@ -184,7 +186,7 @@ def disphasing_of_motors(speed_difference: Any, speed_coefficient: Any, moment: 
     """
     with np.errstate(invalid="ignore"):
         angle = np.arcsin(speed_difference * speed_coefficient / np.abs(moment))
-    return np.where(np.asarray(moment) > 0, angle, _wrapped(np.pi + angle))
+    return np.where(np.asarray(moment) > 0, angle, wrapped(np.pi + angle))
 
 
 def disphasing_of_offset(centre: Centre, inertia: Any, mass_xi: Any, mass_eta: Any) -> Any:
@@ -333,8 +335,3 @@ def disphasing_of_supports(
         + 2 * centre.offset * centre.along / inertia
     )
     return np.arcsin(turned / coefficient)
-
-
-def _wrapped(angle: Any) -> Any:
-    """Return the angle in (-pi, pi]."""
-    return np.pi - np.mod(np.pi - angle, 2 * np.pi)

@@ -7,9 +7,10 @@ its neighbours. See `models.numerics.tsit5`.
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import inlined, kernel
 from models.numerics.sincos import cosine_sine, nearest
-from models.numerics.tsit5 import LANES, STAGES, combiner, layout
+from models.numerics.tsit5 import STAGES, combiner, layout
 from models.vibrator.rigid import Rigid, accelerations
 from models.vibrator.system import System
 
@@ -51,13 +52,6 @@ SUMS = 3  # the first ones are sums over the steps
 def pack(system: System) -> Array:
     """Return the constants of n machines, shape (n, CONSTANTS)."""
     return np.stack([getattr(system, name) for name in Rigid._fields], axis=1)
-
-
-def aligned(size: int) -> Array:
-    """Return float64 zeros that start on a cache line: whole vectors then never straddle two."""
-    raw = np.zeros(size + 8)
-    skip = (-raw.ctypes.data // 8) % 8
-    return raw[skip : skip + size]
 
 
 @inlined

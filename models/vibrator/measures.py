@@ -1,7 +1,7 @@
 """What is read off the motion of one vibrator sampled at equal intervals of time."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,8 +115,8 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
         stroke(m.half_spacing),
         float(psi_1[-1] - psi_1[0]) / duration,
         float(psi_2[-1] - psi_2[0]) / duration,
-        _mean(w_1 * _kloss(m.torque_1, m.slip_1, m.synchronous_speed_1 - w_1)),
-        _mean(w_2 * _kloss(m.torque_2, m.slip_2, m.synchronous_speed_2 - w_2)),
+        _mean(w_1 * kloss(m.torque_1, m.slip_1, m.synchronous_speed_1 - w_1)),
+        _mean(w_2 * kloss(m.torque_2, m.slip_2, m.synchronous_speed_2 - w_2)),
     )
 
 
@@ -134,6 +134,6 @@ def _mean(value: NDArray[np.float64]) -> float:
     return float(np.mean((value[1:] + value[:-1]) / 2))
 
 
-def _kloss(torque: float, slip: float, lag: NDArray[np.float64]) -> NDArray[np.float64]:
+def kloss(torque: Any, slip: Any, lag: Any) -> Any:
     """Return the motor torque of (22), (23) before bearing loss."""
     return torque * lag / (slip**2 + lag**2)

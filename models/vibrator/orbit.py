@@ -11,10 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
 from models.numerics.sincos import cosine_sine
-from models.numerics.tsit5 import LANES, STAGES, combiner, layout
-from models.vibrator.lanes import CONSTANTS, STATE, Array, aligned, load, machine, slopes, store
+from models.numerics.tsit5 import STAGES, combiner, layout
+from models.vibrator.lanes import CONSTANTS, STATE, Array, load, machine, slopes, store
 from models.vibrator.rigid import accelerations, derivatives
 
 ANCHOR = 3  # psi_1

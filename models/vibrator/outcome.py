@@ -1,6 +1,6 @@
 """What becomes of a machine that is switched on: the numbers of n machines, however found."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +55,7 @@ class Outcome(NamedTuple):
         return Outcome(**{name: known.get(name, np.full(n, np.nan)) for name in Outcome._fields})
 
 
-def wrapped(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+def wrapped(angle: Any) -> Any:
     """Return an angle in (-pi, pi]."""
     return np.pi - np.mod(np.pi - angle, 2 * np.pi)
 

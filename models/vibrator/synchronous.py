@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from models.vibrator import lanes, theory
 from models.vibrator.lanes import Array
+from models.vibrator.measures import kloss
 from models.vibrator.orbit import Orbits, find_orbits, follow
 from models.vibrator.outcome import CAPTURED_BELOW, Outcome, wrapped
 from models.vibrator.parameters import Params, Rows
@@ -193,7 +194,7 @@ def describe(machines: Machines, known: Known, out: Outcome, rows: NDArray[np.in
             (out.power_2, m.torque_2, m.slip_2, m.synchronous_speed_2, speed[:, :, 1]),
         ):
             lag = top[:, None] - w
-            power[some] = (w * torque[:, None] * lag / (slip[:, None] ** 2 + lag**2)).mean(axis=1)
+            power[some] = (w * kloss(torque[:, None], slip[:, None], lag)).mean(axis=1)
 
 
 def deck_ends(m: System, trace: Array) -> tuple[Array, Array]:
