@@ -53,7 +53,7 @@ class Setting:
     unit : str
         ``"1"`` for a pure number.
     bounds : tuple of float, optional
-        Both ends included; for a list of numbers they hold for each.
+        Both ends included; for a list of numbers, or of lists of them, they hold for each.
     choices : tuple of str
         The allowed words of a setting that is a word.
     """

@@ -135,9 +135,18 @@ def _setting(model: Model, name: str, kind: Any) -> Schema:
     schema: Schema = TypeAdapter(kind).json_schema()
     if declared.choices:
         schema["enum"] = list(declared.choices)
-    if declared.bounds is not None:
-        schema.get("items", schema).update(_limits(declared.bounds))
+    schema = _limited(schema, {} if declared.bounds is None else _limits(declared.bounds))
     return {**schema, "title": f"{name} [{declared.unit}]", "description": declared.meaning}
+
+
+def _limited(schema: Schema, limits: Schema) -> Schema:
+    """Put limits on every number, and write lists of a fixed length as Draft 7 does."""
+    if "prefixItems" in schema:
+        items = [_limited(item, limits) for item in schema.pop("prefixItems")]
+        return {**schema, "items": items}
+    if "items" in schema:
+        return {**schema, "items": _limited(schema["items"], limits)}
+    return {**schema, **limits}
 
 
 def _limits(bounds: tuple[float, float]) -> Schema:

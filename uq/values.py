@@ -3,7 +3,7 @@
 A study file, ``uq simulate --set`` and the Python API all come through here.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, get_args, get_type_hints
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
@@ -99,30 +99,50 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
 
 def _coerced(kind: Any, value: Any) -> Any:
     strict: TypeAdapter[Any] = TypeAdapter(kind, config=ConfigDict(strict=True))
-    return strict.validate_python(tuple(value) if isinstance(value, list) else value)
+    return strict.validate_python(_frozen(value))
+
+
+def _frozen(value: Any) -> Any:
+    """Return lists, also within lists, as tuples."""
+    return tuple(map(_frozen, value)) if isinstance(value, list | tuple) else value
+
+
+def _numbers(value: Any) -> Iterator[Any]:
+    """Yield what stands in a setting that may be a list, or a list of lists."""
+    if isinstance(value, tuple):
+        for item in value:
+            yield from _numbers(item)
+    else:
+        yield value
 
 
 def _allowed(model: Model, name: str, value: Any) -> bool:
     declared = model.setting(name)
     if declared.choices:
         return value in declared.choices
-    numbers = value if isinstance(value, tuple) else (value,)
     if declared.bounds is not None:
         low, high = declared.bounds
-        return all(low <= number <= high for number in numbers)
-    return all(number == number for number in numbers)  # nan is never meant
+        return all(low <= number <= high for number in _numbers(value))
+    return all(number == number for number in _numbers(value))  # nan is never meant
 
 
 def _type_in_words(model: Model, name: str, kind: Any) -> str:
     declared = model.setting(name)
     if declared.choices:
         return f"one of {', '.join(declared.choices)}"
-    one = {int: "a whole number", float: "a number", bool: "true or false", str: "a text"}
-    if kind in one:
-        words = one[kind]
-    else:
-        words = f"a list, each {one.get((get_args(kind) or (None,))[0], 'of the right type')}"
+    words = _kind_in_words(kind)
     if declared.bounds is not None:
         low, high = declared.bounds
         words += f" within {low!r} to {high!r}"
     return words if declared.unit == "1" else f"{words} [{declared.unit}]"
+
+
+def _kind_in_words(kind: Any) -> str:
+    one = {int: "a whole number", float: "a number", bool: "true or false", str: "a text"}
+    if kind in one:
+        return one[kind]
+    if not get_args(kind):
+        return "of the right type"
+    first, *others = get_args(kind)
+    size = "" if Ellipsis in others else f" of {1 + len(others)}"
+    return f"a list{size}, each {_kind_in_words(first)}"

@@ -5,7 +5,8 @@ where its contact force, or its height, vanishes.
 """
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,14 +32,11 @@ class Task(NamedTuple):
         psi_1 at which to stop [rad].
     riding : bool
         Whether the feed lies on the deck.
-    work : ndarray
-        See `models.vibrator.extended.workspace`.
     """
 
     system: System
     last_angle: float
     riding: bool
-    work: Any
 
 
 class Motion(NamedTuple):
@@ -71,7 +69,7 @@ def _rigid_rates(t, y, task, dy):
 
 
 @kernel
-def _rigid_guards(t, y, task, guard):
+def _turned(t, y, task, guard):
     guard[_TURNED] = task.last_angle - y[3]
 
 
@@ -79,43 +77,49 @@ def _rigid_guards(t, y, task, guard):
 def _extended_rates(t, y, task, dy):
     for i in range(extended.DEGREES):
         dy[i] = y[extended.DEGREES + i]
-    extended.acceleration(task.system, task.riding, y, task.work, dy[extended.DEGREES :])
+    motion = extended.accelerations(task.system, task.riding, y)
+    for i in range(extended.DEGREES):
+        dy[extended.DEGREES + i] = motion[i]
 
 
 @kernel
-def _extended_guards(t, y, task, guard):
+def _fed_guards(t, y, task, guard):
     guard[_TURNED] = task.last_angle - y[3]
-    if task.riding:
-        deck = extended.deck_acceleration(task.system, True, y, task.work)
-        guard[_FEED] = deck + task.system.feed_gravity
-    else:
-        guard[_FEED] = y[7]
+    guard[_FEED] = extended.support_of_feed(task.system, y) if task.riding else y[7]
 
 
-_integrate_rigid = integrator(_rigid_rates, _rigid_guards, 1, looks=1)
-_integrate_extended = integrator(_extended_rates, _extended_guards, 2)
+_integrate_rigid = integrator(_rigid_rates, _turned, 1, looks=1)
+_integrate_empty = integrator(_extended_rates, _turned, 1, looks=1)
+_integrate_fed = integrator(_extended_rates, _fed_guards, 2)
 
 
 @kernel
-def run_rigid(system, state, last_angle, end, absolute, budget, times, samples, work):
+def run_rigid(system, state, last_angle, end, absolute, budget, times, samples):
     """Integrate the rigid machine; see `models.numerics.dop853` for the arguments."""
-    task = Task(system, last_angle, True, work)
+    task = Task(system, last_angle, True)
     return _integrate_rigid(0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples)
 
 
 @kernel
-def run_extended(system, state, last_angle, end, absolute, budget, times, samples, work):
+def run_empty(system, state, last_angle, end, absolute, budget, times, samples):
+    """Integrate the extended machine without feed, as `run_rigid`."""
+    task = Task(system, last_angle, True)
+    return _integrate_empty(0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples)
+
+
+@kernel
+def run_fed(system, state, last_angle, end, absolute, budget, times, samples):
     """Integrate the extended machine through all flights of the feed, as `run_rigid`."""
     riding = state[7] == 0 and state[extended.DEGREES + 7] == 0
     time = step = 0.0
     steps = sampled = 0
     while True:
-        ended = _integrate_extended(
+        ended = _integrate_fed(
             time,
             end,
             state,
             step,
-            Task(system, last_angle, riding, work),
+            Task(system, last_angle, riding),
             0.0,
             absolute,
             budget - steps,
@@ -130,7 +134,7 @@ def run_extended(system, state, last_angle, end, absolute, budget, times, sample
         if riding:
             state[7] = state[extended.DEGREES + 7] = 0.0
         else:
-            extended.land(system, state, work)
+            extended.land(system, state)
         riding = not riding
     return Outcome(ended.status, time, ended.guard, step, steps, sampled)
 
@@ -138,6 +142,13 @@ def run_extended(system, state, last_angle, end, absolute, budget, times, sample
 def is_extended(system: System) -> bool:
     """Whether a machine needs the equations of `models.vibrator.extended`."""
     return bool(system.exact or system.slides or system.rocks or system.feed_mass)
+
+
+def runner(system: System, degrees: int) -> Callable[..., Outcome]:
+    """Return the kernel for states of so many degrees: `run_rigid` or one with its arguments."""
+    if degrees == equations.DEGREES:
+        return run_rigid
+    return run_fed if system.feed_mass else run_empty
 
 
 def start(params: Params, system: System) -> NDArray[np.float64]:
@@ -192,7 +203,7 @@ def propagate(
     state = np.array(state, float)
     times = np.ascontiguousarray(times, float)
     samples = np.full((len(times), len(state)), np.nan)
-    run = run_rigid if len(state) == 2 * equations.DEGREES else run_extended
+    run = runner(system, len(state) // 2)
     revolutions = duration * _speed(system) / (2 * np.pi)
     ended = run(
         system,
@@ -203,7 +214,6 @@ def propagate(
         int(STEPS_PER_TURN * revolutions) + _SPARE_STEPS,
         times,
         samples,
-        extended.workspace(),
     )
     return Motion(ended.status, ended.time, state, samples)
 

@@ -23,6 +23,7 @@ from models.vibrator.measures import Measures, first_harmonic, measure
 TIGHTEST = 1e-11  # tolerance of orbits, if that of the runs is wider
 SAMPLES = 2048  # of an orbit: impacts of the feed give the mean powers errors of up to 1e-4
 _ITERATIONS, _DERIVATIVES = 15, 4  # at most
+_ROUGH = 1e-8  # tolerance that is good enough for the derivative in a search
 _NUDGE = 1e-4  # of central differences, in units of the propagator's scales
 _CLOSE, _STALLED = 1e-9, 1e-6  # a step this small was the last; or this small, and not shrinking
 _BOLDEST = 0.5  # largest step of psi_2 and of log(speed)
@@ -165,7 +166,7 @@ def _fixed_point(
         if matrix is None:
             if derivatives == _DERIVATIVES:
                 return None
-            matrix = _derivative(machine, state, free, tolerance)
+            matrix = _derivative(machine, state, free, max(tolerance, _ROUGH))
             derivatives += 1
             if matrix is None:
                 return None

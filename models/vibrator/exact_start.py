@@ -134,9 +134,9 @@ def _is_steady(m: System, track: Track) -> bool:
     states = track.last(LOOK)
     speed_1, speed_2 = _speeds(states, track.interval)
     return bool(
-        np.ptp(_by_turns(states)) < _STEADY
-        and speed_1 >= CAPTURED_BELOW * m.synchronous_speed_1
+        speed_1 >= CAPTURED_BELOW * m.synchronous_speed_1
         and speed_2 >= CAPTURED_BELOW * m.synchronous_speed_2
+        and np.ptp(_by_turns(states)) < _STEADY
     )
 
 

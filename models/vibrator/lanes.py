@@ -1,7 +1,7 @@
 """The fast propagator: sixteen rigid machines abreast, Runge-Kutta steps of fixed length.
 
 All loops over lanes are straight lines, so lanes never diverge and a row's bits do not depend on
-its neighbours. See `models.numerics.tsit5`.
+its neighbours. See `models.numerics.nystrom`.
 """
 
 import numpy as np
@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import inlined, kernel
+from models.numerics.nystrom import ORDER_5, ORDER_8, STAGES, layout, stepper
 from models.numerics.sincos import cosine_sine, nearest
-from models.numerics.tsit5 import STAGES, combiner, layout
+from models.vibrator import abreast
 from models.vibrator.rigid import Rigid, accelerations
 from models.vibrator.system import System
 
@@ -18,15 +19,16 @@ Array = NDArray[np.float64]
 
 STATE = 10  # x, y, alpha, psi_1, psi_2 and their rates
 CONSTANTS = len(Rigid._fields)
-_combine = combiner(STATE)
-_Y, _NEW, _K, _SIZE = layout(STATE)
-_WHOLE = STATE * LANES
-_K_2, _K_3, _K_4, _K_5, _K_6 = (_K + i * _WHOLE for i in range(1, STAGES))
+_AT = layout(abreast.DEGREES)
+_SIZE = abreast.END + STAGES * abreast.DEGREES * LANES
+_step_5 = stepper(abreast.DEGREES, abreast.END, *ORDER_5, abreast.accelerate)
+_step_8 = stepper(abreast.DEGREES, abreast.END, *ORDER_8, abreast.accelerate)
 
 STABLE = 0.8
 """Step times the fastest rate of a machine: what keeps the method stable with room to spare."""
 
 _TURN = 2 * np.pi
+_PER_TURN = 1 / _TURN
 _DEAD = 1e-140
 
 # What `advance` notes of each row.
@@ -129,7 +131,7 @@ def store(lanes, first, table):
 
 
 @kernel
-def _begin(notes):
+def _begin(w, target, notes):
     for lane in range(LANES):
         for i in (POWER_1, POWER_2, ANGLE, EXCURSION):
             notes[i * LANES + lane] = 0.0
@@ -138,27 +140,38 @@ def _begin(notes):
         for i in (ALPHA_HIGH, LEFT_HIGH, RIGHT_HIGH, ANGLE_HIGH):
             notes[i * LANES + lane] = -np.inf
         notes[LAST_ENTRY * LANES + lane] = -1.0
+        far, out, off = _whereabouts(w, target, lane)
+        notes[_FAR * LANES + lane], notes[_OUT * LANES + lane] = far, out
+        notes[_OFF * LANES + lane] = off
+
+
+@inlined
+def _whereabouts(w, target, lane):
+    """Return the squared displacement, its rise in a step at this rate, and the way to target."""
+    x, y = w[_X + lane], w[_Y + lane]
+    out = 2 * w[_AT.step + lane] * (x * w[_VX + lane] + y * w[_VY + lane])
+    off = w[_PSI_1 + lane] - w[_PSI_2 + lane] - target[lane]
+    return x * x + y * y, out, abs(off - _TURN * nearest(off * _PER_TURN))
 
 
 @kernel
-def _note(c, y, new, target, h, step, band, notes):
-    """Take in the step from the old state to the new one."""
+def _note(c, w, target, step, band, notes):
+    """Take in a step, whose end is the state."""
     for lane in range(LANES):
+        w_1, w_2 = w[_W_1 + lane], w[_W_2 + lane]
+        lag_1 = c[_SYNCHRONOUS_1 * LANES + lane] - w_1
+        lag_2 = c[_SYNCHRONOUS_2 * LANES + lane] - w_2
+        slip_1, slip_2 = c[_SLIP_1 * LANES + lane], c[_SLIP_2 * LANES + lane]
+        power_1 = c[_TORQUE_1 * LANES + lane] * lag_1 * w_1 / (slip_1 * slip_1 + lag_1 * lag_1)
+        power_2 = c[_TORQUE_2 * LANES + lane] * lag_2 * w_2 / (slip_2 * slip_2 + lag_2 * lag_2)
+        notes[POWER_1 * LANES + lane] += power_1
+        notes[POWER_2 * LANES + lane] += power_2
         cosine, sine = c[_COS * LANES + lane], c[_SIN * LANES + lane]
-        lag_1 = c[_SYNCHRONOUS_1 * LANES + lane] - new[8 * LANES + lane]
-        lag_2 = c[_SYNCHRONOUS_2 * LANES + lane] - new[9 * LANES + lane]
-        d_1 = c[_SLIP_1 * LANES + lane] * c[_SLIP_1 * LANES + lane] + lag_1 * lag_1
-        d_2 = c[_SLIP_2 * LANES + lane] * c[_SLIP_2 * LANES + lane] + lag_2 * lag_2
-        inverse = 1 / (d_1 * d_2)
-        torque_1 = c[_TORQUE_1 * LANES + lane] * lag_1 * (d_2 * inverse)
-        torque_2 = c[_TORQUE_2 * LANES + lane] * lag_2 * (d_1 * inverse)
-        notes[POWER_1 * LANES + lane] += torque_1 * new[8 * LANES + lane]
-        notes[POWER_2 * LANES + lane] += torque_2 * new[9 * LANES + lane]
-        x, y_, alpha = new[lane], new[LANES + lane], new[2 * LANES + lane]
-        along = cosine * x + sine * y_
+        alpha = w[_ALPHA + lane]
+        along = cosine * w[_X + lane] + sine * w[_Y + lane]
         lever = c[_SPACING * LANES + lane] * sine * alpha
         left, right = along - lever, along + lever
-        angle = new[3 * LANES + lane] - new[4 * LANES + lane]
+        angle = w[_PSI_1 + lane] - w[_PSI_2 + lane]
         notes[ANGLE * LANES + lane] += angle
         low, high = notes[ALPHA_LOW * LANES + lane], notes[ALPHA_HIGH * LANES + lane]
         notes[ALPHA_LOW * LANES + lane] = alpha if alpha < low else low
@@ -172,11 +185,12 @@ def _note(c, y, new, target, h, step, band, notes):
         low, high = notes[ANGLE_LOW * LANES + lane], notes[ANGLE_HIGH * LANES + lane]
         notes[ANGLE_LOW * LANES + lane] = angle if angle < low else low
         notes[ANGLE_HIGH * LANES + lane] = angle if angle > high else high
+        far_0, out_0 = notes[_FAR * LANES + lane], notes[_OUT * LANES + lane]
+        off_0 = notes[_OFF * LANES + lane]
+        far, out, off = _whereabouts(w, target, lane)
+        notes[_FAR * LANES + lane], notes[_OUT * LANES + lane] = far, out
+        notes[_OFF * LANES + lane] = off
         # The square of the displacement is a cubic in a step; its vertex where its rate vanishes.
-        x_0, y_0 = y[lane], y[LANES + lane]
-        far_0, far = x_0 * x_0 + y_0 * y_0, x * x + y_ * y_
-        out_0 = 2 * h[lane] * (x_0 * y[5 * LANES + lane] + y_0 * y[6 * LANES + lane])
-        out = 2 * h[lane] * (x * new[5 * LANES + lane] + y_ * new[6 * LANES + lane])
         turned = (out_0 > 0.0) & (out < 0.0)
         part = out_0 / (out_0 - out) if turned else 1.0
         rest = 1.0 - part
@@ -185,10 +199,6 @@ def _note(c, y, new, target, h, step, band, notes):
         peak = notes[EXCURSION * LANES + lane]
         notes[EXCURSION * LANES + lane] = vertex if vertex > peak else peak
         # The last time the disphasing angle came into its band.
-        off_0 = y[3 * LANES + lane] - y[4 * LANES + lane] - target[lane]
-        off = angle - target[lane]
-        off_0 = abs(off_0 - _TURN * nearest(off_0 / _TURN))
-        off = abs(off - _TURN * nearest(off / _TURN))
         came = (off_0 > band) & (off <= band)
         part = (off_0 - band) / (off_0 - off) if came else 0.0
         last = notes[LAST_ENTRY * LANES + lane]
@@ -201,47 +211,48 @@ _SLIP_1, _SLIP_2 = Rigid._fields.index("slip_1"), Rigid._fields.index("slip_2")
 _TORQUE_1, _TORQUE_2 = Rigid._fields.index("torque_1"), Rigid._fields.index("torque_2")
 _SPACING = Rigid._fields.index("half_spacing")
 _COS, _SIN = CONSTANTS, CONSTANTS + 1
+_FAR, _OUT, _OFF = NOTES, NOTES + 1, NOTES + 2  # of the state, for the next step
+_X, _Y, _ALPHA, _PSI_1, _PSI_2 = (_AT.position + i * LANES for i in range(abreast.DEGREES))
+_VX, _VY, _VA, _W_1, _W_2 = (_AT.velocity + i * LANES for i in range(abreast.DEGREES))
 
 
 @kernel
-def _advance(constants, h, state, target, steps, band, notes, work):
+def _advance(constants, h, state, target, steps, accurate, band, notes, work):
     c, w, note, step_size, aim = work
-    y, new = w[_Y : _Y + _WHOLE], w[_NEW : _NEW + _WHOLE]
-    k_1, k_2, k_3 = w[_K : _K + _WHOLE], w[_K_2 : _K_2 + _WHOLE], w[_K_3 : _K_3 + _WHOLE]
-    k_4, k_5, k_6 = w[_K_4 : _K_4 + _WHOLE], w[_K_5 : _K_5 + _WHOLE], w[_K_6 : _K_6 + _WHOLE]
+    y = w[_AT.position : _AT.position + STATE * LANES]
     for first in range(0, state.shape[0], LANES):
         load(constants, first, c)
         load(state, first, y)
         # Vibrations that have died away: numbers near underflow would be ten times slower.
-        for j in range(_WHOLE):
+        for j in range(STATE * LANES):
             y[j] = y[j] if abs(y[j]) > _DEAD else 0.0
         load(h, first, step_size)
         load(target, first, aim)
         for lane in range(LANES):
             angle = c[4 * LANES + lane]
             c[_COS * LANES + lane], c[_SIN * LANES + lane] = np.cos(angle), np.sin(angle)
-        _begin(note)
+            abreast.prepare(machine(c, lane), step_size[lane], w, lane)
+            for i in range(abreast.DEGREES):
+                w[_AT.step + i * LANES + lane] = step_size[lane]
+        _begin(w, aim, note)
         for step in range(steps):
-            slopes(c, step_size, y, k_1)
-            _combine(1, w)
-            slopes(c, step_size, new, k_2)
-            _combine(2, w)
-            slopes(c, step_size, new, k_3)
-            _combine(3, w)
-            slopes(c, step_size, new, k_4)
-            _combine(4, w)
-            slopes(c, step_size, new, k_5)
-            _combine(5, w)
-            slopes(c, step_size, new, k_6)
-            _combine(6, w)
-            _note(c, y, new, aim, step_size, float(step), band, note)
-            y[:] = new
+            if accurate:
+                _step_8(w)
+            else:
+                _step_5(w)
+            _note(c, w, aim, float(step), band, note)
         store(y, first, state)
         store(note, first, notes)
 
 
 def advance(
-    constants: Array, h: Array, state: Array, target: Array, steps: int, band: float
+    constants: Array,
+    h: Array,
+    state: Array,
+    target: Array,
+    steps: int,
+    band: float,
+    accurate: bool,
 ) -> Array:
     """Advance n machines by some steps.
 
@@ -258,6 +269,9 @@ def advance(
     steps : int
     band : float
         [rad]
+    accurate : bool
+        Whether in steps of order 8, else 5. They cost twice as much; measured on run-ups of 5 s,
+        six in a turn err by 1e-8 rad, as twenty of order 5 do.
 
     Returns
     -------
@@ -272,9 +286,9 @@ def advance(
     work = (
         aligned((CONSTANTS + 2) * LANES),
         aligned(_SIZE),
-        aligned(NOTES * LANES),
+        aligned((NOTES + 3) * LANES),
         aligned(LANES),
         aligned(LANES),
     )
-    _advance(constants, h[:, None], state, target[:, None], steps, band, notes, work)
+    _advance(constants, h[:, None], state, target[:, None], steps, accurate, band, notes, work)
     return notes

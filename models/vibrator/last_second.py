@@ -99,7 +99,8 @@ def run_last_second(
         before = here[:, 3:5].copy()
         first = here[:, 3] - here[:, 4]
         h = np.full(len(i), LAST / count)
-        notes = lanes.advance(some.constants, h, here, known.disphasing[these], count, BAND)
+        target, accurate = known.disphasing[these], settings.steps_per_turn > 0
+        notes = lanes.advance(some.constants, h, here, target, count, BAND, accurate)
         speed = (here[:, 3:5] - before) / LAST
         notes[:, : lanes.SUMS] /= count
         _note_means(these, notes, speed, some, out)

@@ -25,8 +25,6 @@ class Machine:
     system : System
     scales : ndarray
         Size of each component of the state.
-    work : ndarray
-        See `models.vibrator.extended.workspace`.
     budget : int
         Steps that may still be tried.
     """
@@ -34,7 +32,6 @@ class Machine:
     params: Params
     system: System
     scales: NDArray[np.float64]
-    work: NDArray[np.float64]
     budget: int
 
     @property
@@ -71,8 +68,7 @@ class Machine:
         """Advance `state` in place, for some time or turns of vibrator 1; return samples too."""
         times = np.ascontiguousarray(times, float)
         samples = np.full((len(times), len(state)), np.nan)
-        kernel = exact.run_extended if self.is_extended else exact.run_rigid
-        ended = kernel(
+        ended = exact.runner(self.system, self.degrees)(
             self.system,
             state,
             state[PSI_1] + 2 * np.pi * turns,
@@ -81,7 +77,6 @@ class Machine:
             self.budget,
             times,
             samples,
-            self.work,
         )
         self.budget -= ended.steps
         return ended, samples
@@ -100,4 +95,4 @@ def prepare(params: Params, kinematics: str, budget: int) -> Machine:
     """
     m = system(params, kinematics)
     degrees = extended.DEGREES if exact.is_extended(m) else equations.DEGREES
-    return Machine(params, m, exact.scales_of(m, degrees), extended.workspace(), budget)
+    return Machine(params, m, exact.scales_of(m, degrees), budget)

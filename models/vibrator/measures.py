@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics.jit import kernel
 from models.vibrator.system import System
 
 _FRACTIONS = np.linspace(0.0, 1.0, 65)
@@ -73,10 +74,35 @@ def extremes(
     return float(every.min()), float(every.max())
 
 
-def excursion(samples: NDArray[np.float64], interval: float) -> float:
-    """Return the largest distance of C from its place at rest [m]; see `measure`."""
-    (x, y), (vx, vy) = (part[:2] for part in np.split(samples.T, 2))
-    return math.sqrt(extremes(x * x + y * y, 2 * (x * vx + y * vy), interval)[1])
+@kernel
+def excursion(samples, interval):
+    """Return the largest distance of C from its place at rest, between samples too.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (k, 10) or (k, 16)
+        States at equal intervals.
+    interval : float
+        [s]
+
+    Returns
+    -------
+    float
+        [m]
+    """
+    rates = samples.shape[1] // 2
+    largest = value = rate = 0.0
+    for k in range(len(samples)):
+        x, y, vx, vy = samples[k, 0], samples[k, 1], samples[k, rates], samples[k, rates + 1]
+        before, rate_before = value, rate
+        value, rate = x * x + y * y, 2 * interval * (x * vx + y * vy)
+        largest = value if value > largest else largest
+        if rate_before > 0 and rate < 0:
+            for i in range(_CUBICS.shape[1]):
+                between = before * _CUBICS[0, i] + value * _CUBICS[1, i]
+                between += rate_before * _CUBICS[2, i] + rate * _CUBICS[3, i]
+                largest = between if between > largest else largest
+    return math.sqrt(largest)
 
 
 def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measures:

@@ -2,8 +2,9 @@
 
 The machine knows no clock, so the period T is an unknown and psi_1 = 0 anchors the start of the
 revolution: the other nine components of the state and T are such that after T the body is where it
-was and both vibrators have turned once. The derivatives of the end with respect to the start are
-integrated along, sixteen machines abreast; they also give the Floquet multipliers.
+was and both vibrators have turned once. The derivatives of the end by the start also give the
+Floquet multipliers. They cost several times the motion itself, and only the last ones have to be
+true: to come close, those of a third as many steps do, kept from step to step.
 """
 
 from typing import NamedTuple
@@ -13,25 +14,27 @@ from numpy.typing import NDArray
 
 from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
-from models.numerics.sincos import cosine_sine
-from models.numerics.tsit5 import STAGES, combiner, layout
-from models.vibrator.lanes import CONSTANTS, STATE, Array, load, machine, slopes, store
-from models.vibrator.rigid import accelerations, derivatives
+from models.numerics.linear import solve
+from models.numerics.tsit5 import combiner, layout
+from models.vibrator.lanes import CONSTANTS, STATE, Array, load, slopes, store
+from models.vibrator.multiplier import largest_multiplier
+from models.vibrator.tangents import FREE, revolve
 
-ANCHOR = 3  # psi_1
-FREE = [i for i in range(STATE) if i != ANCHOR]
-COLUMNS = len(FREE)
 ITERATIONS = 10
 _CLOSE = 1e-6  # of a revolution: a step this small was the last but for rounding
 _BOLDEST = 0.5  # largest step of psi_2 [rad]
 
-_QUANTITIES = STATE * (1 + COLUMNS)
-_combine = combiner(_QUANTITIES)
-_Y, _NEW, _K, _SIZE = layout(_QUANTITIES)
-_WHOLE = _QUANTITIES * LANES
-_combine_state = combiner(STATE)
-_Y_0, _NEW_0, _K_0, _SIZE_0 = layout(STATE)
-_WHOLE_0 = STATE * LANES
+# While the derivatives are not renewed, steps shrink by a factor only.
+_NEAR = 0.05  # a first step up to this may be made with coarse derivatives
+_SHRINKING = 0.25  # more slowly is too slow
+_CHORDS = 8
+_CLOSE_ENOUGH = 1e-7  # for one step with true derivatives to leave nothing but rounding
+
+_TURN = np.where(np.isin(np.arange(STATE), (3, 4)), 2 * np.pi, 0.0)
+_combine = combiner(STATE)
+_Y, _NEW, _K, _SIZE = layout(STATE)
+_WHOLE = STATE * LANES
+_K_2, _K_3, _K_4, _K_5, _K_6 = (_K + i * _WHOLE for i in range(1, 6))
 
 
 class Orbits(NamedTuple):
@@ -56,89 +59,40 @@ class Orbits(NamedTuple):
 
 
 @kernel
-def _slopes(c, h, y, k, jacobian):
-    """Set k to the slopes of the states y of all lanes and of their nine derivatives."""
-    slopes(c, h, y, k)
-    for lane in range(LANES):
-        m = machine(c, lane)
-        c_1, s_1 = cosine_sine(m.working_angle + y[3 * LANES + lane])
-        c_2, s_2 = cosine_sine(m.working_angle - y[4 * LANES + lane])
-        x, y_, alpha = y[lane], y[LANES + lane], y[2 * LANES + lane]
-        vx, vy, va = y[5 * LANES + lane], y[6 * LANES + lane], y[7 * LANES + lane]
-        w_1, w_2 = y[8 * LANES + lane], y[9 * LANES + lane]
-        motion = accelerations(m, c_1, s_1, c_2, s_2, x, y_, alpha, vx, vy, va, w_1, w_2)
-        rows = derivatives(m, motion, c_1, s_1, c_2, s_2, va, w_1, w_2)
-        for i in range(STATE):
-            for j in range(5):
-                jacobian[(j * STATE + i) * LANES + lane] = h[lane] * rows[i][j]
-    for column in range(1, 1 + COLUMNS):
-        z = column * STATE * LANES
-        for i in range(5):
-            for lane in range(LANES):
-                k[z + i * LANES + lane] = h[lane] * y[z + (5 + i) * LANES + lane]
-        for i in range(5):
-            a = i * STATE * LANES
-            for lane in range(LANES):
-                total = jacobian[a + lane] * y[z + lane]
-                total += jacobian[a + LANES + lane] * y[z + LANES + lane]
-                total += jacobian[a + 2 * LANES + lane] * y[z + 2 * LANES + lane]
-                total += jacobian[a + 3 * LANES + lane] * y[z + 3 * LANES + lane]
-                total += jacobian[a + 4 * LANES + lane] * y[z + 4 * LANES + lane]
-                total += jacobian[a + 5 * LANES + lane] * y[z + 5 * LANES + lane]
-                total += jacobian[a + 6 * LANES + lane] * y[z + 6 * LANES + lane]
-                total += jacobian[a + 7 * LANES + lane] * y[z + 7 * LANES + lane]
-                total += jacobian[a + 8 * LANES + lane] * y[z + 8 * LANES + lane]
-                total += jacobian[a + 9 * LANES + lane] * y[z + 9 * LANES + lane]
-                k[z + (5 + i) * LANES + lane] = total
-
-
-@kernel
-def _revolve(constants, start, h, steps, end, work):
-    """Set end[:, :, 0] to the states after some steps, the rest to their derivatives and rates."""
-    c, w, step_size, jacobian, state, one = work
-    y, new = w[_Y : _Y + _WHOLE], w[_NEW : _NEW + _WHOLE]
-    one[:] = 1.0
-    for first in range(0, start.shape[0], LANES):
-        load(constants, first, c)
-        load(h, first, step_size)
-        y[:] = 0.0
-        load(start, first, y)
-        column = 1
-        for i in range(STATE):
-            if i != ANCHOR:
-                for lane in range(LANES):
-                    y[(column * STATE + i) * LANES + lane] = 1.0
-                column += 1
-        for _ in range(steps):
-            for stage in range(1, STAGES + 1):
-                k = w[_K + (stage - 1) * _WHOLE : _K + stage * _WHOLE]
-                _slopes(c, step_size, y if stage == 1 else new, k, jacobian)
-                _combine(stage, w)
-            y[:] = new
-        slopes(c, one, y, state)
-        for n in range(first, min(first + LANES, start.shape[0])):
-            for i in range(STATE):
-                for column in range(1 + COLUMNS):
-                    end[n, i, column] = y[(column * STATE + i) * LANES + n - first]
-                end[n, i, 1 + COLUMNS] = state[i * LANES + n - first]
-
-
-@kernel
-def _follow(constants, start, h, trace, work):
-    """Set trace, shape (n, steps, 10), to the states after each step."""
+def _follow(constants, start, h, each, trace, work):
+    """Set trace, shape (n, samples, 10), to the states after each so many steps."""
     c, w, step_size = work
-    y, new = w[_Y_0 : _Y_0 + _WHOLE_0], w[_NEW_0 : _NEW_0 + _WHOLE_0]
+    y, new = w[_Y : _Y + _WHOLE], w[_NEW : _NEW + _WHOLE]
+    k_1, k_2, k_3 = w[_K : _K + _WHOLE], w[_K_2 : _K_2 + _WHOLE], w[_K_3 : _K_3 + _WHOLE]
+    k_4, k_5, k_6 = w[_K_4 : _K_4 + _WHOLE], w[_K_5 : _K_5 + _WHOLE], w[_K_6 : _K_6 + _WHOLE]
     for first in range(0, start.shape[0], LANES):
         load(constants, first, c)
         load(h, first, step_size)
         load(start, first, y)
-        for step in range(trace.shape[1]):
-            for stage in range(1, STAGES + 1):
-                k = w[_K_0 + (stage - 1) * _WHOLE_0 : _K_0 + stage * _WHOLE_0]
-                slopes(c, step_size, y if stage == 1 else new, k)
-                _combine_state(stage, w)
-            y[:] = new
-            store(y, first, trace[:, step])
+        for sample in range(trace.shape[1]):
+            for _ in range(each):
+                slopes(c, step_size, y, k_1)
+                _combine(1, w)
+                slopes(c, step_size, new, k_2)
+                _combine(2, w)
+                slopes(c, step_size, new, k_3)
+                _combine(3, w)
+                slopes(c, step_size, new, k_4)
+                _combine(4, w)
+                slopes(c, step_size, new, k_5)
+                _combine(5, w)
+                slopes(c, step_size, new, k_6)
+                _combine(6, w)
+                y[:] = new
+            store(y, first, trace[:, sample])
+
+
+def _sampled(constants: Array, state: Array, period: Array, samples: int, each: int) -> Array:
+    """Return the states of a period at equal times, so many steps apart."""
+    trace = np.empty((len(state), samples, STATE))
+    work = aligned(CONSTANTS * LANES), aligned(_SIZE), aligned(LANES)
+    _follow(constants, state, (period / (samples * each))[:, None], each, trace, work)
+    return trace
 
 
 def follow(constants: Array, state: Array, period: Array, steps: int) -> Array:
@@ -156,10 +110,7 @@ def follow(constants: Array, state: Array, period: Array, steps: int) -> Array:
     ndarray, shape (n, steps, 10)
         The last of them a period after `state`.
     """
-    trace = np.empty((len(state), steps, STATE))
-    work = aligned(CONSTANTS * LANES), aligned(_SIZE_0), aligned(LANES)
-    _follow(constants, state, (period / steps)[:, None], trace, work)
-    return trace
+    return _sampled(constants, state, period, steps, 1)
 
 
 def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Orbits:
@@ -182,59 +133,76 @@ def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Or
     """
     n = len(state)
     out = Orbits(np.zeros(n, bool), state.copy(), period.copy(), np.full(n, np.nan))
-    work = (
-        aligned(CONSTANTS * LANES),
-        aligned(_SIZE),
-        aligned(LANES),
-        aligned(5 * STATE * LANES),
-        aligned(STATE * LANES),
-        aligned(LANES),
-    )
-    turn = np.zeros(STATE)
-    turn[3:5] = 2 * np.pi
+    _approach(constants, out.state, out.period, steps)
     left = np.arange(n)
     for _ in range(ITERATIONS):
         start, time = out.state[left], out.period[left]
-        end = np.empty((len(left), STATE, 2 + COLUMNS))
-        _revolve(constants[left], start, (time / steps)[:, None], steps, end, work)
-        sound = np.isfinite(end).all(axis=(1, 2)) & (np.abs(end).max(axis=(1, 2)) < 1e12)
+        end = revolve(constants[left], start, time, steps)
+        sound = _is_sound(end)
         left, start, time, end = left[sound], start[sound], time[sound], end[sound]
         if not len(left):
             break
-        miss = end[:, :, 0] - start - turn
-        matrix = end[:, :, 1:].copy()
-        matrix[:, FREE, np.arange(COLUMNS)] -= 1
-        step, regular = _solve(matrix, -miss)
-        bold = np.abs(step[:, 3]) + np.abs(step[:, -1]) / time
-        step *= np.minimum(1.0, _BOLDEST / np.maximum(bold, 1e-300))[:, None]
-        out.state[left[:, None], FREE] += step[:, :-1]
-        out.period[left] += step[:, -1]
+        step, regular = solve(_matrix(end), _miss(start, end[:, :, 0]))
+        size = _size(step, time)
+        step *= np.minimum(1.0, _BOLDEST / np.maximum(size, 1e-300))[:, None, None]
+        out.state[left[:, None], FREE] += step[:, :-1, 0]
+        out.period[left] += step[:, -1, 0]
         # Newton's next error is of the order of the square of this step.
-        done = regular & (bold < _CLOSE) & (out.period[left] > 0)
+        done = regular & (size < _CLOSE) & (out.period[left] > 0)
         out.found[left[done]] = True
-        out.multiplier[left[done]] = _largest_multiplier(end[done])
+        out.multiplier[left[done]] = largest_multiplier(end[done])
         left = left[regular & ~done & (out.period[left] > 0.2 * period[left])]
         if not len(left):
             break
     return out
 
 
-def _solve(matrix: Array, right: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Solve n systems, each on its own, so that a singular one harms no other."""
-    scale = np.abs(matrix).max(axis=2, keepdims=True)
-    scale[scale == 0] = 1.0
-    scaled = matrix / scale
-    regular = np.abs(np.linalg.det(scaled)) > 1e-200
-    scaled[~regular] = np.eye(matrix.shape[1])
-    step = np.linalg.solve(scaled, right[:, :, None] / scale)[:, :, 0]
-    return np.where(regular[:, None], step, 0.0), regular
+def _approach(constants: Array, state: Array, period: Array, steps: int) -> None:
+    """Improve guesses near an orbit in place; leave the others as they are.
+
+    The derivatives are those at the guess, with a third of the steps: each next error is a fraction
+    of the one before, and where it is not a small one the guess was not near.
+    """
+    end = revolve(constants, state, period, max(steps // 3, 1))
+    inverse, regular = solve(_matrix(end), np.tile(np.eye(STATE), (len(state), 1, 1)))
+    rows = np.flatnonzero(regular & _is_sound(end))
+    c, start, time, inverse = constants[rows], state[rows], period[rows], inverse[rows]
+    arrived, last = end[rows, :, 0], np.full(len(rows), _NEAR / _SHRINKING)
+    for _ in range(1 + _CHORDS):
+        step = inverse @ _miss(start, arrived)
+        size = _size(step, time) + np.abs(step[:, 7:9, 0]).sum(axis=1) * time / (2 * np.pi)
+        start[:, FREE] += step[:, :-1, 0]
+        time += step[:, -1, 0]
+        going = (size < _SHRINKING * last) & (time > 0)
+        close = going & (size < _CLOSE_ENOUGH)
+        state[rows[close]], period[rows[close]] = start[close], time[close]
+        going &= ~close
+        if not going.any():
+            break
+        if not going.all():
+            rows, c, inverse = rows[going], c[going], inverse[going]
+            start, time, size = start[going], time[going], size[going]
+        last = size
+        arrived = _sampled(c, start, time, 1, steps)[:, 0]
 
 
-def _largest_multiplier(end: Array) -> Array:
-    """Return the spectral radius of the map from one passage of psi_1 = 0 to the next."""
-    if not len(end):
-        return np.empty(0)
-    derivative, rate = end[:, :, 1 : 1 + COLUMNS], end[:, :, -1]
-    late = derivative[:, ANCHOR] / rate[:, ANCHOR, None]
-    passage = (derivative - rate[:, :, None] * late[:, None, :])[:, FREE]
-    return np.abs(np.linalg.eigvals(passage)).max(axis=1)
+def _is_sound(end: Array) -> NDArray[np.bool_]:
+    """Tell which motions and derivatives are numbers, and not out of all bounds."""
+    return np.abs(end).max(axis=(1, 2)) < 1e12
+
+
+def _miss(start: Array, end: Array) -> Array:
+    """Return what the end lacks of the start a turn later, as columns."""
+    return (start + _TURN - end)[:, :, None]
+
+
+def _matrix(end: Array) -> Array:
+    """Return the derivatives of the end less the start by nine components and the period."""
+    matrix = end[:, :, 1:].copy()
+    matrix[:, FREE, np.arange(len(FREE))] -= 1
+    return matrix
+
+
+def _size(step: Array, period: Array) -> Array:
+    """Return how far steps go, of psi_2 [rad] and of the period as a fraction."""
+    return np.abs(step[:, 3, 0]) + np.abs(step[:, -1, 0]) / period

@@ -359,10 +359,20 @@ class Settings:
     steps_per_turn: Annotated[
         int,
         Setting(
-            "steps of the fast propagator in one revolution; 0 chooses for each row",
+            "steps of the fast propagator in one revolution, then of order 8; 0: of order 5, "
+            "as many as each row needs",
             bounds=(0, 1000),
         ),
     ] = 0
+    body_points: Annotated[
+        tuple[tuple[float, float], ...],
+        Setting(
+            "points of the body, [along the deck, above it] from C at rest, whose motion the "
+            "trajectory of a single run shows; rows of a study do not depend on them",
+            "m",
+            bounds=(-30.0, 30.0),
+        ),
+    ] = ()
 
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:

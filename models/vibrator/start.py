@@ -123,7 +123,8 @@ def _run(
                 break
         before = live.state[:, 3:5].copy()
         step, target = plan.step[live.rows], known.disphasing[live.rows]
-        notes = lanes.advance(live.machines.constants, step, live.state, target, LOOK, BAND)
+        constants, accurate = live.machines.constants, settings.steps_per_turn > 0
+        notes = lanes.advance(constants, step, live.state, target, LOOK, BAND, accurate)
         came = notes[:, lanes.LAST_ENTRY]
         live = live._replace(
             came=np.where(came >= 0, (look * LOOK + came) * step, live.came),

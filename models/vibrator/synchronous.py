@@ -101,7 +101,7 @@ def propose(machines: Machines, steps: int) -> Known:
     ----------
     machines : Machines
     steps : int
-        In a revolution; 0 chooses for each machine.
+        In a revolution, 24 at least; 0 chooses for each machine.
 
     Returns
     -------
@@ -122,7 +122,7 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
     wanted : ndarray of bool, shape (n,)
         Where there is a guess.
     steps : int
-        In a revolution; 0 chooses for each machine.
+        In a revolution, 24 at least; 0 chooses for each machine.
 
     Returns
     -------
@@ -134,7 +134,7 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
     none = Orbits(np.zeros(n, bool), state, period, np.full(n, np.nan))
     unknown = np.full((2, n), np.nan)
     known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), *unknown)
-    needed = np.maximum(period * machines.fastest / lanes.STABLE, steps or STEPS)
+    needed = np.maximum(period * machines.fastest / lanes.STABLE, max(steps, STEPS))
     rung = np.array([*LADDER, 0])[np.searchsorted(LADDER, needed)]
     rung = np.where((rung > 0) & (steps > 0) & (needed <= steps), steps, rung)
     for count in np.unique(rung[wanted & (rung > 0)]).tolist():

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.vibrator import equations, exact, extended
 from models.vibrator.parameters import Params, Settings
@@ -12,6 +13,8 @@ from uq.contract import Trajectory
 LONGEST = 10.0  # s
 SAMPLES_PER_TURN = 50
 
+Series = NDArray[np.float64]
+
 
 def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     """Follow one machine through its start, for ten seconds or the longest start simulated.
@@ -20,7 +23,8 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     ----------
     params : Params
     settings : Settings
-        The tolerance is kept whichever propagator is chosen for a batch.
+        The tolerance is kept whichever propagator is chosen for a batch. Each of the
+        `body_points` adds ``point_1_x`` and ``point_1_y``, the next ``point_2_x``, and so on.
     seed : int
         Not used: the vibrator is deterministic.
 
@@ -38,15 +42,16 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     reached = time <= motion.time
     q, v = np.split(motion.samples[reached].T, 2)
     x, y, alpha, psi_1, psi_2 = q[: equations.DEGREES]
-    if m.exact:
+
+    def displacement(along: float, above: float) -> tuple[Series, Series]:
+        """Of a point of the body, by where it is at rest, from C."""
+        if not m.exact:
+            return x - above * alpha, y + along * alpha
         lift, shrink = np.sin(alpha), np.cos(alpha) - 1
-    else:
-        lift, shrink = alpha, np.zeros_like(alpha)
-    cos, sin = math.cos(m.working_angle), math.sin(m.working_angle)
-    left, right = (
-        (x + end * shrink) * cos + (y + end * lift) * sin
-        for end in (-m.half_spacing, m.half_spacing)
-    )
+        return x + along * shrink - above * lift, y + along * lift + above * shrink
+
+    axis = np.array([math.cos(m.working_angle), math.sin(m.working_angle)])
+    left, right = (axis @ displacement(end, 0.0) for end in (-m.half_spacing, m.half_spacing))
     quantities = {
         "x": ("m", "horizontal displacement of C", x),
         "y": ("m", "vertical displacement of C", y),
@@ -63,4 +68,9 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
             "mount_rotation": ("rad", "rotation on the mount", q[6]),
             "feed_height": ("m", "height of the feed above the deck", q[7]),
         }
+    for i, (along, above) in enumerate(settings.body_points, 1):
+        moved = displacement(along, above)
+        for name, word, series in zip("xy", ("horizontal", "vertical"), moved, strict=True):
+            meaning = f"{word} displacement of the body point at ({along:g}, {above:g}) m from C"
+            quantities[f"point_{i}_{name}"] = ("m", meaning, series)
     return Trajectory(time[reached], quantities)

@@ -313,6 +313,10 @@ MISTAKES = {
     "simulate linear --set x5=1": "x5 = 1.0: no such parameter of model 'linear'",
     "simulate linear --setting fail_how": "--setting fail_how: write it as NAME=VALUE",
     "simulate linear --setting fail_how=3": "setting fail_how = 3: must be one of nan, inf",
+    "simulate vibrator --setting body_points=[[1.0,0.2,0.3]]": (
+        "setting body_points = [[1.0, 0.2, 0.3]]: must be a list, each a list of 2, each a number "
+        "within -30.0 to 30.0 [m]\n"
+    ),
     "simulate linear --plot f.png": "model 'linear' gives no trajectory",
     "simulate sample_models:KINDS -o folder": "folder: is a folder",
     "simulate sample_models:KINDS --plot /proc/f.png": "/proc/f.png: cannot write in /proc: ",

@@ -106,6 +106,26 @@ def test_settings_of_a_model_carry_their_choices(validator):
     assert faults(validator, linear | {"settings": {"fail_above": "x"}}) == {"settings/fail_above"}
 
 
+@pytest.mark.parametrize(
+    ("points", "places"),
+    [
+        ([], set()),
+        ([[1, 0.5], [-30.0, 30.0]], set()),
+        ([1.0, 0.5], {"settings/body_points/0", "settings/body_points/1"}),
+        ([[1.0]], {"settings/body_points/0"}),
+        ([[1.0, 0.5, 0.0]], {"settings/body_points/0"}),
+        ([[1.0, "x"]], {"settings/body_points/0/1"}),
+        ([[31.0, 0.0]], {"settings/body_points/0/0"}),
+    ],
+)
+def test_a_setting_may_be_a_list_of_pairs(validator, points, places):
+    vibrator = {
+        "study": {"model": "vibrator"},
+        "uncertain": {"x1": None, "x2": None, "x3": None, "body_mass": UNIFORM},
+    }
+    assert faults(validator, vibrator | {"settings": {"body_points": points}}) == places
+
+
 @pytest.fixture
 def mounted(monkeypatch):
     """Return a validator, and the entries of [fixed], where the model MOUNTED is installed."""

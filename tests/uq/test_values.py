@@ -32,6 +32,9 @@ class Numerics:
     label: Annotated[str, Setting("a word", choices=("a", "b"))] = "a"
     damped: Annotated[bool, Setting("whether to damp")] = True
     slope: Annotated[float, Setting("any number")] = 0.0
+    points: Annotated[
+        tuple[tuple[float, float], ...], Setting("points", "m", bounds=(-2.0, 2.0))
+    ] = ()
 
     def __post_init__(self):
         if list(self.depths) != sorted(self.depths):
@@ -67,6 +70,8 @@ TOY = Model(
         ("propagator", "exact", "exact"),
         ("damped", False, False),
         ("slope", -inf, -inf),
+        ("points", [[1, 0.5], [-2.0, 2.0]], ((1.0, 0.5), (-2.0, 2.0))),
+        ("points", [], ()),
     ],
 )
 def test_a_good_setting_arrives(name, value, arrives):
@@ -96,6 +101,11 @@ def test_a_good_setting_arrives(name, value, arrives):
         ("propagator", 1, "must be one of fast, exact"),
         ("label", "c", "must be one of a, b"),
         ("damped", 1, "must be true or false"),
+        *(
+            ("points", points, "must be a list, each a list of 2, each a number within -2.0 to 2.0")
+            for points in (1.0, [1.0, 0.5], [[1.0]], [[1.0, 0.5, 0.0]], [[1.0, "x"]], [[0.0, nan]])
+        ),
+        ("points", [[1.0, 0.5], [0.0, 2.1]], "must be a list, each a list of 2, each a number"),
         ("slope", nan, "must be a number"),
         ("slope", {"a": 1}, "must be a number"),
     ],

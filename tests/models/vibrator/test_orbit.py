@@ -10,7 +10,7 @@ import pytest
 from machines import SYMMETRIC, plausible
 
 from models.numerics.dop853 import GUARDED
-from models.vibrator import equations, exact, orbit
+from models.vibrator import equations, exact, orbit, tangents
 from models.vibrator.lanes import pack
 from models.vibrator.parameters import Params
 from models.vibrator.system import systems
@@ -54,13 +54,13 @@ def passage(m, start, period):
     """Return the derivative of the map from one passage of psi_1 = 0 to the next."""
     scales = 1e-5 * exact.scales_of(m, equations.DEGREES)
     columns = []
-    for i in orbit.FREE:
+    for i in tangents.FREE:
         change = scales * (np.arange(orbit.STATE) == i)
         above, below = (
             exact.propagate(m, start + s * change, 2 * period, 1e-13, turns=1).state
             for s in (1, -1)
         )
-        columns.append((above - below)[orbit.FREE] / (2 * scales[i]))
+        columns.append((above - below)[tangents.FREE] / (2 * scales[i]))
     return np.array(columns).T
 
 
@@ -91,6 +91,49 @@ def test_the_disphasing_angle_converges_with_order_5():
     errors = abs(np.array([coarse, middle, fine]) - exact_angle).max(axis=1)
     assert errors[1] < 1e-7
     assert np.all(np.log2(errors[:-1] / errors[1:]) > 4.8)
+
+
+def test_derivatives_of_a_revolution_are_those_of_nearby_ones():
+    (state, period), constants = guess(MACHINES), pack(systems(MACHINES))
+    end = tangents.revolve(constants, state, period, 24)
+    np.testing.assert_allclose(
+        end[:, :, 0], orbit.follow(constants, state, period, 24)[:, -1], rtol=1e-12, atol=1e-13
+    )
+    sizes = np.repeat([1e-6, 1e-4], 5)
+    for column, i in enumerate(tangents.FREE):
+        change = sizes * (np.arange(orbit.STATE) == i)
+        above, below = (
+            orbit.follow(constants, state + s * change, period, 24)[:, -1] for s in (1, -1)
+        )
+        expected = (above - below) / (2 * sizes[i])
+        scale = np.abs(expected).max(axis=0)
+        assert np.all(np.abs(end[:, :, 1 + column] - expected) < 1e-5 * scale)
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-3, 0.3])
+def test_coming_close_with_old_derivatives_leads_to_the_same_orbits(off, monkeypatch):
+    """Near guesses, and those too far for it."""
+    quick = find(MACHINES, 24, off)
+    monkeypatch.setattr(orbit, "_approach", lambda *_: None)
+    newton = find(MACHINES, 24, off)
+    assert newton.found.all()
+    np.testing.assert_array_equal(quick.found, newton.found)
+    np.testing.assert_allclose(quick.state, newton.state, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(quick.period, newton.period, rtol=1e-11)
+    np.testing.assert_allclose(quick.multiplier, newton.multiplier, rtol=1e-6)
+
+
+def test_coming_close_spares_derivatives(monkeypatch):
+    """One revolution with coarse ones, and one with true ones, from the theory's proposal."""
+    calls = []
+
+    def counted(constants, state, period, steps):
+        calls.append(steps)
+        return tangents.revolve(constants, state, period, steps)
+
+    monkeypatch.setattr(orbit, "revolve", counted)
+    assert find(MACHINES, 24).found.all()
+    assert calls == [8, 24]
 
 
 def test_following_ends_where_the_orbit_does():

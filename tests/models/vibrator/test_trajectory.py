@@ -37,6 +37,55 @@ def test_it_shows_the_start(kinematics):
     np.testing.assert_allclose(middle, along, atol=1e-15)
 
 
+POINTS = ((-1.5, 0.0), (1.5, 0.0), (0.7, -0.9))
+
+
+def points_of(history, count):
+    """Return where points are beyond rest, shape (count, 2, k)."""
+    names = [[f"point_{i}_{axis}" for axis in "xy"] for i in range(1, count + 1)]
+    return np.array([[history.quantities[name][2] for name in pair] for pair in names])
+
+
+@pytest.mark.parametrize("kinematics", ["small", "exact"])
+def test_it_shows_points_of_the_body(kinematics):
+    p = Params(support_half_spacing=1.5, support_offset=-4.0)
+    settings = Settings(kinematics=kinematics, run_up=2.0, body_points=POINTS)
+    history = simulate(p, settings)
+    values = {name: series for name, (_, _, series) in history.quantities.items()}
+    moved = points_of(history, 3)
+    axis = np.array([np.cos(p.working_angle), np.sin(p.working_angle)])
+    for ends, name in ((moved[0], "displacement_left"), (moved[1], "displacement_right")):
+        np.testing.assert_allclose(axis @ ends, values[name], rtol=0, atol=1e-15)
+    # Seen from C a point turns by alpha, or in the frozen geometry moves across its lever.
+    c = np.array([values["x"], values["y"]])
+    alpha = values["alpha"]
+    assert np.ptp(alpha) > 1e-3
+    for point, motion in zip(POINTS, moved, strict=True):
+        lever = complex(*point)
+        turned = lever * (np.exp(1j * alpha) if kinematics == "exact" else 1 + 1j * alpha)
+        expected = c + [(turned - lever).real, (turned - lever).imag]
+        np.testing.assert_allclose(motion, expected, rtol=0, atol=1e-14)
+    unit, meaning, _ = history.quantities["point_3_y"]
+    assert unit == "m"
+    assert meaning == "vertical displacement of the body point at (0.7, -0.9) m from C"
+
+
+@pytest.mark.parametrize(("kinematics", "stretch"), [("small", 1e-6), ("exact", 0.0)])
+def test_exact_kinematics_keep_the_distances_of_points(kinematics, stretch):
+    p = Params(support_half_spacing=1.5, support_offset=-4.0)
+    settings = Settings(kinematics=kinematics, run_up=2.0, body_points=POINTS)
+    places = np.array(POINTS)[:, :, None] + points_of(simulate(p, settings), 3)
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        distance = np.hypot(*(places[i] - places[j]))
+        largest = abs(distance / np.hypot(*np.subtract(POINTS[i], POINTS[j])) - 1).max()
+        assert stretch <= largest < stretch + 1e-4 if stretch else largest < 1e-14
+
+
+def test_points_are_not_asked_for_by_default():
+    history = simulate(Params(), Settings(run_up=1.0, tolerance=1e-4))
+    assert not [name for name in history.quantities if name.startswith("point")]
+
+
 def test_it_ends_at_ten_seconds_and_shows_feed_and_mount_where_there_are_any():
     plain = simulate(Params(), Settings(tolerance=1e-4))
     assert plain.time[-1] == 10

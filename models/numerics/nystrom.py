@@ -1,0 +1,196 @@
+"""Fixed Runge-Kutta steps of sixteen systems q'' = f(q, q') abreast, in Nystrom's form.
+
+The slopes of q are themselves sums of accelerations, so only these are kept: with K_l = h f_l,
+
+    q_i = q + h (c_i v + sum_l (A A)_il K_l),    v_i = v + sum_l a_il K_l.
+
+It is the method of the same tableau, with half of its memory and with one load where it has two.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.integrate._ivp import dop853_coefficients
+
+from models.numerics import tsit5
+from models.numerics.blocks import LANES
+from models.numerics.jit import kernel
+
+ORDER_5 = tsit5.TABLEAU
+ORDER_8 = dop853_coefficients.A[:12, :12], dop853_coefficients.B
+"""Methods of Tsitouras, and of Dormand and Prince: coefficients and weights."""
+
+STAGES = 12  # at most
+_ZERO = 1e-15  # what rounding leaves of products of coefficients
+
+
+class Layout(NamedTuple):
+    """Where a block of lanes keeps what; quantities of one lane stand LANES apart.
+
+    Attributes
+    ----------
+    position, velocity : int
+        Offsets of the state.
+    at, speed : int
+        Offsets of the position and the velocity at which the accelerations are asked for.
+    rise : int
+        Offset of the accelerations there, times the step.
+    step : int
+        Offset of the step, repeated for each quantity.
+    end : int
+        What comes behind.
+    """
+
+    position: int
+    velocity: int
+    at: int
+    speed: int
+    rise: int
+    step: int
+    end: int
+
+
+def layout(quantities: int) -> Layout:
+    """Return the layout for positions of so many quantities."""
+    return Layout._make(range(0, 7 * quantities * LANES, quantities * LANES))
+
+
+def _combiner(
+    quantities: int, slopes: int, a: Any, b: Any, to: tuple[int, int]
+) -> Callable[[Any], None]:
+    """Return the kernel that keeps the newest slope and weights all of them into `to`."""
+    position, velocity, _, _, rise, step, _ = layout(quantities)
+    whole, c, (to_position, to_velocity) = quantities * LANES, float(sum(a)), to
+    newest = slopes + (len(a) - 1) * whole
+    used = [i for i in range(len(a) - 1) if max(abs(a[i]), abs(b[i])) > _ZERO]
+    n, padding = len(used), [0] * (STAGES - 1 - len(used))
+    a_0, b_0 = float(a[-1]), float(b[-1])
+    a_1, a_2, a_3, a_4, a_5, a_6, a_7, a_8, a_9, a_10, a_11 = [float(a[i]) for i in used] + padding
+    b_1, b_2, b_3, b_4, b_5, b_6, b_7, b_8, b_9, b_10, b_11 = [float(b[i]) for i in used] + padding
+    k_1, k_2, k_3, k_4, k_5, k_6, k_7, k_8, k_9, k_10, k_11 = [
+        slopes + i * whole for i in used
+    ] + padding
+
+    # What lies behind the n-th term is cut off in compilation. Two chains of sums, so that the
+    # additions do not all wait for each other.
+    @kernel
+    def combine(w):
+        for j in range(whole):
+            k, v_0 = w[rise + j], w[velocity + j]
+            w[newest + j] = k
+            v, q, v_2, q_2 = a_0 * k, c * v_0 + b_0 * k, 0.0, 0.0
+            if n >= 1:
+                v_2 += a_1 * w[k_1 + j]
+                q_2 += b_1 * w[k_1 + j]
+            if n >= 2:
+                v += a_2 * w[k_2 + j]
+                q += b_2 * w[k_2 + j]
+            if n >= 3:
+                v_2 += a_3 * w[k_3 + j]
+                q_2 += b_3 * w[k_3 + j]
+            if n >= 4:
+                v += a_4 * w[k_4 + j]
+                q += b_4 * w[k_4 + j]
+            if n >= 5:
+                v_2 += a_5 * w[k_5 + j]
+                q_2 += b_5 * w[k_5 + j]
+            if n >= 6:
+                v += a_6 * w[k_6 + j]
+                q += b_6 * w[k_6 + j]
+            if n >= 7:
+                v_2 += a_7 * w[k_7 + j]
+                q_2 += b_7 * w[k_7 + j]
+            if n >= 8:
+                v += a_8 * w[k_8 + j]
+                q += b_8 * w[k_8 + j]
+            if n >= 9:
+                v_2 += a_9 * w[k_9 + j]
+                q_2 += b_9 * w[k_9 + j]
+            if n >= 10:
+                v += a_10 * w[k_10 + j]
+                q += b_10 * w[k_10 + j]
+            if n >= 11:
+                v_2 += a_11 * w[k_11 + j]
+                q_2 += b_11 * w[k_11 + j]
+            w[to_position + j] = w[position + j] + w[step + j] * (q + q_2)
+            w[to_velocity + j] = v_0 + (v + v_2)
+
+    return combine
+
+
+def stepper(
+    quantities: int, slopes: int, a: ArrayLike, b: ArrayLike, accelerate: Callable[[Any], None]
+) -> Callable[[Any], None]:
+    """Compile the steps of one method for one system.
+
+    Parameters
+    ----------
+    quantities : int
+        In a position.
+    slopes : int
+        Where in the block there is room for the slopes of all stages.
+    a : array_like, shape (s, s)
+        Coefficients of an explicit method of s <= 12 stages.
+    b : array_like, shape (s,)
+        Its weights.
+    accelerate : kernel
+        ``accelerate(block)`` sets the accelerations, times the step, at `Layout.rise`.
+
+    Returns
+    -------
+    kernel
+        ``step(block)`` advances the state by one step. Call it from a module's kernel: only so
+        it is cached.
+    """
+    at, whole = layout(quantities), 2 * quantities * LANES
+    position, arguments = at.position, at.at
+    rows = np.vstack([np.asarray(a), np.asarray(b)])
+    squares = rows @ np.asarray(a)
+    stages = len(rows) - 1
+    combiners = [
+        _combiner(
+            quantities,
+            slopes,
+            rows[done][:done],
+            squares[done][:done],
+            (at.position, at.velocity) if done == stages else (at.at, at.speed),
+        )
+        for done in range(1, stages + 1)
+    ]
+    spare = combiners[-1:] * (STAGES - stages)
+    c_1, c_2, c_3, c_4, c_5, c_6, c_7, c_8, c_9, c_10, c_11, c_12 = combiners + spare
+
+    @kernel
+    def step(w):
+        for j in range(whole):
+            w[arguments + j] = w[position + j]
+        for stage in range(stages):
+            accelerate(w)
+            if stage == 0:
+                c_1(w)
+            elif stage == 1:
+                c_2(w)
+            elif stage == 2:
+                c_3(w)
+            elif stage == 3:
+                c_4(w)
+            elif stage == 4:
+                c_5(w)
+            elif stage == 5:
+                c_6(w)
+            elif stage == 6:
+                c_7(w)
+            elif stage == 7:
+                c_8(w)
+            elif stage == 8:
+                c_9(w)
+            elif stage == 9:
+                c_10(w)
+            elif stage == 10:
+                c_11(w)
+            else:
+                c_12(w)
+
+    return step
