@@ -1,5 +1,7 @@
 """Many small systems of linear equations, each on its own: a singular one harms no other."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,12 +27,12 @@ def solve(matrix: Array, right: Array) -> tuple[Array, NDArray[np.bool_]]:
     scale = np.abs(matrix).max(axis=2, keepdims=True)
     scale[scale == 0] = 1.0
     matrix, right = matrix / scale, right / scale
-    solution: Array
+    solution: Any
     try:
         solution = np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:  # one of them is singular: only then is it worth asking which
         with np.errstate(invalid="ignore"):
-            singular = np.linalg.det(matrix) == 0
+            singular: Any = np.linalg.det(matrix) == 0
         matrix[singular] = np.eye(matrix.shape[1])
         solution = np.linalg.solve(matrix, right)
         solution[singular] = np.nan
