@@ -35,8 +35,8 @@ LAYERS = {
         "template",
         "values",
     },
-    "rows": {"evaluate", "results", "sampling", "store"},
-    "running": {"cluster", "job", "runner", "simulation", "task", "worker"},
+    "rows": {"attractors", "evaluate", "grid", "results", "sampling", "store", "work"},
+    "running": {"attraction", "cluster", "job", "runner", "simulation", "task", "worker"},
     "analysis": {
         "elements",
         "given_data",

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from uq.attraction import basins
     from uq.indices import sensitivity
     from uq.lifetime import survival
     from uq.results import open_result
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from uq.study import load_study
 
 __all__ = [
+    "basins",
     "load_study",
     "open_result",
     "run",
@@ -26,6 +28,7 @@ __all__ = [
 ]
 
 _MODULES = {
+    "basins": "attraction",
     "load_study": "study",
     "open_result": "results",
     "run": "runner",

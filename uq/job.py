@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from uq.errors import InputError, RunError
 from uq.evaluate import Chunk, KernelError, evaluate
 from uq.interrupts import in_background
-from uq.sampling import Rows, group_size, row_block, rows
+from uq.sampling import Rows
 from uq.store import Store, row_bytes
-from uq.study import Study
 from uq.task import evaluate_rows
+from uq.work import Work
 
 if TYPE_CHECKING:
     from distributed import Future
@@ -54,11 +54,11 @@ Report = Callable[[Progress], object]
 
 
 class Job:
-    """One study under way; rows are taken in order.
+    """Work under way; rows are taken in order.
 
     Parameters
     ----------
-    study : Study
+    work : Work
     chunk_rows : int or None
         Rows per chunk, if the caller has a wish.
     report : callable
@@ -70,11 +70,10 @@ class Job:
         The rows that have arrived.
     """
 
-    def __init__(self, study: Study, chunk_rows: int | None, report: Report) -> None:
-        self.study = study
+    def __init__(self, work: Work, chunk_rows: int | None, report: Report) -> None:
+        self.work = work
         self.report = report
-        self.store = Store(study, rows(study))
-        self._group = group_size(study)
+        self.store = Store(work)
         self._wish = chunk_rows
         self._next = 0
         self._row_seconds = 0.0
@@ -92,7 +91,7 @@ class Job:
     @property
     def groups(self) -> int:
         """Tasks into which the rows can be cut at most."""
-        return self.store.total // self._group
+        return self.store.total // self.work.group
 
     def pilot(self, share: float) -> None:
         """Run the first rows here, more and more of them, until a chunk takes a while.
@@ -124,9 +123,9 @@ class Job:
                 start, some = self._take(min(self._chunk_rows(), self._whole(share)))
                 future = crew.client.submit(
                     evaluate_rows,
-                    self.study.model_reference,
-                    self.study.model.version,
-                    asdict(self.study.settings),
+                    self.work.model_reference,
+                    self.work.model.version,
+                    asdict(self.work.settings),
                     some.x,
                     some.seed,
                     start,
@@ -152,7 +151,7 @@ class Job:
             return 0.0
         start, some = self._take(size)
         began = time.perf_counter()
-        model, settings = self.study.model, self.study.settings
+        model, settings = self.work.model, self.work.settings
         chunk = in_background(lambda: evaluate(model, settings, some.x, some.seed, start))
         seconds = time.perf_counter() - began
         self._row_seconds = seconds / len(some.x)
@@ -162,28 +161,28 @@ class Job:
     def _take(self, size: int) -> tuple[int, Rows]:
         start, stop = self._next, min(self._next + size, self.store.total)
         self._next = stop
-        return start, row_block(self.study, start, stop)
+        return start, self.work.block(start, stop)
 
     def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
         self.store.add(start, some, chunk)
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
-            raise KernelError(f"model '{self.study.model.name}': every row is wrong: {wrong}")
+            raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")
         self.report(Progress(self.store.done, self.store.total, self.store.failed))
 
     def _chunk_rows(self) -> int:
         if self._wish:
             return self._whole(self._wish)
-        most = _CHUNK_BYTES // row_bytes(self.study)
+        most = _CHUNK_BYTES // row_bytes(self.work)
         if not self._row_seconds:
             return self._whole(most)
-        block = min(self.study.model.block, ceil(_BLOCK_SECONDS / self._row_seconds))
+        block = min(self.work.model.block, ceil(_BLOCK_SECONDS / self._row_seconds))
         blocks = CHUNK_SECONDS / (self._row_seconds * block)
         return self._whole(min(most, block * max(1, round(blocks))))
 
     def _whole(self, size: float) -> int:
         """Round up to whole groups of the design."""
-        return self._group * ceil(size / self._group)
+        return self.work.group * ceil(size / self.work.group)
 
 
 def _result(future: "Future", start: int, count: int) -> tuple[Chunk, float]:

@@ -73,24 +73,24 @@ def build(
     return ds
 
 
-def build_single(
+def build_rows(
     model: Model,
     settings: Any,
-    values: Mapping[str, float],
+    values: Mapping[str, float | NDArray[np.float64]],
     columns: Columns,
     status: NDArray[np.int8],
     failures: Mapping[str, str],
 ) -> xr.Dataset:
-    """Put one row computed outside of any study into a Dataset of the same schema.
+    """Put rows computed outside of any study into a Dataset of the same schema.
 
     Parameters
     ----------
     model : Model
     settings : object
-    values : dict of str to float
+    values : dict of str to float or ndarray, shape (n,)
         Every parameter.
     columns, status, failures
-        As in `build`, with n = 1.
+        As in `build`.
 
     Returns
     -------

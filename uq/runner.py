@@ -13,6 +13,7 @@ from uq.errors import InputError
 from uq.job import Job, Report
 from uq.sampling import rows
 from uq.study import Study, load_study
+from uq.work import Work, work_of
 
 IN_PROCESS_SECONDS = 4.0
 """A study whose remaining work is shorter than this is not worth starting workers."""
@@ -115,13 +116,24 @@ def compute(
     progress: Report | None = None,
 ) -> xr.Dataset:
     """Run a study without writing anything; parameters as in `run`."""
+    return carry_out(work_of(study), workers, scheduler, chunk_rows, progress)
+
+
+def carry_out(
+    work: Work,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    chunk_rows: int | None = None,
+    progress: Report | None = None,
+) -> xr.Dataset:
+    """Compute the rows of some work; other parameters as in `run`."""
     if workers is not None and scheduler is not None:
         raise InputError("workers and scheduler exclude each other")
     if workers is not None and workers < 0:
         raise InputError(f"workers must not be negative: {workers}")
     if chunk_rows is not None and chunk_rows < 1:
         raise InputError(f"chunk_rows must be at least 1: {chunk_rows}")
-    job = Job(study, chunk_rows, progress or (lambda _: None))
+    job = Job(work, chunk_rows, progress or (lambda _: None))
     if scheduler is not None:
         from uq import cluster
 

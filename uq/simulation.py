@@ -69,7 +69,7 @@ def simulate(
     seeds = np.array([seed], dtype=np.uint64)
     chunk = in_background(lambda: evaluate(model, frozen, x, seeds))
     failures = {label: text for label, (_, text) in chunk.failures.items()}
-    ds = results.build_single(model, frozen, values, chunk.columns, chunk.status, failures)
+    ds = results.build_rows(model, frozen, values, chunk.columns, chunk.status, failures)
     if not trajectory or model.simulate is None:
         return ds
     return ds.assign(trajectory=in_background(lambda: _trajectory(model, frozen, values, seed)))

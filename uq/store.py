@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from uq import results
 from uq.columns import blank_rows, columns_of, failed_rows
 from uq.contract import Status
 from uq.errors import InputError, RunError
 from uq.interrupts import undone
 from uq.sampling import Rows
+from uq.work import Work
 
 if TYPE_CHECKING:
     from uq.evaluate import Chunk
@@ -30,24 +30,24 @@ class Store:
 
     Parameters
     ----------
-    study : Study
-    total : int
-        Rows of the whole run.
+    work : Work
 
     Attributes
     ----------
+    total : int
+        Rows of the whole run.
     done : int
         Rows that have arrived.
     failed : int
         Rows among them that failed.
     """
 
-    def __init__(self, study: "Study", total: int) -> None:
-        self.study = study
-        self.total = total
+    def __init__(self, work: Work) -> None:
+        self.work = work
+        self.total = total = work.total
         self.done = 0
         self.failed = 0
-        d = len(study.model.parameter_names)
+        d = len(work.model.parameter_names)
         self._rows = Rows(
             x=np.empty((total, d)),
             seed=np.empty(total, dtype=np.uint64),
@@ -55,7 +55,7 @@ class Store:
             group=np.empty(total, dtype=np.int64),
             block=np.empty(total, dtype=np.int16),
         )
-        self._columns = blank_rows(columns_of(study.model, study.settings), total)
+        self._columns = blank_rows(columns_of(work.model, work.settings), total)
         self._status = np.zeros(total, dtype=np.int8)
         self._failures: dict[str, tuple[int, str]] = {}
 
@@ -79,7 +79,7 @@ class Store:
         self.done += stop - start
         required = (
             (output.kind, chunk.columns[name])
-            for name, output in self.study.model.outputs.items()
+            for name, output in self.work.model.outputs.items()
             if not output.may_be_undefined
         )
         self.failed += int(np.count_nonzero(failed_rows(chunk.status, required)))
@@ -94,14 +94,14 @@ class Store:
     def dataset(self) -> xr.Dataset:
         """Return the result of a run whose rows have all arrived."""
         examples = {label: f"row {row}: {text}" for label, (row, text) in self._failures.items()}
-        return results.build(self.study, self._rows, self._columns, self._status, examples)
+        return self.work.finish(self._rows, self._columns, self._status, examples)
 
 
-def row_bytes(study: "Study") -> int:
+def row_bytes(work: "Work | Study") -> int:
     """Return about how many bytes a row takes, inputs and outputs."""
-    columns = columns_of(study.model, study.settings).values()
+    columns = columns_of(work.model, work.settings).values()
     outputs = sum(column.dtype.itemsize * prod(column.shape) for column in columns)
-    return 8 * len(study.model.parameter_names) + 32 + outputs
+    return 8 * len(work.model.parameter_names) + 32 + outputs
 
 
 def check_target(path: Path, size: int) -> None:

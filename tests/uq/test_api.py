@@ -16,6 +16,7 @@ def test_everything_promised_is_there():
         set(uq.__all__)
         == set(dir(uq))
         == {
+            "basins",
             "load_study",
             "run",
             "open_result",

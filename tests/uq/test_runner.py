@@ -19,6 +19,7 @@ from uq.job import Progress
 from uq.sampling import row_block
 from uq.store import Store
 from uq.study import load_study
+from uq.work import work_of
 
 
 @pytest.mark.parametrize(
@@ -61,7 +62,7 @@ def test_chunks_may_arrive_in_any_order(write_study):
         more='[settings]\nfail_above = 0.7\nfail_how = "raise"',
     )
     study = load_study(path)
-    store = Store(study, 100)
+    store = Store(work_of(study))
     for start in (60, 0, 80, 20, 40):
         some = row_block(study, start, start + 20)
         chunk = evaluate(study.model, study.settings, some.x, some.seed, start)

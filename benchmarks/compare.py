@@ -1,0 +1,92 @@
+"""Tools beside each other: each with its cheapest setting that is good enough, timed by turns."""
+
+import time
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+_REPEAT = 3
+
+
+class Rival(NamedTuple):
+    """A tool.
+
+    Attributes
+    ----------
+    run : callable
+        ``run(rows, setting)`` returns the results of the first rows, row by row.
+    settings : sequence of float
+        From cheap to dear.
+    rows : int
+        To be timed.
+    """
+
+    run: Callable[[int, Any], Any]
+    settings: Sequence[float]
+    rows: int
+
+
+def clock(function, repeat=_REPEAT):
+    """Return the result and the best time of some calls [s], after one that warms up."""
+    best = np.inf
+    result = function()
+    for _ in range(repeat):
+        seconds = _seconds(function)
+        best = min(best, seconds)
+    return result, best
+
+
+def _seconds(function):
+    began = time.perf_counter()
+    function()
+    return time.perf_counter() - began
+
+
+def cheapest(settings, error, goal):
+    """Return the first setting, from cheap to dear, with an error below the goal, and the error."""
+    for setting in settings:
+        reached = error(setting)
+        if reached <= goal:
+            return setting, reached
+    raise RuntimeError(f"no setting reaches {goal}")
+
+
+def compare(rivals, error_of, known, goal, unit="", amount=1.0):
+    """Print the tools' settings, errors and times, and the ratios of times to the first tool's.
+
+    Parameters
+    ----------
+    rivals : dict of str to Rival
+    error_of : callable
+        ``error_of(results)`` of a tool's first rows, `known` at most.
+    known : int
+        Rows of known results; a tool that is timed on fewer is judged by fewer.
+    goal : float
+        Largest error.
+    unit : str
+        Of the error, after a space.
+    amount : float
+        What is done in a row, in the unit for which the time is told.
+    """
+    print(f"  largest error of up to {known} rows at most {goal:.0e}{unit}")
+    chosen = {
+        name: cheapest(
+            rival.settings,
+            lambda setting, rival=rival: error_of(rival.run(min(known, rival.rows), setting)),
+            goal,
+        )
+        for name, rival in rivals.items()
+    }
+    best = dict.fromkeys(rivals, np.inf)
+    for _ in range(_REPEAT):  # by turns, so that a busy host is unfair to nobody
+        for name, rival in rivals.items():
+            setting, _ = chosen[name]
+            seconds = _seconds(lambda rival=rival, s=setting: rival.run(rival.rows, s))
+            best[name] = min(best[name], seconds / (rival.rows * amount))
+    first = next(iter(best.values()))
+    for name, (setting, error) in chosen.items():
+        each = best[name]
+        print(
+            f"    {name:32s} {setting:9.3g} {error:9.1e} {each * 1e3:9.4f} ms {each / first:7.1f}"
+        )

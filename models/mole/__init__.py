@@ -1,0 +1,40 @@
+"""The mole: a solenoid throws a bar against a stop, and the mole creeps forward against friction.
+
+After J.-H. Ho, V.-D. Nguyen and K.-C. Woo, "Nonlinear dynamics of a new electro-vibro-impact
+system", Nonlinear Dyn. 63 (2011) 35.
+"""
+
+from typing import Any
+
+from models.mole.parameters import OUTPUTS, Params, Settings, coordinates
+from uq.contract import Model, Trajectory
+
+
+def _batch(x: Any, seed: Any, settings: Settings) -> Any:
+    from models.mole.batch import batch  # numba only when something is computed
+
+    return batch(x, seed, settings)
+
+
+def _simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
+    from models.mole.trajectory import simulate
+
+    return simulate(params, settings, seed)
+
+
+MODEL = Model(
+    name="mole",
+    title="electro-vibro-impact ground mole that creeps forward against dry friction",
+    version="1",
+    parameters=Params,
+    settings=Settings,
+    outputs=OUTPUTS,
+    batch=_batch,
+    simulate=_simulate,
+    coordinates=coordinates,
+    block=256,
+    references=(
+        "J.-H. Ho, V.-D. Nguyen, K.-C. Woo, Nonlinear dynamics of a new electro-vibro-impact "
+        "system, Nonlinear Dyn. 63 (2011) 35-49",
+    ),
+)

@@ -1,0 +1,109 @@
+"""From rows of parameters to progression, impacts and regimes."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.mole.lane_rows import OUT_OF_BUDGET, OUTCOME, table_of
+from models.mole.parameters import (
+    CHAOTIC,
+    NO_IMPACT,
+    PERIODIC,
+    QUASI_PERIODIC,
+    Params,
+    Settings,
+)
+from models.mole.periods import common_periods
+from models.mole.response import (
+    BATCHES,
+    SURE,
+    Machines,
+    Response,
+    follow_other,
+    follow_repeating,
+    mean_of,
+    settle,
+    settle_late,
+)
+from models.mole.system import mole
+from uq.contract import Status
+
+
+def batch(
+    x: NDArray[np.float64], seed: NDArray[np.uint64], settings: Settings
+) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
+    """Compute n moles.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n, d)
+        Parameters in the order of `Params`.
+    seed : ndarray of uint64, shape (n,)
+        Not used: the mole is deterministic.
+    settings : Settings
+
+    Returns
+    -------
+    outputs : dict of str to ndarray, shape (n,)
+        As `models.mole.parameters.OUTPUTS` says.
+    status : ndarray of int8, shape (n,)
+    """
+    p: Any = Params._make(np.ascontiguousarray(x.T))
+    machines = Machines.started(
+        table_of(mole(p, settings.formulation), len(x)),
+        p.control_frequency,
+        common_periods(p.control_frequency, p.supply_frequency),
+        p.initial_displacement,
+        p.initial_velocity,
+    )
+    response = Response.nothing(len(x))
+    repeating, other = settle(machines, settings.transient, settings.tolerance)
+    follow_repeating(machines, repeating, settings.duration, settings.tolerance, response)
+    follow_other(machines, other, settings.duration, settings.tolerance, response)
+    if not settings.transient:
+        late = settle_late(machines, other, settings.tolerance, response)
+        follow_repeating(machines, late, settings.duration, settings.tolerance, response)
+    outputs = _outputs(p, response)
+    lost = np.isnan(response.time)
+    over = machines.record[:, OUTCOME] == OUT_OF_BUDGET
+    status = np.where(lost, np.where(over, Status.OUT_OF_BUDGET, Status.NON_FINITE), Status.OK)
+    return outputs, status.astype(np.int8)
+
+
+def _outputs(p: Any, response: Response) -> dict[str, NDArray[Any]]:
+    known = np.isfinite(response.time)
+    repeats = response.period > 0
+    progression, progression_error = _mean(response.progress, response.time, repeats)
+    impact, impact_error = _mean(response.impact, response.time, repeats)
+    electrical, _ = _mean(response.electric, response.time, repeats)
+    exponent, exponent_error = _mean(response.growth, response.time, repeats)
+    wild = exponent > SURE * exponent_error
+    regime = np.where(repeats, PERIODIC, np.where(wild, CHAOTIC, QUASI_PERIODIC))
+    regime[(response.contacts == 0) & ~response.touching] = NO_IMPACT
+    regime[~known] = -1
+    force = p.contact_stiffness * np.maximum(response.high - p.stop_gap, 0.0)
+    range_ = response.high - response.low
+    impacts = response.contacts / (response.time * p.control_frequency)
+    return {
+        "progression_rate": progression,
+        "progression_rate_error": progression_error,
+        "peak_contact_force": np.where(known, force, np.nan),
+        "impact_work_rate": impact,
+        "impact_work_rate_error": impact_error,
+        "impacts_per_period": impacts,
+        "displacement_range": np.where(known, range_, np.nan),
+        "electrical_power": electrical,
+        "efficiency": impact / electrical,
+        "lyapunov_exponent": exponent,
+        "lyapunov_exponent_error": exponent_error,
+        "regime": regime.astype(np.int8),
+        "period": np.where(known, response.period, np.nan),
+    }
+
+
+def _mean(parts: Any, time: Any, repeats: Any) -> tuple[Any, Any]:
+    """Return the mean rate of something in batches, and its standard error."""
+    mean, error = mean_of(parts)
+    error = np.where(repeats, 0.0, error)
+    return mean * BATCHES / time, error * BATCHES / time

@@ -1,0 +1,243 @@
+"""Time histories, Poincare sections and bifurcation diagrams of the mole, labelled for plotting.
+
+A phase plane is a history of displacement and velocity. Basins of attraction, of this model or any
+other, come from ``uq.basins``.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from models.mole import equations, exact
+from models.mole.batch import batch
+from models.mole.lane_rows import CONTACTS, CURRENT, HIGH, PROGRESS, P, U, V, X, table_of
+from models.mole.parameters import REGIMES, Params, Settings
+from models.mole.periods import common_periods
+from models.mole.response import Machines
+from models.mole.system import mole
+
+Array = NDArray[np.float64]
+
+_STATES = {
+    "displacement": (U, "m", "displacement u of the bar relative to the mole"),
+    "velocity": (V, "m s-1", "rate of u"),
+    "mole_velocity": (X, "m s-1", "velocity of the mole"),
+    "current": (CURRENT, "A", "current through the coil"),
+    "voltage": (P, "V", "voltage of the source less that of the capacitor"),
+}
+_SEEN = {
+    "peak_contact_force": ("N", "largest force of the stop on the bar since the point before"),
+    "impacts": ("1", "contacts begun since the point before"),
+    "advance": ("m", "progression of the mole since the point before"),
+}
+_HISTORY = {
+    "displacement": (equations.DISPLACEMENT, *_STATES["displacement"][1:]),
+    "velocity": (equations.VELOCITY, *_STATES["velocity"][1:]),
+    "mole_displacement": (equations.MOLE_DISPLACEMENT, "m", "progression of the mole"),
+    "mole_velocity": (equations.MOLE_VELOCITY, *_STATES["mole_velocity"][1:]),
+    "current": (equations.CURRENT, *_STATES["current"][1:]),
+}
+
+
+def history(
+    params: Params, settings: Settings, begin: float, end: float, points: int = 4000
+) -> xr.Dataset:
+    """Return a stretch of the time history of one mole.
+
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    settings : Settings
+        Formulation and tolerance count.
+    begin, end : float
+        Since the relay first closed [s].
+    points : int
+        Evenly spaced over the stretch, both ends included.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``time``: ``displacement`` (u), ``velocity`` (v), ``mole_displacement`` (w),
+        ``mole_velocity`` (x) and ``current`` (i). They are NaN from where the step budget ended,
+        should it ever.
+
+    Raises
+    ------
+    ValueError
+        If not 0 <= begin < end.
+    """
+    if not 0 <= begin < end < np.inf:
+        raise ValueError(f"must have 0 <= begin < end: begin = {begin!r}, end = {end!r}")
+    q = mole(params, settings.formulation)
+    time = np.linspace(begin, end, points)
+    motion = exact.propagate(q, exact.start(params, q), end, settings.tolerance, time)
+    series = {
+        name: ("time", motion.samples[:, i], {"units": unit, "long_name": meaning})
+        for name, (i, unit, meaning) in _HISTORY.items()
+    }
+    about = {"units": "s", "long_name": "time since the relay first closed"}
+    return xr.Dataset(series, {"time": ("time", time, about)}, _about(settings))
+
+
+def poincare_section(
+    params: Params,
+    settings: Settings,
+    periods: int,
+    dropped: int,
+    starts: ArrayLike | None = None,
+    common: bool = False,
+) -> xr.Dataset:
+    """Return the states of a mole at the instants at which its relay closes.
+
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    settings : Settings
+        Formulation and tolerance count.
+    periods : int
+        Points to be returned.
+    dropped : int
+        Control periods left out before.
+    starts : array_like, shape (k, 2), optional
+        Initial displacements [m] and velocities [m/s] to be followed, instead of the one in
+        `params`.
+    common : bool
+        Whether to look once in a common period of control and half a mains cycle, and not once in
+        every control period: then a period-1 response is one point.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``start``, if there are `starts`, and ``period``, which counts control periods since
+        the relay first closed: ``displacement``, ``velocity``, ``mole_velocity``, ``current`` and
+        ``voltage`` (u, v, x, i, p) just after the relay has closed, and what happened since the
+        point before: ``peak_contact_force``, ``impacts``, ``advance``. NaN from where a step budget
+        ended.
+
+    Raises
+    ------
+    ValueError
+        If there is no common period.
+    """
+    stride = 1
+    if common:
+        stride = int(common_periods(params.control_frequency, params.supply_frequency))
+        if not stride:
+            raise ValueError(
+                f"control at {params.control_frequency!r} Hz and mains at "
+                f"{params.supply_frequency!r} Hz have no common period within 40 control periods"
+            )
+    if starts is None:
+        return _strobed("start", _rows(params, 1), settings, dropped, periods, stride).isel(start=0)
+    u, v = np.asarray(starts, float).T
+    rows = _rows(params, len(u), initial_displacement=u, initial_velocity=v)
+    ds = _strobed("start", rows, settings, dropped, periods, stride)
+    return ds.assign_coords(
+        initial_displacement=("start", u, {"units": "m", "long_name": "displacement at the start"}),
+        initial_velocity=("start", v, {"units": "m s-1", "long_name": "velocity at the start"}),
+    )
+
+
+def bifurcation_diagram(
+    frequencies: Sequence[float] | Array,
+    params: Params,
+    settings: Settings,
+    dropped: int,
+    kept: int,
+) -> xr.Dataset:
+    """Return how the response of a mole changes with its control frequency.
+
+    Each frequency is followed from the start in `params`, so that the diagram shows the branch
+    which that start leads to.
+
+    Parameters
+    ----------
+    frequencies : array_like, shape (n,)
+        Of control [Hz].
+    params : Params
+        Each field a float; the control frequency does not count.
+    settings : Settings
+    dropped, kept : int
+        Control periods left out, and those after them that are looked at.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along ``control_frequency`` and ``period`` what `poincare_section` returns; along
+        ``control_frequency`` the ``progression_rate`` and the ``regime`` of the settled response,
+        which are outputs of the model.
+    """
+    frequencies = np.asarray(frequencies, float)
+    rows = _rows(params, len(frequencies), control_frequency=frequencies)
+    ds = _strobed("control_frequency", rows, settings, dropped, kept, 1)
+    seed = np.zeros(len(frequencies), np.uint64)
+    settled, _ = batch(np.stack(rows, axis=1), seed, settings)
+    words = np.array(["none", *REGIMES])[settled["regime"] + 1]
+    along = "control_frequency"
+    return ds.assign(
+        progression_rate=(
+            along,
+            settled["progression_rate"],
+            {"units": "m s-1", "long_name": "mean velocity of the mole"},
+        ),
+        regime=(along, words, {"long_name": "kind of settled response"}),
+    ).assign_coords(
+        {along: (along, frequencies, {"units": "Hz", "long_name": "control frequency"})}
+    )
+
+
+def _rows(params: Params, n: int, **varied: Array) -> Any:
+    """Return the parameters of n moles, each field of shape (n,)."""
+    values: dict[str, Any] = params._asdict() | varied
+    return Params._make(np.broadcast_to(x, n).astype(float) for x in values.values())
+
+
+def _strobed(
+    dim: str, p: Any, settings: Settings, dropped: int, points: int, stride: int
+) -> xr.Dataset:
+    """Look at n moles every `stride` control periods."""
+    n = len(p.control_frequency)
+    machines = Machines.started(
+        table_of(mole(p, settings.formulation), n),
+        p.control_frequency,
+        common_periods(p.control_frequency, p.supply_frequency),
+        p.initial_displacement,
+        p.initial_velocity,
+    )
+    rows = np.arange(n)
+
+    def run_to(period: int) -> NDArray[np.int64]:
+        limit, plain = np.full(len(rows), period), np.empty((len(rows), 0))
+        return rows[machines.run(rows, limit, settings.tolerance, False, plain)]
+
+    if dropped:
+        rows = run_to(dropped)
+    closings = dropped + stride * np.arange(1, points + 1)
+    seen = {name: np.full((n, points), np.nan) for name in (*_STATES, *_SEEN)}
+    for k in range(points):
+        rows = run_to(int(closings[k]))
+        record = machines.record[rows]
+        for name, (i, _, _) in _STATES.items():
+            seen[name][rows, k] = record[:, i]
+        gap = np.maximum(record[:, HIGH] - p.stop_gap[rows], 0.0)
+        seen["peak_contact_force"][rows, k] = p.contact_stiffness[rows] * gap
+        seen["impacts"][rows, k] = record[:, CONTACTS]
+        seen["advance"][rows, k] = record[:, PROGRESS]
+    about = {name: texts for name, (_, *texts) in _STATES.items()} | _SEEN
+    return xr.Dataset(
+        {
+            name: ((dim, "period"), values, {"units": about[name][0], "long_name": about[name][1]})
+            for name, values in seen.items()
+        },
+        {"period": ("period", closings, {"units": "1", "long_name": "control periods so far"})},
+        _about(settings),
+    )
+
+
+def _about(settings: Settings) -> dict[str, Any]:
+    return {"model": "mole", "formulation": settings.formulation}

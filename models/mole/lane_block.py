@@ -1,0 +1,110 @@
+"""What sixteen moles abreast keep in memory, and where."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from models.numerics import dop8
+from models.numerics.blocks import LANES, aligned
+
+# Quantities of a lane; tangents, each with the first five, follow.
+U, V, X, CURRENT, P, ADDED, SINE, COSINE = range(8)
+PLAIN = 8
+MEASURED = 5
+
+# Rows of a block's memory: first the constants of a lane in its present mode.
+(
+    STEP,
+    A,
+    B,
+    D,
+    E,
+    STIFFNESS,
+    FORCE,
+    DAMPING,
+    SLOPE,
+    COIL,
+    RESISTANCE,
+    ELASTANCE,
+    DRIVE,
+    SPEED,
+    CONTACT,
+    GAP,
+) = range(16)
+
+# Integrals over a trial step, and their sums so far: of velocity, and of the powers of impacts and
+# supply.
+PROGRESS, IMPACT, ELECTRIC = range(3)
+INTEGRALS = 3
+INTEGRAL, SUM = 16, 19
+
+# Derivatives of F with respect to u and i, and of i' with respect to u, v, i and p.
+JACOBIAN = 22
+
+# Guards, positive while the mode lasts: of the stop, of the bar's and of the mole's friction. How
+# they follow from the state, and their values and rates at both ends of a step.
+TOUCH, BAR, MOLE = range(3)
+GUARDS = 3
+OPEN, BAR_SLIP, MOLE_SLIP, BAR_HOLD, MOLE_HOLD = range(28, 33)
+BAR_OFFSET, MOLE_OFFSET, BAR_LIMIT, MOLE_LIMIT = range(33, 37)
+START, START_RATE, END, END_RATE = (37 + i * GUARDS for i in range(4))
+
+# Mode, clock, bookkeeping.
+ROW, BAR_MODE, MOLE_MODE, TOUCHING, HALF, TARGET, CONTACTS, ENTRIES = range(49, 57)
+WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(57, 65)
+ROWS = 65
+
+LONGEST_PERIOD = 64
+"""Common periods among which a repetition is looked for."""
+
+
+class Block(NamedTuple):
+    """Memory of sixteen lanes; rows of one lane stand LANES apart.
+
+    Attributes
+    ----------
+    whole : ndarray
+        States, arguments and slopes, see `models.numerics.dop8.layout`.
+    state, new : ndarray
+        Views of states and arguments; after the last stage `new` is the state reached.
+    end : ndarray
+        Slopes at the state reached.
+    memory : ndarray
+        All else, see the rows above.
+    share, error : ndarray
+        See `models.numerics.dop8.estimator`.
+    ring : ndarray, shape (LANES, LONGEST_PERIOD, 3)
+        (u, v, x) at the last common periods.
+    """
+
+    whole: Any
+    state: Any
+    new: Any
+    end: Any
+    memory: Any
+    share: Any
+    error: Any
+    ring: Any
+
+    @staticmethod
+    def made(columns: int) -> "Block":
+        """Return memory for lanes with so many columns of tangents."""
+        size = quantities(columns)
+        where = dop8.layout(size)
+        whole = aligned(where.size)
+        n = size * LANES
+        return Block(
+            whole,
+            whole[where.state : where.state + n],
+            whole[where.argument : where.argument + n],
+            aligned(n),
+            aligned(ROWS * LANES),
+            aligned(MEASURED * LANES),
+            aligned((1 + 2 * MEASURED) * LANES),
+            np.empty((LANES, LONGEST_PERIOD, 3)),
+        )
+
+
+def quantities(columns: int) -> int:
+    """Return the number of quantities of a lane with so many columns of tangents."""
+    return PLAIN + MEASURED * columns

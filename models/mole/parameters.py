@@ -1,0 +1,168 @@
+"""Parameters, settings and outputs of the mole, each declared once.
+
+Nominal values after Ho, Nguyen & Woo (Nonlinear Dyn. 63, 2011). The bar's displacement u is that
+relative to the mole, from the middle of the solenoid, positive forwards.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+from typing import Annotated, Any, Literal, NamedTuple
+
+from uq.contract import Output, Parameter, Setting
+
+PAPER = "Ho, Nguyen & Woo 2011"
+REGIMES = ("no-impact", "periodic", "quasi-periodic", "chaotic")
+FORMULATIONS = ("physical", "paper", "as-printed")
+NO_IMPACT, PERIODIC, QUASI_PERIODIC, CHAOTIC = range(4)
+PHYSICAL, PAPERS, AS_PRINTED = range(3)
+
+
+class Params(NamedTuple):
+    """Physical inputs of the mole."""
+
+    bar_mass: Annotated[
+        float, Parameter("m_1", "kg", "mass of the bar", (0.0099, 8.91), f"{PAPER}: given")
+    ] = 0.297
+    mole_mass: Annotated[
+        float,
+        Parameter("m_2", "kg", "mass of the mole without bar", (0.098, 88.2), f"{PAPER}: given"),
+    ] = 2.94
+    stop_gap: Annotated[
+        float,
+        Parameter("G", "m", "displacement u at which the bar meets the stop", (-0.06, 0.06), PAPER),
+    ] = -2e-3
+    spring_stiffness: Annotated[
+        float,
+        Parameter("k_1", "N m-1", "stiffness of the return spring", (0.0, 6e3), f"{PAPER}: given"),
+    ] = 200.0
+    spring_rest: Annotated[
+        float,
+        Parameter("X_0", "m", "displacement u at which the spring is slack", (-0.66, 0.66), PAPER),
+    ] = -22e-3
+    contact_stiffness: Annotated[
+        float,
+        Parameter(
+            "k_0",
+            "N m-1",
+            "stiffness of the stop",
+            (4e3, 3.8e6),
+            f"{PAPER}: given, estimated there from displacements differentiated twice",
+        ),
+    ] = 1.24e5
+    viscous_damping: Annotated[
+        float,
+        Parameter("c", "kg s-1", "viscous damping of the bar", (0.0, 4.8), f"{PAPER}: fitted"),
+    ] = 0.155
+    bar_friction: Annotated[
+        float,
+        Parameter("mu_1", "1", "friction of the bar in the mole", (0.0, 9.0), f"{PAPER}: fitted"),
+    ] = 0.295
+    mole_friction: Annotated[
+        float,
+        Parameter("mu_2", "1", "friction of the mole on the ground", (0.0, 7.1), f"{PAPER}: given"),
+    ] = 0.235
+    coil_inductance: Annotated[
+        float,
+        Parameter("L_0", "H", "inductance of the coil without bar", (5e-3, 5.0), f"{PAPER}: given"),
+    ] = 0.1658
+    inductance_coefficient: Annotated[
+        float,
+        Parameter("A", "H m", "what the bar adds: the area below L - L_0", (8e-4, 0.75), PAPER),
+    ] = 0.02494
+    inductance_width: Annotated[
+        float,
+        Parameter("sigma", "m", "how far from the middle the bar adds it", (1.6e-3, 1.45), PAPER),
+    ] = 0.0483
+    resistance: Annotated[
+        float, Parameter("R", "ohm", "resistance of the coil", (0.9, 825.0), f"{PAPER}: given")
+    ] = 27.5
+    capacitance: Annotated[
+        float, Parameter("C", "F", "capacitance in series", (1e-6, 9.6e-4), f"{PAPER}: given")
+    ] = 32e-6
+    supply_voltage: Annotated[
+        float,
+        Parameter(
+            "V_s", "V", "amplitude of the supply voltage", (2.7, 2500.0), f"{PAPER}: 58 V RMS given"
+        ),
+    ] = 82.02
+    supply_frequency: Annotated[
+        float,
+        Parameter(
+            "Omega/2pi", "Hz", "frequency of the supply", (1.6, 1500.0), "assumed: European mains"
+        ),
+    ] = 50.0
+    control_frequency: Annotated[
+        float,
+        Parameter("F_ctr", "Hz", "switching cycles a second", (0.08, 400.0), PAPER),
+    ] = 8.0
+    supply_phase: Annotated[
+        float,
+        Parameter(
+            "phi",
+            "rad",
+            "phase of the supply when the relay first closes",
+            (-2 * pi, 2 * pi),
+            f"{PAPER}: zero in the simulations",
+        ),
+    ] = 0.0
+    initial_displacement: Annotated[
+        float, Parameter("u(0)", "m", "displacement u at the start", (-0.66, 0.66), PAPER)
+    ] = -0.022
+    initial_velocity: Annotated[
+        float,
+        Parameter("v(0)", "m s-1", "rate of u at the start", (-10.0, 10.0), PAPER),
+    ] = 0.0
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Numerical choices of the mole."""
+
+    formulation: Annotated[
+        Literal["physical", "paper", "as-printed"],
+        Setting(
+            "physical: the voltage jumps when the relay switches; paper: it does not, as (12) and "
+            "(17); as-printed: (20) to the letter, which creates energy",
+            choices=FORMULATIONS,
+        ),
+    ] = "physical"
+    transient: Annotated[
+        int,
+        Setting("control periods left out; 0: until the motion repeats", bounds=(0, 100_000)),
+    ] = 0
+    duration: Annotated[
+        int,
+        Setting(
+            "control periods averaged, rounded up to whole periods of the response; 0: one of "
+            "these, or 200 at least where the motion does not repeat",
+            bounds=(0, 100_000),
+        ),
+    ] = 0
+    tolerance: Annotated[float, Setting("relative tolerance of a step", bounds=(1e-13, 1e-4))] = (
+        1e-8
+    )
+
+
+def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
+    """Return the coordinates of the outputs' dimensions: there are none."""
+    return {}
+
+
+OUTPUTS: Mapping[str, Output] = {
+    "progression_rate": Output("m s-1", "mean velocity of the mole"),
+    "progression_rate_error": Output("m s-1", "standard error of it, 0 where the motion repeats"),
+    "peak_contact_force": Output("N", "largest force of the stop on the bar"),
+    "impact_work_rate": Output("W", "mean power of the contact force on the mole"),
+    "impact_work_rate_error": Output("W", "standard error of it, 0 where the motion repeats"),
+    "impacts_per_period": Output("1", "contacts per control period"),
+    "displacement_range": Output("m", "largest less smallest displacement u"),
+    "electrical_power": Output("W", "mean power drawn from the supply"),
+    "efficiency": Output("1", "impact work-rate over electrical power"),
+    "lyapunov_exponent": Output(
+        "s-1", "largest Lyapunov exponent, natural logarithm, progression left out"
+    ),
+    "lyapunov_exponent_error": Output("s-1", "standard error of it, 0 where the motion repeats"),
+    "regime": Output("1", "kind of settled response", "category", categories=REGIMES),
+    "period": Output("1", "common periods in a periodic response, 0 in any other"),
+}

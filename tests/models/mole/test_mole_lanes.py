@@ -1,0 +1,164 @@
+"""The fast propagator: the exact one, neighbours, and the tangent flow through every event."""
+
+import numpy as np
+import pytest
+
+from models.mole import equations, exact
+from models.mole.lane_block import MEASURED
+from models.mole.lane_rows import (
+    CONTACTS,
+    ELECTRIC,
+    HALF,
+    HIGH,
+    IMPACT,
+    LOW,
+    OUTCOME,
+    PROGRESS,
+    REACHED_END,
+    table_of,
+)
+from models.mole.parameters import FORMULATIONS, Params
+from models.mole.periods import common_periods
+from models.mole.response import Machines
+from models.mole.system import mole
+
+RNG = np.random.default_rng(11)
+SIZES = np.array([1e-2, 1.0, 0.1, 1.0])  # of u, v, x, i
+
+
+def machines(rows, formulation="physical"):
+    p = Params._make(np.array(rows, float).T)
+    return Machines.started(
+        table_of(mole(p, formulation), len(rows)),
+        p.control_frequency,
+        common_periods(p.control_frequency, p.supply_frequency),
+        p.initial_displacement,
+        p.initial_velocity,
+    )
+
+
+def scattered(n):
+    """Return moles of all kinds within a tenth of the nominal one."""
+    nominal = np.array(Params())
+    rows = nominal * RNG.uniform(0.9, 1.1, (n, len(nominal)))
+    rows[:, Params._fields.index("control_frequency")] = RNG.uniform(2.5, 13, n)
+    rows[:, Params._fields.index("supply_phase")] = RNG.uniform(0, 6, n)
+    return rows
+
+
+def go(some, periods, tolerance, columns=0):
+    """Propagate all rows so many control periods; return records and tangents."""
+    n = len(some.table)
+    tangents = np.tile(np.eye(MEASURED)[:columns].ravel(), (n, 1))
+    limit = some.periods(np.arange(n)) + np.broadcast_to(periods, n)
+    reached = some.run(np.arange(n), limit, tolerance, False, tangents)
+    assert len(reached) == n
+    assert np.all(some.record[:, OUTCOME] == REACHED_END)
+    return some.record, tangents
+
+
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+@pytest.mark.parametrize("frequency", [2.5, 5.0, 7.0, 8.0, 13.0, 47 / (2 * np.pi)])
+def test_it_moves_as_the_exact_propagator(formulation, frequency):
+    p = Params(control_frequency=frequency)
+    q = mole(p, formulation)
+    periods = int(2 * frequency)
+    record, _ = go(machines([p], formulation), periods, 1e-11)
+    motion = exact.propagate(q, exact.start(p, q), periods * q.control_period, 1e-13)
+    y = motion.state.y
+    np.testing.assert_allclose(record[0, :4] / SIZES, y[:4] / SIZES, atol=1e-8)
+    assert record[0, CONTACTS] == motion.contacts
+    assert record[0, PROGRESS] == pytest.approx(y[5], abs=1e-8)
+    assert record[0, IMPACT] == pytest.approx(y[equations.IMPACT_WORK], abs=1e-6)
+    assert record[0, ELECTRIC] == pytest.approx(y[equations.ELECTRICAL_WORK], abs=1e-5)
+    assert record[0, LOW] == pytest.approx(motion.lowest, abs=1e-10)
+    assert record[0, HIGH] == pytest.approx(motion.highest, abs=1e-10)
+
+
+def test_rows_do_not_see_their_neighbours():
+    rows = scattered(40)
+    together, _ = go(machines(rows), 20, 1e-8)
+    order = RNG.permutation(40)
+    mixed, _ = go(machines(rows[order]), 20, 1e-8)
+    np.testing.assert_array_equal(mixed, together[order])
+    for i in (0, 17, 39):
+        alone, _ = go(machines(rows[[i]]), 20, 1e-8)
+        np.testing.assert_array_equal(alone[0], together[i])
+
+
+def test_an_interruption_changes_little():
+    rows = scattered(16)
+    through, _ = go(machines(rows), 30, 1e-10)
+    some = machines(rows)
+    first = go(some, 13, 1e-10)[0].copy()
+    second, _ = go(some, 17, 1e-10)
+    close = abs(second[:, :3] - through[:, :3]) / SIZES[:3] < 1e-6
+    assert close.all(axis=1).sum() >= 14  # one or two may be chaotic
+    still = close.all(axis=1)
+    np.testing.assert_allclose(
+        (first + second)[still, PROGRESS], through[still, PROGRESS], atol=1e-8
+    )
+
+
+def test_tangents_go_through_events_as_neighbouring_motions_do():
+    """Central differences of the exact propagator, over four control periods at 8 Hz."""
+    p = Params()
+    q = mole(p, "physical")
+    some = machines([p])
+    begin = go(some, 40, 1e-12)[0][0].copy()
+    _, tangents = go(some, 4, 1e-12, MEASURED)
+    flow = tangents[0].reshape(MEASURED, MEASURED).T
+    state = exact.propagate(q, exact.start(p, q), 40 * q.control_period, 1e-13).state
+    np.testing.assert_allclose(state.y[:4] / SIZES, begin[:4] / SIZES, atol=1e-7)
+    sizes = np.array([1e-2, 1.0, 0.1, 1.0, 80.0])
+    expected = np.empty((MEASURED, MEASURED))
+    for j in range(MEASURED):
+        ends = []
+        for side in (1, -1):
+            y = state.y.copy()
+            y[j] += side * 1e-6 * sizes[j]
+            moved = state._replace(y=y)
+            ends.append(exact.propagate(q, moved, 44 * q.control_period, 1e-13).state.y[:5])
+        expected[:, j] = (ends[0] - ends[1]) / (2e-6 * sizes[j])
+    # At the strobe bar and mole stick or slip as they do: what sticks has no freedom to start with.
+    free = [j for j in range(MEASURED) if not (j in (1, 2) and state.y[j] == 0)]
+    scaled = flow * sizes / sizes[:, None]
+    np.testing.assert_allclose(
+        scaled[:, free], (expected * sizes / sizes[:, None])[:, free], atol=2e-5
+    )
+    assert abs(scaled[:, free]).max() > 0.1
+
+
+def test_the_exponent_is_how_fast_neighbours_part():
+    """At 9 Hz, with the distance brought back after every control period."""
+    parted, tangent = np.zeros(400), np.zeros(400)
+    some = machines([Params(control_frequency=9.0)] * 2)
+    go(some, 100, 1e-10)
+    sizes = np.array([1e-2, 1.0, 0.1, 1.0, 80.0])
+    apart = np.array([1e-9, 0.0, 0.0, 0.0, 0.0])
+    flow = np.ones((2, MEASURED))
+    for period in range(400):
+        some.record[1] = some.record[0]
+        some.record[1, :5] += apart
+        limit = some.periods(np.arange(2)) + 1
+        some.run(np.arange(2), limit, 1e-12, False, flow)
+        flow[1] = flow[0]
+        tangent[period] = np.log(abs(flow[0]).max())
+        flow /= abs(flow).max()
+        apart = some.record[1, :5] - some.record[0, :5]
+        size = np.linalg.norm(apart / sizes)
+        parted[period] = np.log(size / 1e-7)
+        apart *= 1e-7 / size
+        # What sticks has nothing to be apart in.
+        apart[1:3] *= some.record[0, 1:3] != 0
+    exponents = np.array([parted[1:].mean(), tangent[1:].mean()]) * 9.0
+    assert exponents[0] > 2.5
+    assert exponents[0] == pytest.approx(exponents[1], abs=0.05)
+
+
+def test_a_row_that_cannot_end_is_stopped(monkeypatch):
+    monkeypatch.setattr("models.mole.response.BUDGET", 1000)
+    some = machines([Params()])
+    reached = some.run(np.array([0]), np.array([100]), 1e-8, False, np.empty((1, 0)))
+    assert len(reached) == 0
+    assert some.record[0, HALF] < 200

@@ -1,0 +1,74 @@
+"""Which rows settled on the same attractor, told from their outputs alone.
+
+Sorted by one output, the rows of two attractors are kept apart by a gap. Wherever there is one, in
+any output, the rows part, and the parts are looked at again until nothing parts any more. So rows
+that differ no more than their neighbours do stay together, however many there are in between: a
+branch of responses that changes with a parameter is one attractor.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+STANDARD_ERRORS = 4.0
+"""Of the difference between two values: so much is no gap."""
+
+
+class Compared(NamedTuple):
+    """One number of every row.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n,)
+        NaN agrees with NaN, infinity with infinity.
+    errors : ndarray, shape (n,)
+        Their standard errors, 0 where there are none.
+    tolerance : float
+        Relative to the largest finite magnitude among the values; 0: equal or not.
+    """
+
+    values: NDArray[np.float64]
+    errors: NDArray[np.float64]
+    tolerance: float
+
+
+def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
+    """Give the attractors of some rows numbers, the most frequent first.
+
+    Parameters
+    ----------
+    compared : sequence of Compared
+    rows : int
+
+    Returns
+    -------
+    ndarray of int32, shape (rows,)
+        Of equally frequent ones the one that comes first has the lower number.
+    """
+    labels, count = np.zeros(rows, np.int64), 0
+    while count < (count := len(np.unique(labels))):
+        for one in compared:
+            labels = _parted(labels, one)
+    _, first, place, frequency = np.unique(
+        labels, return_index=True, return_inverse=True, return_counts=True
+    )
+    rank = np.empty(len(first), np.int32)
+    rank[np.lexsort((first, -frequency))] = np.arange(len(first))
+    return rank[place]
+
+
+def _parted(labels: NDArray[np.int64], one: Compared) -> NDArray[np.int64]:
+    """Part each group of rows at the gaps of one output."""
+    size = np.abs(one.values[np.isfinite(one.values)]).max(initial=0.0)
+    order = np.lexsort((one.values, labels))
+    values, errors, groups = one.values[order], one.errors[order], labels[order]
+    here, there = values[:-1], values[1:]
+    slack = one.tolerance * size + STANDARD_ERRORS * np.hypot(errors[:-1], errors[1:])
+    with np.errstate(invalid="ignore"):
+        alike = (here == there) | (there - here <= slack) | (np.isnan(here) & np.isnan(there))
+    new = np.concatenate([[False], ~alike | (groups[:-1] != groups[1:])])[: len(labels)]
+    parted = np.empty_like(labels)
+    parted[order] = np.cumsum(new)
+    return parted
