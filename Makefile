@@ -36,6 +36,7 @@ notebook: $(NOTEBOOK)
 bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam
 	@$(BIN)/python -m benchmarks.vibrator
+	@$(BIN)/python -m benchmarks.mole
 
 clean:
 	rm -rf .venv

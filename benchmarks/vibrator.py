@@ -8,12 +8,12 @@ rows; everything on one core, in one run. Compilation is left out, and so is wha
 shooting need to set up.
 """
 
-import time
 from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from benchmarks.compare import Rival, clock, compare
 from benchmarks.shooting import rates, shoot
 from models.vibrator import MODEL, equations, exact, exact_orbit, lanes, theory
 from models.vibrator.machine import prepare
@@ -32,19 +32,7 @@ except ModuleNotFoundError as missing:
 
 ROWS, KNOWN, ONE_BY_ONE = 512, 16, 4  # in all; with a reference; timed where one row takes long
 DURATION = 5.0  # [s]
-REPEAT = 5
 STUDY = Path(__file__).parent.parent / "studies" / "vibrator-tolerances.toml"
-
-
-def clock(function, repeat=REPEAT):
-    """Return the result and the best time of some calls [s], after one that warms up."""
-    best = np.inf
-    result = function()
-    for _ in range(repeat):
-        began = time.perf_counter()
-        result = function()
-        best = min(best, time.perf_counter() - began)
-    return result, best
 
 
 def scattered(n):
@@ -99,48 +87,11 @@ def by_lanes(rows, steps):
     return state
 
 
-def cheapest(settings, error, goal):
-    """Return the first setting, from cheap to dear, with an error below the goal, and the error."""
-    for setting in settings:
-        reached = error(setting)
-        if reached <= goal:
-            return setting, reached
-    raise RuntimeError(f"no setting reaches {goal}")
-
-
-def compare(rivals, known, goal):
-    """Print the tools' settings, errors and times, and the ratios of times to the first tool's.
-
-    Parameters
-    ----------
-    rivals : dict of str to (function, settings, int)
-        ``function(rows, setting)`` returns the angles [rad]; from cheap to dear; rows to time.
-    known : ndarray, shape (k,)
-        Angles [rad] of the first rows.
-    goal : float
-        Largest error [rad].
-    """
-    print(f"  largest error of {len(known)} rows at most {goal:.0e} rad")
-    chosen = {
-        name: cheapest(
-            settings,
-            lambda setting, run=run: np.abs(run(len(known), setting) - known).max(),
-            goal,
-        )
-        for name, (run, settings, _) in rivals.items()
-    }
-    best = dict.fromkeys(rivals, np.inf)
-    for _ in range(REPEAT):  # by turns, so that a busy host is unfair to nobody
-        for name, (run, _, rows) in rivals.items():
-            setting, _ = chosen[name]
-            _, seconds = clock(lambda run=run, n=rows, s=setting: run(n, s), repeat=1)
-            best[name] = min(best[name], seconds / rows)
-    first = next(iter(best.values()))
-    for name, (setting, error) in chosen.items():
-        each = best[name]
-        print(
-            f"    {name:32s} {setting:9.3g} {error:9.1e} {each * 1e3:9.4f} ms {each / first:7.1f}"
-        )
+def beside(rivals, known, goal):
+    """Compare tools by the largest error of the angles [rad] of the first rows."""
+    compare(
+        rivals, lambda angles: np.abs(angles - known[: len(angles)]).max(), len(known), goal, " rad"
+    )
 
 
 def run_ups():
@@ -148,17 +99,17 @@ def run_ups():
     known = angle_of(by_scipy(KNOWN, 1e-12))
     tolerances = 10.0 ** -np.arange(2, 13, 0.5)
     rivals = {
-        "lanes, steps": (
+        "lanes, steps": Rival(
             lambda n, steps: angle_of(by_lanes(n, steps)),
             [round(150 * 1.05**k) for k in range(90)],
             ROWS,
         ),
-        "exact propagator, tolerance": (
+        "exact propagator, tolerance": Rival(
             lambda n, tolerance: angle_of(by_exact(n, tolerance)),
             tolerances,
             KNOWN,
         ),
-        "scipy DOP853, compiled, rtol": (
+        "scipy DOP853, compiled, rtol": Rival(
             lambda n, tolerance: angle_of(by_scipy(n, tolerance)),
             tolerances,
             ONE_BY_ONE,
@@ -174,9 +125,9 @@ def run_ups():
                 made[tolerance] = Taylor(SYSTEM, tolerance)
             return angle_of(made[tolerance].advance(START[:n], DURATION))
 
-        rivals["heyoka, batches of 8, tolerance"] = by_taylor, tolerances, ROWS
+        rivals["heyoka, batches of 8, tolerance"] = Rival(by_taylor, tolerances, ROWS)
     for goal in (1e-4, 1e-8):
-        compare(rivals, known, goal)
+        beside(rivals, known, goal)
 
 
 def steady_states():
@@ -204,10 +155,12 @@ def steady_states():
         return propose(Machines.prepared(p), steps).disphasing
 
     rivals = {
-        "lanes, steps a turn": (by_theory_and_newton, (24, 36, 48, 72, 96), ROWS),
-        "shooting, steps a turn": (by_shooting, [round(16 * 1.1**k) for k in range(60)], KNOWN),
+        "lanes, steps a turn": Rival(by_theory_and_newton, (24, 36, 48, 72, 96), ROWS),
+        "shooting, steps a turn": Rival(
+            by_shooting, [round(16 * 1.1**k) for k in range(60)], KNOWN
+        ),
     }
-    compare(rivals, known, 1e-8)
+    beside(rivals, known, 1e-8)
 
 
 def study():
