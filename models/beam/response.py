@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from models.beam.modal import Array
 from models.beam.parameters import REGIMES
+from models.numerics.batch_means import mean_and_error
 
 SEGMENT = 32  # periods between two looks; also the length of a batch
 LONGEST_PERIOD = 16
@@ -149,10 +150,4 @@ def _note_periodic(out: Response, rows: Any, period: Any, silent: Any, record: A
 
 
 def _note_aperiodic(out: Response, rows: Any, batches: Array) -> None:
-    kept = batches[rows, TRANSIENT:]
-    out.work[rows] = kept.mean(axis=1)
-    # Longer batches see slower changes: the largest of their errors is the one to believe.
-    for length in (1, 2, 4):
-        means = kept.reshape(len(rows), kept.shape[1] // length, length, 2).mean(axis=2)
-        error = means.std(axis=1, ddof=1) / np.sqrt(means.shape[1])
-        out.error[rows] = np.maximum(out.error[rows], error)
+    out.work[rows], out.error[rows] = mean_and_error(batches[rows, TRANSIENT:])

@@ -22,11 +22,11 @@ from models.mole.response import (
     Response,
     follow_other,
     follow_repeating,
-    mean_of,
     settle,
     settle_late,
 )
 from models.mole.system import mole
+from models.numerics.batch_means import mean_and_error
 from uq.contract import Status
 
 
@@ -104,6 +104,6 @@ def _outputs(p: Any, response: Response) -> dict[str, NDArray[Any]]:
 
 def _mean(parts: Any, time: Any, repeats: Any) -> tuple[Any, Any]:
     """Return the mean rate of something in batches, and its standard error."""
-    mean, error = mean_of(parts)
+    mean, error = mean_and_error(parts)
     error = np.where(repeats, 0.0, error)
     return mean * BATCHES / time, error * BATCHES / time

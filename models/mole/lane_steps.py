@@ -8,16 +8,17 @@ from models.mole import lane_block as at
 from models.mole.lane_block import GUARDS, INTEGRALS, LANES
 from models.mole.lane_modes import happen, mole_of, turn_relay
 from models.numerics.events import crossing, dip
-from models.numerics.jit import lean
+from models.numerics.jit import kernel
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
 _LOCATED = 1e-6  # of the longest step: what is left to an event, made up for to first order
 _LOST = 1e-9  # of the longest step: a guard that opens no wider does not open
+_DONE = 1 - 1e-12  # of half a control period: what is left is rounding
 _GRAZE = 0.05  # of a guard at the ends of a step: so low in between that a step must end there
-_LOW = 0.75
+_LOW = 0.75  # of a guard: what must fall away in a step for a low point to be worth a look
 
 
-@lean
+@kernel
 def next_step(lane, m, wish):
     """Choose the next step of a lane: as wished, within bounds, and to the switching if near."""
     h = min(wish, m[at.LONGEST * LANES + lane])
@@ -25,7 +26,7 @@ def next_step(lane, m, wish):
     m[at.STEP * LANES + lane] = rest if rest <= h * 1.000001 else h
 
 
-@lean
+@kernel
 def look(m, error):
     """Take the steps of all lanes that met nothing; mark the others."""
     for lane in range(LANES):
@@ -39,7 +40,7 @@ def look(m, error):
             fall = m[(at.START_RATE + g) * LANES + lane] * h
             crossed |= (fall < -_LOW * start) & (m[(at.END_RATE + g) * LANES + lane] > 0)
         half = m[at.HALF_PERIOD * LANES + lane]
-        good = (error[lane] <= 1.0) & (m[at.TARGET * LANES + lane] < 0) & (time + h < half)
+        good = (error[lane] <= 1.0) & (m[at.TARGET * LANES + lane] < 0) & (time + h < _DONE * half)
         taken = good & (not crossed)
         m[at.LOOK * LANES + lane] = 0.0 if taken else 1.0
         m[at.TRIALS * LANES + lane] += 1.0
@@ -64,7 +65,7 @@ def look(m, error):
             m[j] = m[e] * inverse if taken else m[j]
 
 
-@lean
+@kernel
 def _add_rest(lane, rest, m, y):
     """Count in the short time that a located step lacks of its event."""
     u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
@@ -78,7 +79,7 @@ def _add_rest(lane, rest, m, y):
     m[(at.SUM + at.ELECTRIC) * LANES + lane] += rest * electric
 
 
-@lean
+@kernel
 def conclude(lane, table, m, y, new, end, error, size, columns):
     """Deal with a lane whose step was not simply taken; tell if half a control period is over."""
     h, target = m[at.STEP * LANES + lane], int(m[at.TARGET * LANES + lane])
@@ -104,6 +105,7 @@ def conclude(lane, table, m, y, new, end, error, size, columns):
         elif d_0 < 0 and d_1 > 0 and g_0 > 0:
             here, lowest = dip(g_0, d_0, g_1, d_1)
             near = lowest < _GRAZE * min(g_0, g_1) and 1e-3 < here < 0.999
+            near = near and h > _LOCATED * longest
             if near and (which < 0 or here < place):
                 which, place = g, here
     met, rest = -1, 0.0
@@ -125,7 +127,6 @@ def conclude(lane, table, m, y, new, end, error, size, columns):
         y[j * LANES + lane] = new[j * LANES + lane]
     for j in range(INTEGRALS):
         m[(at.SUM + j) * LANES + lane] += m[(at.INTEGRAL + j) * LANES + lane]
-    ended = m[at.TIME * LANES + lane] + h >= m[at.HALF_PERIOD * LANES + lane]
     m[at.TIME * LANES + lane] += h
     factor = _SAFETY * error**-0.125 if error > 1e-9 else _GROW
     wish = max(m[at.WISH * LANES + lane], h * min(factor, _GROW))
@@ -144,6 +145,7 @@ def conclude(lane, table, m, y, new, end, error, size, columns):
             # Not quite there: the next step is to end there.
             m[at.TARGET * LANES + lane] = target
             wish = min(wish, rest)
+    ended = m[at.TIME * LANES + lane] >= _DONE * m[at.HALF_PERIOD * LANES + lane]
     if ended:
         turn_relay(mole_of(table, int(m[at.ROW * LANES + lane])), lane, m, y)
     next_step(lane, m, wish)

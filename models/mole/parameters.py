@@ -30,7 +30,13 @@ class Params(NamedTuple):
     ] = 2.94
     stop_gap: Annotated[
         float,
-        Parameter("G", "m", "displacement u at which the bar meets the stop", (-0.06, 0.06), PAPER),
+        Parameter(
+            "G",
+            "m",
+            "displacement u at which the bar meets the stop",
+            (-0.06, 0.06),
+            f"{PAPER}: given",
+        ),
     ] = -2e-3
     spring_stiffness: Annotated[
         float,
@@ -38,7 +44,13 @@ class Params(NamedTuple):
     ] = 200.0
     spring_rest: Annotated[
         float,
-        Parameter("X_0", "m", "displacement u at which the spring is slack", (-0.66, 0.66), PAPER),
+        Parameter(
+            "X_0",
+            "m",
+            "displacement u at which the spring is slack",
+            (-0.66, 0.66),
+            f"{PAPER}: given",
+        ),
     ] = -22e-3
     contact_stiffness: Annotated[
         float,
@@ -68,11 +80,19 @@ class Params(NamedTuple):
     ] = 0.1658
     inductance_coefficient: Annotated[
         float,
-        Parameter("A", "H m", "what the bar adds: the area below L - L_0", (8e-4, 0.75), PAPER),
+        Parameter(
+            "A", "H m", "what the bar adds: the area below L - L_0", (8e-4, 0.75), f"{PAPER}: given"
+        ),
     ] = 0.02494
     inductance_width: Annotated[
         float,
-        Parameter("sigma", "m", "how far from the middle the bar adds it", (1.6e-3, 1.45), PAPER),
+        Parameter(
+            "sigma",
+            "m",
+            "how far from the middle the bar adds it",
+            (1.6e-3, 1.45),
+            f"{PAPER}: given",
+        ),
     ] = 0.0483
     resistance: Annotated[
         float, Parameter("R", "ohm", "resistance of the coil", (0.9, 825.0), f"{PAPER}: given")
@@ -94,7 +114,7 @@ class Params(NamedTuple):
     ] = 50.0
     control_frequency: Annotated[
         float,
-        Parameter("F_ctr", "Hz", "switching cycles a second", (0.08, 400.0), PAPER),
+        Parameter("F_ctr", "Hz", "switching cycles a second", (0.08, 400.0), f"{PAPER}: given"),
     ] = 8.0
     supply_phase: Annotated[
         float,
@@ -107,11 +127,12 @@ class Params(NamedTuple):
         ),
     ] = 0.0
     initial_displacement: Annotated[
-        float, Parameter("u(0)", "m", "displacement u at the start", (-0.66, 0.66), PAPER)
+        float,
+        Parameter("u(0)", "m", "displacement u at the start", (-0.66, 0.66), f"{PAPER}: given"),
     ] = -0.022
     initial_velocity: Annotated[
         float,
-        Parameter("v(0)", "m s-1", "rate of u at the start", (-10.0, 10.0), PAPER),
+        Parameter("v(0)", "m s-1", "rate of u at the start", (-10.0, 10.0), f"{PAPER}: given"),
     ] = 0.0
 
 

@@ -30,6 +30,8 @@ from models.mole.lane_rows import (
     begin,
 )
 from models.mole.lanes import run
+from models.numerics.batch_means import mean_and_error
+from models.numerics.exponents import grown, log_multiplier
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -221,20 +223,13 @@ def _forget(machines: Machines, rows: Counts, longest: Counts, tolerance: float)
     limit = look.copy()
     while len(rows):
         reached = machines.run(rows, np.minimum(limit, longest), tolerance, False, tangents)
-        growth += _grown(tangents)
+        growth += grown(tangents)
         settled = (growth < _FORGOTTEN) | (limit >= longest)
         done.append(rows[reached[settled[reached]]])
         keep = reached[~settled[reached]]
         rows, longest, look, limit = rows[keep], longest[keep], look[keep], (limit + look)[keep]
         tangents, growth = tangents[keep], growth[keep]
     return np.concatenate(done)
-
-
-def _grown(tangents: Array) -> Array:
-    """Return the logarithm of the size of tangents, and bring them back to size 1."""
-    size = np.abs(tangents).max(axis=1)
-    tangents /= np.where(size > 0, size, 1.0)[:, None]
-    return np.log(np.where(size > 0, size, np.finfo(float).tiny))
 
 
 def settle_late(machines: Machines, rows: Counts, tolerance: float, known: Response) -> Counts:
@@ -255,7 +250,7 @@ def settle_late(machines: Machines, rows: Counts, tolerance: float, known: Respo
     ndarray of int
         Rows whose motion has come to repeat.
     """
-    mean, error = mean_of(known.growth[rows])
+    mean, error = mean_and_error(known.growth[rows])
     rows = rows[(machines.common[rows] > 0) & (mean < -SURE * error)]
     limit = machines.periods(rows) + np.ceil(LATEST * machines.control_frequency[rows]).astype(int)
     reached = machines.run(rows, limit, tolerance, True, np.empty((len(rows), 0)))
@@ -295,13 +290,11 @@ def follow_repeating(
         reached = machines.run(here, begun[places] + step * common[here], tolerance, False, flow)
         places, flow = places[reached], flow[reached]
         out.note(rows[places], 0, machines.record[rows[places]])
-        growth[places] += _grown(flow)
+        growth[places] += grown(flow)
         tangents[places] = flow
         ended = left[places] == step
         done, flow = places[ended], flow[ended].reshape(-1, MEASURED, MEASURED)
-        multipliers = np.abs(np.linalg.eigvals(flow)).max(axis=1, initial=0.0)
-        multipliers = np.maximum(multipliers, np.finfo(float).tiny)
-        out.growth[rows[done], 0] = growth[done] + np.log(multipliers)
+        out.growth[rows[done], 0] = growth[done] + log_multiplier(flow)
         control = left[done] * common[rows[done]]
         out.time[rows[done]] = control / machines.control_frequency[rows[done]]
         out.period[rows[done]] = periods[done]
@@ -327,10 +320,10 @@ def follow_other(
     limit = machines.periods(rows) + _WARM_UP
     reached = machines.run(rows, limit, tolerance, False, tangents)
     rows, tangents = rows[reached], tangents[reached]
-    _grown(tangents)
+    grown(tangents)
     for periods in (duration,) if duration else APERIODIC:
         places = _follow_batches(machines, rows, -(-periods // BATCHES), tangents, tolerance, out)
-        mean, error = mean_of(out.growth[rows[places]])
+        mean, error = mean_and_error(out.growth[rows[places]])
         places = places[np.abs(mean) <= SURE * error]
         rows, tangents = rows[places], tangents[places]
 
@@ -348,15 +341,10 @@ def _follow_batches(
         reached = machines.run(rows[places], limit[places], tolerance, False, flow)
         places, flow = places[reached], flow[reached]
         some.note(places, batch, machines.record[rows[places]])
-        some.growth[places, batch] = _grown(flow)
+        some.growth[places, batch] = grown(flow)
         tangents[places] = flow
     some.time[places] = BATCHES * each / machines.control_frequency[rows[places]]
     # Who did not get so far keeps what a shorter run has told.
     for mine, new in zip(out, some, strict=True):
         mine[rows[places]] = new[places]
     return places
-
-
-def mean_of(parts: Array) -> tuple[Array, Array]:
-    """Return the mean of batches, shape (n, BATCHES), and its standard error."""
-    return parts.mean(axis=1), parts.std(axis=1, ddof=1) / np.sqrt(BATCHES)

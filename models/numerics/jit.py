@@ -97,29 +97,18 @@ def kernel(function: Function) -> Function:
     return _compiled(function, "never")
 
 
-def lean(function: Function) -> Function:
-    """Compile a kernel that allocates nothing: nobody then counts who holds its arrays.
-
-    Counting is atomic, and takes a third of the time of a kernel of many short calls. A kernel that
-    allocates does not compile this way.
-    """
-    return _compiled(function, "never", _nrt=False)
-
-
 def inlined(function: Function) -> Function:
     """Compile straight-line algebra into every kernel that calls it, where loops are vectorised."""
     return _compiled(function, "always")
 
 
-def _compiled(function: Function, inline: Literal["never", "always"], **more: bool) -> Function:
-    njit: Any = numba.njit
+def _compiled(function: Function, inline: Literal["never", "always"]) -> Function:
     with _our_cache_folder():
-        compiled: Any = njit(
+        compiled: Any = numba.njit(
             cache=True,
             nogil=True,
             error_model="numpy",
             fastmath={"contract", "nsz"},
             inline=inline,
-            **more,
         )(function)
     return compiled

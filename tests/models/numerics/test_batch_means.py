@@ -1,0 +1,33 @@
+"""Errors of time means, where neighbouring batches know each other."""
+
+import numpy as np
+import pytest
+
+from models.numerics.batch_means import mean_and_error
+
+
+def series(rng, memory, rows, count):
+    """Return first-order autoregressive rows of mean 3, variance 1."""
+    noise = rng.normal(size=(rows, count)) * np.sqrt(1 - memory**2)
+    out = np.empty((rows, count))
+    out[:, 0] = rng.normal(size=rows)
+    for i in range(1, count):
+        out[:, i] = memory * out[:, i - 1] + noise[:, i]
+    return 3 + out
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.9])
+def test_errors_tell_how_far_means_are_off(memory):
+    batches = series(np.random.default_rng(3), memory, 2000, 400).reshape(2000, 20, 20).mean(axis=2)
+    mean, error = mean_and_error(batches)
+    within = (np.abs(mean - 3) < 2.1 * error).mean()
+    assert 0.93 < within < 0.99
+
+
+def test_every_element_is_on_its_own():
+    batches = np.random.default_rng(4).normal(size=(3, 8, 2))
+    mean, error = mean_and_error(batches)
+    assert mean.shape == error.shape == (3, 2)
+    for i, j in np.ndindex(3, 2):
+        alone = mean_and_error(batches[i : i + 1, :, j])
+        np.testing.assert_allclose([mean[i, j], error[i, j]], np.concatenate(alone))
