@@ -11,12 +11,12 @@ from models.mole.friction import bar_hold, decide, mole_hold, response
 from models.mole.lane_block import BAR, LANES, MOLE, TOUCH
 from models.mole.parameters import PHYSICAL
 from models.mole.system import Mole
-from models.numerics.jit import kernel
+from models.numerics.jit import lean
 
 _LONGEST = 0.6  # step times the fastest rate
 
 
-@kernel
+@lean
 def mole_of(table, row):
     """Return the mole of one row of a table, shape (n, 20)."""
     return Mole(
@@ -43,7 +43,7 @@ def mole_of(table, row):
     )
 
 
-@kernel
+@lean
 def force_on_bar(q, touching, u, v, i):
     """Return F [N], the force on the bar without friction, its inductance [H] and L' [H/m]."""
     added = q.bar_inductance * math.exp(-q.sharpness * u * u)
@@ -54,7 +54,7 @@ def force_on_bar(q, touching, u, v, i):
     return force, added, rise
 
 
-@kernel
+@lean
 def enter(q, lane, m, y):
     """Set what depends on the mode of a lane: constants, longest step, guards at the start."""
     bar, mole = m[at.BAR_MODE * LANES + lane], m[at.MOLE_MODE * LANES + lane]
@@ -99,7 +99,7 @@ def enter(q, lane, m, y):
     _start(lane, m, 1, x, rate_x, force, change)
 
 
-@kernel
+@lean
 def _start(lane, m, which, speed, rate, force, change):
     slip = m[(at.BAR_SLIP + which) * LANES + lane]
     hold = m[(at.BAR_HOLD + which) * LANES + lane]
@@ -110,7 +110,7 @@ def _start(lane, m, which, speed, rate, force, change):
     m[(at.START_RATE + BAR + which) * LANES + lane] = slip * rate - side * change
 
 
-@kernel
+@lean
 def judge(m, y, k):
     """Set guards and, times the step, their rates at the end of a step."""
     for lane in range(LANES):
@@ -141,7 +141,7 @@ def judge(m, y, k):
         m[(at.END_RATE + MOLE) * LANES + lane] = slip * kx - side * change
 
 
-@kernel
+@lean
 def happen(which, q, lane, m, y, columns):
     """Change the mode of a lane whose guard `which` has come to zero."""
     bar, mole = m[at.BAR_MODE * LANES + lane], m[at.MOLE_MODE * LANES + lane]
@@ -180,7 +180,7 @@ def happen(which, q, lane, m, y, columns):
         m[(at.START + which) * LANES + lane] = 0.0
 
 
-@kernel
+@lean
 def _saltate(lane, y, which, columns, force, before, after):
     """Take tangents through the end of a slip: they meet it at different times."""
     kick_v = (after.a - before.a) * force + after.b - before.b
@@ -194,7 +194,7 @@ def _saltate(lane, y, which, columns, force, before, after):
         y[z + at.X * LANES] -= kick_x * late
 
 
-@kernel
+@lean
 def turn_relay(q, lane, m, y):
     """Begin the next half of a control period."""
     half = m[at.HALF * LANES + lane] + 1
@@ -212,7 +212,7 @@ def turn_relay(q, lane, m, y):
     m[(at.START + MOLE) * LANES + lane] *= 0.0 if mole == 0 else 1.0
 
 
-@kernel
+@lean
 def set_supply(q, lane, m, y):
     """Set clock and supply at the beginning of half a control period."""
     half = m[at.HALF * LANES + lane]

@@ -42,7 +42,7 @@ from models.mole.lane_block import (
     X,
 )
 from models.numerics.blocks import LANES
-from models.numerics.jit import kernel
+from models.numerics.jit import lean
 
 
 def slopes(columns: int) -> Callable[..., None]:
@@ -60,7 +60,7 @@ def slopes(columns: int) -> Callable[..., None]:
         those of the integrals to them.
     """
 
-    @kernel
+    @lean
     def _slopes(m, y, k, weight):
         for lane in range(LANES):
             h = m[STEP * LANES + lane]

@@ -11,7 +11,7 @@ from models.mole.lane_modes import enter, force_on_bar, mole_of, set_supply
 from models.mole.lane_steps import next_step
 from models.mole.parameters import PHYSICAL
 from models.mole.system import Mole
-from models.numerics.jit import kernel
+from models.numerics.jit import kernel, lean
 
 # What is kept of a row: the state, which tells all that is to come, and what a run has seen.
 STATE = 9
@@ -97,7 +97,7 @@ def begin(table, displacement, velocity, record):
         r[TOUCHING] = touching
 
 
-@kernel
+@lean
 def load(lane, row, task, m, y, share, columns):
     """Give a lane a row to work on."""
     q, r = mole_of(task.table, row), task.record[row]
@@ -135,7 +135,7 @@ def load(lane, row, task, m, y, share, columns):
     next_step(lane, m, np.inf)
 
 
-@kernel
+@lean
 def unload(lane, task, m, y, columns, outcome):
     """Note how a row stands."""
     row = int(m[at.ROW * LANES + lane])
@@ -158,7 +158,7 @@ def unload(lane, task, m, y, columns, outcome):
     r[OUTCOME] = outcome
 
 
-@kernel
+@lean
 def idle(lane, m):
     """Let a lane stand still."""
     m[at.ROW * LANES + lane] = -1
@@ -166,7 +166,7 @@ def idle(lane, m):
     m[at.HALF_PERIOD * LANES + lane] = np.inf
 
 
-@kernel
+@lean
 def _repetition(lane, m, y, ring):
     """Return after how many common periods the motion repeats, 0 if it does not."""
     u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
@@ -187,14 +187,14 @@ def _repetition(lane, m, y, ring):
     return found
 
 
-@kernel
+@lean
 def _distance(old, u, v, x):
     return max(
         abs(u - old[0]) / SCALES[0], abs(v - old[1]) / SCALES[1], abs(x - old[2]) / SCALES[2]
     )
 
 
-@kernel
+@lean
 def strobe(lane, task, m, y, ring):
     """Look at a lane at the beginning of half a control period; return its outcome."""
     row, half = int(m[at.ROW * LANES + lane]), int(m[at.HALF * LANES + lane])

@@ -8,7 +8,7 @@ from models.mole import lane_block as at
 from models.mole.lane_block import GUARDS, INTEGRALS, LANES
 from models.mole.lane_modes import happen, mole_of, turn_relay
 from models.numerics.events import crossing, dip
-from models.numerics.jit import kernel
+from models.numerics.jit import lean
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
 _LOCATED = 1e-6  # of the longest step: what is left to an event, made up for to first order
@@ -18,7 +18,7 @@ _GRAZE = 0.05  # of a guard at the ends of a step: so low in between that a step
 _LOW = 0.75  # of a guard: what must fall away in a step for a low point to be worth a look
 
 
-@kernel
+@lean
 def next_step(lane, m, wish):
     """Choose the next step of a lane: as wished, within bounds, and to the switching if near."""
     h = min(wish, m[at.LONGEST * LANES + lane])
@@ -26,7 +26,7 @@ def next_step(lane, m, wish):
     m[at.STEP * LANES + lane] = rest if rest <= h * 1.000001 else h
 
 
-@kernel
+@lean
 def look(m, error):
     """Take the steps of all lanes that met nothing; mark the others."""
     for lane in range(LANES):
@@ -65,7 +65,7 @@ def look(m, error):
             m[j] = m[e] * inverse if taken else m[j]
 
 
-@kernel
+@lean
 def _add_rest(lane, rest, m, y):
     """Count in the short time that a located step lacks of its event."""
     u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
@@ -79,7 +79,7 @@ def _add_rest(lane, rest, m, y):
     m[(at.SUM + at.ELECTRIC) * LANES + lane] += rest * electric
 
 
-@kernel
+@lean
 def conclude(lane, table, m, y, new, end, error, size, columns):
     """Deal with a lane whose step was not simply taken; tell if half a control period is over."""
     h, target = m[at.STEP * LANES + lane], int(m[at.TARGET * LANES + lane])

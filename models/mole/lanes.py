@@ -15,7 +15,7 @@ from models.mole.lane_rates import slopes
 from models.mole.lane_rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, strobe, unload
 from models.mole.lane_steps import conclude, look
 from models.numerics import dop8
-from models.numerics.jit import kernel
+from models.numerics.jit import kernel, lean
 
 _SHORTEST = 1e-15  # s
 
@@ -40,7 +40,7 @@ def propagator(columns: int) -> Callable[..., None]:
     first = dop8.layout(size).slopes
     whole = size * LANES
 
-    @kernel
+    @lean
     def keep(m, y, new):
         """Take over the new state of the lanes whose step was taken."""
         for q in range(size):
@@ -53,7 +53,7 @@ def propagator(columns: int) -> Callable[..., None]:
                 part = part if m[at.LOOK * LANES + lane] == 0.0 else 0.0
                 m[(at.SUM + q) * LANES + lane] += part
 
-    @kernel
+    @lean
     def propagate(task, block):
         # What is taken out of a tuple within a loop is counted in and out again each time.
         w, y, new, end, m, share, error, ring = block

@@ -11,7 +11,7 @@ from typing import Any
 from scipy.integrate._ivp import dop853_coefficients as tableau
 
 from models.numerics.blocks import LANES
-from models.numerics.jit import kernel
+from models.numerics.jit import lean
 from models.numerics.tsit5 import Layout
 
 STAGES = 12
@@ -56,7 +56,7 @@ def combiner(quantities: int) -> Callable[[int, Any], None]:
     n = quantities * LANES
     k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11, k12 = (k + i * n for i in range(STAGES))
 
-    @kernel
+    @lean
     def combine(stage, w):
         if stage == 1:
             for j in range(n):
@@ -143,7 +143,7 @@ def estimator(quantities: int, measured: int) -> Callable[[Any, Any, Any], None]
     watched = measured * LANES
     third, fifth = LANES, LANES + watched
 
-    @kernel
+    @lean
     def estimate(w, share, error):
         for j in range(watched):
             e = _T1 * w[k1 + j] + _T6 * w[k6 + j] + _T7 * w[k7 + j] + _T8 * w[k8 + j]

@@ -6,13 +6,13 @@ there is exact again. Lengths are in units of the step.
 
 import math
 
-from models.numerics.jit import kernel
+from models.numerics.jit import lean
 
 _ITERATIONS = 40
 _CLOSE = 1e-9
 
 
-@kernel
+@lean
 def crossing(g_0, d_0, g_1, d_1):
     """Return where in (0, 1) the cubic falls through zero, for g_0 > 0 > g_1.
 
@@ -44,7 +44,7 @@ def crossing(g_0, d_0, g_1, d_1):
     return at
 
 
-@kernel
+@lean
 def dip(g_0, d_0, g_1, d_1):
     """Return where in [0, 1] the cubic is lowest, and its value there, for d_0 < 0 < d_1.
 

@@ -6,7 +6,9 @@ into would leave stale code. Here the cache folder is named by a hash of every s
 """
 
 import hashlib
+import itertools
 import os
+import secrets
 import sys
 import time
 from collections.abc import Callable
@@ -42,6 +44,20 @@ def _ask_for_full_width_vectors() -> None:
 _ask_for_full_width_vectors()
 
 import numba  # noqa: E402  (reads the environment set above)
+from numba.core.bytecode import FunctionIdentity  # noqa: E402
+
+
+def _name_functions_apart() -> None:
+    """Let no two processes give two functions one name.
+
+    numba numbers the functions it compiles, from 1 in every process, and tells those of one factory
+    apart by that number alone. A process that loads one of them from the cache and compiles another
+    under the same number calls the wrong one, without a word: a known fault of numba.
+    """
+    FunctionIdentity._unique_ids = itertools.count(secrets.randbits(64) << 32)
+
+
+_name_functions_apart()
 
 
 def _source_hash() -> str:
@@ -97,18 +113,29 @@ def kernel(function: Function) -> Function:
     return _compiled(function, "never")
 
 
+def lean(function: Function) -> Function:
+    """Compile a kernel that allocates nothing: nobody then counts who holds its arrays.
+
+    Counting is atomic, and takes a third of the time of kernels that make many short calls. What
+    Python calls is a `kernel`; this is for what it calls in turn.
+    """
+    return _compiled(function, "never", _nrt=False)
+
+
 def inlined(function: Function) -> Function:
     """Compile straight-line algebra into every kernel that calls it, where loops are vectorised."""
     return _compiled(function, "always")
 
 
-def _compiled(function: Function, inline: Literal["never", "always"]) -> Function:
+def _compiled(function: Function, inline: Literal["never", "always"], **more: bool) -> Function:
+    njit: Any = numba.njit
     with _our_cache_folder():
-        compiled: Any = numba.njit(
+        compiled: Any = njit(
             cache=True,
             nogil=True,
             error_model="numpy",
             fastmath={"contract", "nsz"},
             inline=inline,
+            **more,
         )(function)
     return compiled
