@@ -14,7 +14,6 @@ from models.mole.system import Mole
 from models.numerics.jit import kernel, lean
 
 # What is kept of a row: the state, which tells all that is to come, and what a run has seen.
-STATE = 9
 (
     U,
     V,
