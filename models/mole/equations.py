@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from models.mole.friction import Hold, Response, bar_hold, mole_hold, response
 from models.mole.system import Mole
-from models.numerics.jit import kernel
+from models.numerics.jit import inlined, kernel
 
 DISPLACEMENT, VELOCITY, MOLE_VELOCITY, CURRENT, VOLTAGE, MOLE_DISPLACEMENT = range(6)
 """u [m], v, x [m s-1], i [A], p [V], w [m]: the first part of a state, of which w drives nothing.
@@ -24,6 +24,8 @@ IMPACT_WORK, ELECTRICAL_WORK, MAGNETIC_WORK, FRICTION_LOSS, VISCOUS_LOSS = range
 """Work of the contact force on the mole, of the supply but for what coil and capacitor store, and
 of the magnetic force on the bar; heat from dry friction and from viscous damping."""
 SIZE = 11
+
+_FAR = 8.0  # widths of the coil, from where on the bar adds 1e-14 of its inductance and less
 
 
 class Coil(NamedTuple):
@@ -93,6 +95,22 @@ def coil(q, u):
     slope = -2 * q.sharpness * u * bar
     curvature = -2 * q.sharpness * (bar + u * slope)
     return Coil(q.coil_inductance + bar, slope, curvature)
+
+
+@inlined
+def reach(u, v, width):
+    """Return the longest step [s] in which a bar cannot leap over the coil unnoticed.
+
+    Parameters
+    ----------
+    u, v : float
+        [m], [m s-1]
+    width : float
+        Half of sigma: the standard deviation of the bell that is L - L0 [m].
+    """
+    room = abs(u) - _FAR * width
+    room = room if room > width else width
+    return room / abs(v)
 
 
 @kernel

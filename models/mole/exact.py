@@ -115,7 +115,12 @@ def _guards(t, y, mode, guard):
         guard[_MOLE] = _margin(mode.mole_hold, equations.force(mode.q, mode.contact, u, v, i))
 
 
-_integrate = integrator(equations.rates, _guards, 3, _LOOKS)
+@kernel
+def _longest(t, y, mode):
+    return equations.reach(y[0], y[1], 1 / math.sqrt(2 * mode.q.sharpness))
+
+
+_integrate = integrator(equations.rates, _guards, 3, _LOOKS, _longest)
 
 
 @kernel

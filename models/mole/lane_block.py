@@ -52,7 +52,10 @@ START, START_RATE, END, END_RATE = (37 + i * GUARDS for i in range(4))
 # Mode, clock, bookkeeping.
 ROW, BAR_MODE, MOLE_MODE, TOUCHING, HALF, TARGET, CONTACTS, ENTRIES = range(49, 57)
 WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(57, 65)
-ROWS = 65
+
+# Of the coil: what the bar adds in its middle, its width, and how long a step may be near it.
+ADDED_MOST, WIDTH, REACH = range(65, 68)
+ROWS = 68
 
 LONGEST_PERIOD = 64
 """Common periods among which a repetition is looked for."""

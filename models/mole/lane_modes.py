@@ -7,6 +7,7 @@ an interface along its direction, or the friction limit less the force that stic
 import math
 
 from models.mole import lane_block as at
+from models.mole.equations import reach
 from models.mole.friction import bar_hold, decide, mole_hold, response
 from models.mole.lane_block import BAR, LANES, MOLE, TOUCH
 from models.mole.parameters import PHYSICAL
@@ -92,6 +93,7 @@ def enter(q, lane, m, y):
     current = (p - (q.resistance + rise * v) * i) / (q.coil_inductance + added)
     rate_v, rate_x = mode.a * force + mode.b, mode.d * force + mode.e
     change = i * current * rise + (0.5 * i * i * bend - stiffness) * v - q.damping * rate_v
+    m[at.REACH * LANES + lane] = reach(u, v, m[at.WIDTH * LANES + lane])
     open_ = m[at.OPEN * LANES + lane]
     m[(at.START + TOUCH) * LANES + lane] = open_ * (q.stop_gap - u)
     m[(at.START_RATE + TOUCH) * LANES + lane] = -open_ * v
@@ -124,6 +126,7 @@ def judge(m, y, k):
         force = 0.5 * i * i * rise + m[at.FORCE * LANES + lane] - stiffness * u - damping * v
         change = i * k[at.CURRENT * LANES + lane] * rise - damping * kv
         change += (0.5 * i * i * bend - stiffness) * v * m[at.STEP * LANES + lane]
+        m[at.REACH * LANES + lane] = reach(u, v, m[at.WIDTH * LANES + lane])
         open_ = m[at.OPEN * LANES + lane]
         m[(at.END + TOUCH) * LANES + lane] = open_ * (m[at.GAP * LANES + lane] - u)
         m[(at.END_RATE + TOUCH) * LANES + lane] = -open_ * v * m[at.STEP * LANES + lane]

@@ -3,13 +3,16 @@
 Within a mode v' = a F + b and x' = d F + e, see `models.mole.friction`; contact and relay are
 numbers, too, so that every lane does the same. Two helpers make the equations polynomial but for
 one division: the bar's share of the inductance, and sine and cosine of the supply, are integrated
-along and set anew at the start of each step.
+along. The first, which far from the coil is nothing, is set anew at the start of each step; the
+others as often as the relay switches.
 """
 
+import math
 from collections.abc import Callable
 
 from models.mole.lane_block import (
     ADDED,
+    ADDED_MOST,
     COIL,
     CONTACT,
     COSINE,
@@ -43,6 +46,15 @@ from models.mole.lane_block import (
 )
 from models.numerics.blocks import LANES
 from models.numerics.jit import lean
+
+
+@lean
+def renew(m, y):
+    """Set the bar's share of the inductance."""
+    for lane in range(LANES):
+        u = y[U * LANES + lane]
+        share = math.exp(0.5 * m[SLOPE * LANES + lane] * u * u)
+        y[ADDED * LANES + lane] = m[ADDED_MOST * LANES + lane] * share
 
 
 def slopes(columns: int) -> Callable[..., None]:

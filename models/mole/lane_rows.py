@@ -1,5 +1,6 @@
 """Rows of a study in the lanes: taken in, looked at once in a control period, given back."""
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -115,6 +116,8 @@ def load(lane, row, task, m, y, share, columns):
         m[(at.SUM + j) * LANES + lane] = 0.0
     m[at.DAMPING * LANES + lane] = q.damping
     m[at.SLOPE * LANES + lane] = -2 * q.sharpness
+    m[at.ADDED_MOST * LANES + lane] = q.bar_inductance
+    m[at.WIDTH * LANES + lane] = 1 / math.sqrt(2 * q.sharpness)
     m[at.COIL * LANES + lane] = q.coil_inductance
     m[at.RESISTANCE * LANES + lane] = q.resistance
     m[at.ELASTANCE * LANES + lane] = q.elastance

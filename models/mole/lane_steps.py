@@ -21,7 +21,7 @@ _LOW = 0.75  # of a guard: what must fall away in a step for a low point to be w
 @lean
 def next_step(lane, m, wish):
     """Choose the next step of a lane: as wished, within bounds, and to the switching if near."""
-    h = min(wish, m[at.LONGEST * LANES + lane])
+    h = min(wish, m[at.LONGEST * LANES + lane], m[at.REACH * LANES + lane])
     rest = m[at.HALF_PERIOD * LANES + lane] - m[at.TIME * LANES + lane]
     m[at.STEP * LANES + lane] = rest if rest <= h * 1.000001 else h
 
@@ -54,6 +54,8 @@ def look(m, error):
         m[at.WISH * LANES + lane] = wish
         longest = m[at.LONGEST * LANES + lane]
         wish = wish if wish < longest else longest
+        reach = m[at.REACH * LANES + lane]
+        wish = wish if wish < reach else reach
         rest = half - (time + step)
         wish = rest if rest <= wish * 1.000001 else wish
         m[at.STEP * LANES + lane] = wish if taken else h

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from models.mole import lane_block as at
 from models.mole.lane_block import INTEGRALS, LANES, MEASURED, Block, quantities
 from models.mole.lane_modes import judge
-from models.mole.lane_rates import slopes
+from models.mole.lane_rates import renew, slopes
 from models.mole.lane_rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, strobe, unload
 from models.mole.lane_steps import conclude, look
 from models.numerics import dop8
@@ -69,6 +69,7 @@ def propagator(columns: int) -> Callable[..., None]:
         while running > 0:
             for j in range(INTEGRALS * LANES):
                 m[at.INTEGRAL * LANES + j] = 0.0
+            renew(m, y)
             for stage in range(1, dop8.STAGES + 1):
                 k = w[first + (stage - 1) * whole : first + stage * whole]
                 rates(m, y if stage == 1 else new, k, dop8.WEIGHTS[stage - 1])

@@ -64,11 +64,17 @@ def _no_guards(t, y, p, guard):
     pass
 
 
+@kernel
+def _of_any_length(t, y, p):
+    return np.inf
+
+
 def integrator(
     rhs: Callable[..., None],
     guards: Callable[..., None] = _no_guards,
     guard_count: int = 0,
     looks: int = 4,
+    longest: Callable[..., float] = _of_any_length,
 ) -> Callable[..., Outcome]:
     """Compile the method for one system.
 
@@ -83,6 +89,8 @@ def integrator(
     looks : int
         Instants in each step at which the guards are looked at. A guard that is negative between
         two looks only, goes unseen.
+    longest : kernel
+        ``longest(t, y, p)`` returns the longest step to be tried from there.
 
     Returns
     -------
@@ -115,8 +123,8 @@ def integrator(
             d2 += ((k[1, i] - k[0, i]) / scale) ** 2
         d2 = math.sqrt(d2 / len(y)) / h
         steepest = max(d1, d2)
-        longest = max(1e-6, 1e-3 * h) if steepest <= 1e-15 else (0.01 / steepest) ** 0.125
-        return min(100 * h, longest)
+        second = max(1e-6, 1e-3 * h) if steepest <= 1e-15 else (0.01 / steepest) ** 0.125
+        return min(100 * h, second)
 
     @kernel
     def stages(first, last, t, h, y, p, k, trial):
@@ -240,6 +248,7 @@ def integrator(
             if t >= end:
                 status = REACHED_END
                 break
+            step = min(step, longest(t, y, p))
             shortest = 10 * np.spacing(abs(t))
             if not step > shortest:
                 status = STUCK

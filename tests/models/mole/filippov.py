@@ -78,8 +78,11 @@ class Machine:
         return Slip(s_1, s_2, contact)
 
 
-def follow(p, formulation, end, times):
-    """Return states (k, 6) at ascending times, and the number of contacts begun."""
+def follow(p, formulation, end, times, longest=5e-4):
+    """Return states (k, 6) at ascending times, and the number of contacts begun.
+
+    No step is longer than `longest` [s].
+    """
     m = Machine(p, formulation)
     y = np.zeros(6)
     y[:2] = p.initial_displacement, p.initial_velocity
@@ -114,7 +117,7 @@ def follow(p, formulation, end, times):
             args=(slip, switched % 2),
             rtol=1e-12,
             atol=1e-13,
-            max_step=5e-4,
+            max_step=longest,
             dense_output=True,
         )
         here = (times >= t) & (times <= done.t[-1])

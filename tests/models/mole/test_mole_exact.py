@@ -47,6 +47,27 @@ def test_it_moves_as_by_scipy(formulation, p):
     assert 0 < still[0] < 0.1 < still[1] < 0.9  # what sticks is at rest to the bit
 
 
+def test_a_bar_does_not_leap_over_a_narrow_coil():
+    """A slow circuit asks for steps in which a fast bar passes through the coil."""
+    p = Params(
+        bar_mass=0.05,
+        stop_gap=0.06,
+        spring_stiffness=6e3,
+        spring_rest=-0.2,
+        coil_inductance=2.0,
+        inductance_coefficient=0.02,
+        inductance_width=2e-3,
+        capacitance=9e-4,
+        supply_frequency=2.0,
+        initial_displacement=-0.6,
+    )
+    times = np.linspace(0, 0.02, 50)
+    expected, _ = filippov.follow(p, "physical", 0.02, times, longest=5e-6)
+    motion = exact.propagate(*begun(p), 0.02, 1e-12, times)
+    assert motion.lowest < -0.1 < 0.06 < motion.highest
+    np.testing.assert_allclose(motion.samples[:, :6] / SIZES, expected / SIZES, rtol=0, atol=2e-9)
+
+
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("periods", [(7.0, 7), (8.0, 4)])
 def test_on_a_periodic_orbit_the_magnet_pays_for_friction(formulation, periods):

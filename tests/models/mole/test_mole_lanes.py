@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from models.mole import equations, exact
+from models.mole import MODEL, equations, exact
 from models.mole.lane_block import MEASURED
 from models.mole.lane_rows import (
     CONTACTS,
@@ -73,6 +73,29 @@ def test_it_moves_as_the_exact_propagator(formulation, frequency):
     assert record[0, ELECTRIC] == pytest.approx(y[equations.ELECTRICAL_WORK], abs=1e-5)
     assert record[0, LOW] == pytest.approx(motion.lowest, abs=1e-10)
     assert record[0, HIGH] == pytest.approx(motion.highest, abs=1e-10)
+
+
+def test_moles_anywhere_within_the_bounds_move_as_the_exact_propagator():
+    """Bars flung far and fast, every other one through a narrow coil."""
+    bounds = [MODEL.parameter(name).bounds for name in MODEL.parameter_names]
+    low, high = np.transpose(bounds)
+    rows = np.random.default_rng(5).uniform(low, high, (120, len(low)))
+    rows[::2, Params._fields.index("inductance_width")] *= 0.01
+    rows[:, Params._fields.index("control_frequency")] += 5.0
+    some = machines(rows)
+    periods = np.ceil(0.2 * rows[:, Params._fields.index("control_frequency")]).astype(int)
+    record, _ = go(some, periods, 1e-10)
+    far = []
+    for row, count, got in zip(rows, periods, record, strict=True):
+        p = Params._make(row)
+        q = mole(p, "physical")
+        motion = exact.propagate(q, exact.start(p, q), count * q.control_period, 1e-12)
+        length = motion.highest - motion.lowest + 0.01
+        sizes = np.array([length, length * 10, length * 10, p.supply_voltage / p.resistance])
+        np.testing.assert_allclose(got[:4] / sizes, motion.state.y[:4] / sizes, rtol=0, atol=1e-7)
+        assert got[CONTACTS] == motion.contacts
+        far.append(length)
+    assert np.median(far) > 1
 
 
 def test_rows_do_not_see_their_neighbours():

@@ -38,6 +38,17 @@ def _within(t, y, p, guard):
     guard[0], guard[1] = p[2] - abs(y[0]), y[0]
 
 
+@kernel
+def _pulse_rates(t, y, p, dy):
+    dy[0] = math.exp(-(((t - 500) / p) ** 2))
+
+
+@kernel
+def _near_the_pulse(t, y, p):
+    return max(500 - t - 6 * p, p)
+
+
+_integrate_pulse = integrator(_pulse_rates, longest=_near_the_pulse)
 _integrate_cubic = integrator(_cubic_rates)
 _integrate_spring = integrator(_spring_rates, _within, 2)
 
@@ -63,6 +74,14 @@ def bounces(y, restitution, count, tolerance, out):
         t, step = ended.time, ended.step
         y[0], y[1] = 0.0, -restitution * y[1]
         out[i] = t
+
+
+@kernel
+def pulse(y, width, tolerance, times, samples):
+    absolute = np.full(1, tolerance)
+    return _integrate_pulse(
+        0.0, 500 + 6 * width, y, 0.0, width, tolerance, absolute, 1000, times, samples
+    )
 
 
 def one_step(matrix, y, h, times=NEVER):
@@ -254,3 +273,11 @@ def test_scipy_agrees_on_a_guarded_flight():
     ended = spring(0.0, y, 0.0, (0.3, 1.0, 1e9), 1e-13, NEVER, np.empty((0, 2)))
     np.testing.assert_allclose(ended.time, solution.t[-1], rtol=0, atol=1e-12)
     np.testing.assert_allclose(y, solution.y[:, -1], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("width", [1e-3, 1.0])
+def test_steps_no_longer_than_the_system_wants_miss_no_pulse(width):
+    y = np.zeros(1)
+    ended = pulse(y, width, 1e-10, NEVER, np.empty((0, 1)))
+    assert ended.status == REACHED_END
+    np.testing.assert_allclose(y, np.sqrt(np.pi) * width, rtol=1e-8)
