@@ -1,0 +1,213 @@
+"""Beams prepared for the fast propagator: modes as recurrences, and the size of the step."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.modal import Array, Beams, steady_response
+from models.beam.parameters import Settings
+from models.numerics.jit import kernel
+
+LADDER = tuple(base << k for k in range(8) for base in (64, 96))
+COMPLIANCE = 0.01
+UNSTABLE = 0.03  # compliance from which on the corrections below may feed themselves
+
+
+class System(NamedTuple):
+    """n beams, prepared for steps of one size.
+
+    Attributes
+    ----------
+    modes : ndarray, shape (n, 4, m)
+        t, d, alpha, beta of the m lowest modes; zero for one that follows the contact statically.
+    begin : ndarray, shape (n, 3, m)
+        The displacement after one step per unit of displacement and of velocity, and 1; or zeros.
+    sigma : ndarray, shape (n,)
+        Displacement within the step per unit of its final penetration, negative.
+    modal : ndarray, shape (n, all modes), complex
+        Steady amplitude of each mode.
+    forcing : ndarray, shape (n,)
+        [rad s-1]
+    steps : int
+        In a forcing period.
+    """
+
+    modes: Array
+    begin: Array
+    sigma: Array
+    modal: NDArray[np.complex128]
+    forcing: Array
+    steps: int
+
+    def take(self, rows: NDArray[np.intp]) -> "System":
+        """Return the systems of some rows."""
+        return System._make([*(a[rows] for a in self[:-1]), self.steps])
+
+
+@kernel
+def _mode_step(w, d, h):
+    """Propagate z'' + 2 d z' + w^2 z = g over h, with g linear from g0 to g1.
+
+    Returns P11, P12, P21, P22, A1, A2, B1, B2 of s1 = P s0 + A g0 + B g1 for s = (z, z'/w): a
+    Taylor series over a small fraction of h, then doubled, accurate for any damping.
+    """
+    small = h
+    doublings = 0
+    while (w + 2 * d) * small > 0.25:
+        small *= 0.5
+        doublings += 1
+    a, b = w * small, 2 * d * small
+    # phi1 and phi2 of [[0, a], [-a, -b]] applied to (0, 1)
+    v1, v2 = 0.0, 1.0
+    f11, f12, f21, f22 = 0.0, 1.0, 0.0, 0.5
+    weight = 1.0
+    for k in range(1, 14):
+        v1, v2 = a * v2, -a * v1 - b * v2
+        weight /= k + 1
+        f11 += weight * v1
+        f12 += weight * v2
+        f21 += weight / (k + 2) * v1
+        f22 += weight / (k + 2) * v2
+    p11, p21 = 1 - a * f11, -a * f12
+    p12, p22 = a * f12, 1 - a * f11 - b * f12
+    scale = small / w
+    b1, b2 = scale * f21, scale * f22
+    a1, a2 = scale * f11 - b1, scale * f12 - b2
+    for _ in range(doublings):
+        c1, c2 = a1 + 0.5 * b1, a2 + 0.5 * b2
+        e1, e2 = 0.5 * b1, 0.5 * b2
+        a1, a2, b1, b2 = (
+            p11 * c1 + p12 * c2 + 0.5 * a1,
+            p21 * c1 + p22 * c2 + 0.5 * a2,
+            p11 * e1 + p12 * e2 + 0.5 * a1 + b1,
+            p21 * e1 + p22 * e2 + 0.5 * a2 + b2,
+        )
+        p11, p12, p21, p22 = (
+            p11 * p11 + p12 * p21,
+            p11 * p12 + p12 * p22,
+            p21 * p11 + p22 * p21,
+            p21 * p12 + p22 * p22,
+        )
+    return p11, p12, p21, p22, a1, a2, b1, b2
+
+
+@kernel
+def _is_static(w, d, h):
+    """Tell a mode too fast for a force sampled at steps of h: its slower pole is beyond Nyquist."""
+    pole = w if d < w else w * (w / (d + np.sqrt(d * d - w * w)))
+    return pole * h > np.pi
+
+
+@kernel
+def _compliance(frequency, decay, gain, h):
+    """Return sigma of one beam: the displacement within a step per unit of final penetration."""
+    total = 0.0
+    for i in range(frequency.size):
+        w, d = frequency[i], decay[i]
+        if _is_static(w, d, h):
+            total += gain[i] / (w * w)
+        else:
+            total += gain[i] * _mode_step(w, d, h)[6]
+    return total
+
+
+@kernel
+def _prepare(forcing, frequency, decay, gain, steps, modes, begin, sigma):
+    for n in range(frequency.shape[0]):
+        h = 2 * np.pi / (forcing[n] * steps)
+        sigma[n] = _compliance(frequency[n], decay[n], gain[n], h)
+        for i in range(frequency.shape[1]):
+            w, d, b = frequency[n, i], decay[n, i], gain[n, i]
+            if _is_static(w, d, h):
+                continue
+            p11, p12, p21, p22, a1, a2, b1, b2 = _mode_step(w, d, h)
+            determinant = np.exp(-2 * d * h)
+            modes[n, 0, i] = p11 + p22
+            modes[n, 1, i] = determinant
+            modes[n, 2, i] = b * (a1 + p11 * b1 + p12 * b2)
+            modes[n, 3, i] = -b * (p22 * a1 - p12 * a2 + determinant * b1)
+            begin[n, 0, i] = p11
+            begin[n, 1, i] = p12 / w
+            begin[n, 2, i] = 1.0
+
+
+@kernel
+def _choose_steps(forcing, frequency, decay, gain, steps):
+    for n in range(frequency.shape[0]):
+        for candidate in LADDER:
+            h = 2 * np.pi / (forcing[n] * candidate)
+            sigma = _compliance(frequency[n], decay[n], gain[n], h)
+            steps[n] = candidate
+            if abs(sigma) <= COMPLIANCE:
+                break
+
+
+def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Prepare n beams, in groups that share a number of steps.
+
+    Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
+    gives way by no more than `COMPLIANCE` of its penetration; the error of a work-rate is then
+    about 0.1 %. A row whose step stays too long, because contact is too stiff for the longest of
+    the ladder or for the steps that are set, is in no group.
+
+    Parameters
+    ----------
+    beams : Beams
+    settings : Settings
+
+    Yields
+    ------
+    rows : ndarray of int
+        Which of the n beams are in the group.
+    system : System
+    """
+    n, m = beams.frequency.shape
+    gain = -beams.stiffness[:, None] * beams.mobility
+    steps = np.full(n, settings.steps_per_period)
+    if not settings.steps_per_period:
+        _choose_steps(beams.forcing, beams.frequency, beams.decay, gain, steps)
+    for count in np.unique(steps):
+        rows = np.flatnonzero(steps == count)
+        b = beams.take(rows)
+        modes, begin = np.zeros((len(rows), 4, m)), np.zeros((len(rows), 3, m))
+        sigma = np.empty(len(rows))
+        _prepare(b.forcing, b.frequency, b.decay, gain[rows], int(count), modes, begin, sigma)
+        last = 1 + np.flatnonzero(begin[:, 2].any(axis=0)).max(initial=0)
+        modes, begin = modes[:, :, :last], begin[:, :, :last]
+        system = System(modes, begin, sigma, steady_response(b), b.forcing, int(count))
+        sound = np.flatnonzero(np.abs(sigma) <= UNSTABLE)
+        if len(sound):
+            yield rows[sound], system.take(sound)
+
+
+def start(system: System, displacement: Array, velocity: Array) -> Array:
+    """Return the state at phase 0 of the force, tip displaced in the shape of the first mode.
+
+    A contact that exists at the start acts from the end of the first step.
+
+    Parameters
+    ----------
+    system : System
+    displacement, velocity : ndarray, shape (n,)
+        Of the tip, in initial gaps and initial gaps per second.
+
+    Returns
+    -------
+    ndarray, shape (n, 2 m + 3)
+        y and r of each mode, then penetration, displacement and the displacement a step before.
+    """
+    n, _, m = system.modes.shape
+    to_displacement, to_velocity, moving = system.begin.transpose(1, 0, 2)
+    modal = system.modal[:, :m]
+    z = -modal.real * moving
+    v = modal.imag * system.forcing[:, None]
+    z[:, 0] += displacement
+    v[:, 0] += velocity
+    state = np.zeros((n, 2 * m + 3))
+    state[:, :m] = z
+    state[:, m : 2 * m] = to_displacement * z + to_velocity * v - system.modes[:, 0] * z
+    state[:, -2] = displacement
+    state[:, -1] = displacement
+    return state
