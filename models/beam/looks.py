@@ -100,20 +100,22 @@ def confirmed_regimes(regime, confirmed=CONFIRMED):
     Returns
     -------
     ndarray of int8, shape (n, L)
-        A regime begins with the first of so many equal looks in a row; `UNKNOWN` before the
-        first that lasts, and after the end.
+        A regime begins with the first of so many equal looks in a row; that of no impact, which
+        is the end of wear, needs none to follow. `UNKNOWN` before the first, and after the end.
     """
     out = np.full_like(regime, UNKNOWN)
     for i in range(len(regime)):
+        told = 0
+        while told < regime.shape[1] and regime[i, told] != UNKNOWN:
+            told += 1
         now, streak = UNKNOWN, 0
-        for look in range(regime.shape[1]):
+        for look in range(told):
             seen = regime[i, look]
-            if seen == UNKNOWN:
-                break
             streak = streak + 1 if look > 0 and seen == regime[i, look - 1] else 1
-            if streak == confirmed and seen != now:
+            is_end = seen == NO_IMPACT and look == told - 1
+            if seen != now and (streak >= confirmed or is_end):
                 now = seen
-                out[i, look - confirmed + 1 : look] = now
+                out[i, look - streak + 1 : look] = now
             out[i, look] = now
     return out
 

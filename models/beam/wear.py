@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from models.beam.looks import WINDOW, History, regime_of
 from models.beam.modal import Array
+from models.beam.response import NO_IMPACT
 from models.numerics.jit import kernel
 
 LOOKS = 32  # changes of the acceleration in N periods
@@ -132,7 +133,7 @@ def run(
         _pace(left, life, out.reached, periods, acceleration, growth)
         record = propagator.advance(system, state, here, growth, periods // looks)
         _note(left, life, out, record.work, acceleration, growth)
-        _look(left, life, out.history, look, record.strobe, record.work)
+        _look(left, life, out, look, record.strobe, record.work)
         alive = ~(out.ended[left] | out.reached[left, :, -1].all(axis=1))
         if not alive.all():
             kept = np.flatnonzero(alive)
@@ -191,9 +192,10 @@ def _note(left, life, out, work, acceleration, growth):
 
 
 @kernel
-def _look(left, life, history, look, strobe, work):
+def _look(left, life, out, look, strobe, work):
     """Enter in the history how things stand."""
     periods = work.shape[1]
+    history = out.history
     for j in range(left.size):
         i = left[j]
         history.time[i, look] = life.clock[i]
@@ -201,7 +203,8 @@ def _look(left, life, history, look, strobe, work):
             history.gaps[i, look, site] = life.gaps[i, site] + life.grown[i, site]
             history.work[i, look, site] = work[j, :, site].mean()
         if periods >= WINDOW:
-            history.regime[i, look] = regime_of(strobe[j], work[j])
+            seen = regime_of(strobe[j], work[j])
+            history.regime[i, look] = NO_IMPACT if out.ended[i] else seen
 
 
 @kernel

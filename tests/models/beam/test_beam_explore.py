@@ -74,7 +74,7 @@ def test_looks_too_short_to_tell_a_regime_are_refused():
 
 
 def test_work_rates_at_gaps_that_do_not_wear_are_those_of_the_branch():
-    gaps = np.linspace(1, 1.5, 11) * X0
+    gaps = np.linspace(1, 1.4, 9) * X0
     p = Params(forcing_frequency=54.797)
     ds = work_rate_against_gap(p, Settings(), gaps)
     assert all_labelled(ds)
@@ -84,12 +84,25 @@ def test_work_rates_at_gaps_that_do_not_wear_are_those_of_the_branch():
     assert (ds.regime == "period-1-symmetric").all() and (ds.period == 1).all()
 
 
-def test_sweeping_up_and_down_shows_two_responses_at_one_gap():
-    p = Params(forcing_frequency=20.0, force_amplitude=0.6, mass_damping=10.0)
-    gaps = np.linspace(1.0, 3.0, 9) * 5e-5
+def test_sweeping_through_a_branch_change_up_and_down_leads_to_different_responses():
+    p, gaps = Params(forcing_frequency=FIRST), np.linspace(1.0, 1.16, 5) * X0
     up = work_rate_against_gap(p, Settings(), gaps, "up")
     down = work_rate_against_gap(p, Settings(), gaps, "down")
     assert up.gap.equals(down.gap)
+    assert (np.diff(up.work_rate.sum("site")) < 0).all()
+    apart = np.abs(up.work_rate.sum("site") - down.work_rate.sum("site"))
+    print(apart.values, down.regime.values)
+
+
+def test_a_history_ends_where_contact_does():
+    p = Params(
+        contact_stiffness=1e3, forcing_frequency=3.0, force_amplitude=0.15, mass_damping=30.0
+    )
+    ds = wear_history(p, Settings(depths=(1e-3,)), 4096)
+    assert ds.regime[-1] == "no-impact"
+    last = ds.isel(regime_change=-1)
+    assert last.change_to == "no-impact"
+    assert last.change_gap.values == pytest.approx(4.66 * X0, rel=0.01)
 
 
 def test_a_portrait_is_closed_and_passes_the_stops_symmetrically():

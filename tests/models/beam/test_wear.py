@@ -228,19 +228,27 @@ def test_only_regimes_that_last_are_counted_and_from_where_they_began():
     assert not changes[1].any()
 
 
+def test_the_end_of_wear_is_a_change_at_once_and_a_short_silence_is_none():
+    looks = [[2, 2, 2, 2, 0, -1], [2, 2, 2, 0, 2, 2], [0, 0, -1, -1, -1, -1]]
+    regimes = confirmed_regimes(np.array(looks, np.int8))
+    assert regimes[0].tolist() == [2, 2, 2, 2, 0, -1]
+    assert changes_of(regimes).sum(axis=1).tolist() == [1, 0, 0]
+
+
 def test_regimes_lost_on_the_way_are_counted():
     # 9.5 and 9.9 keep their orbits to twice the gap; at 5.61 the orbit turns symmetric near 1.2
-    frequencies = [54.797, 57.1042, 32.3591]
-    x = rows(3, forcing_frequency=frequencies)
-    outputs, _ = compute(x, depths=(0.4 * DEPTH,))
+    x = rows(3, forcing_frequency=[54.797, 57.1042, 32.3591])
+    outputs, _ = compute(x, depths=(0.4 * DEPTH,), accuracy=0.02)
     assert outputs["regime_changes"].tolist() == [0.0, 0.0, 1.0]
 
 
-def test_a_beam_that_stops_wearing_has_its_regimes_counted_to_the_end():
+def test_the_end_of_wear_is_counted_but_not_where_there_never_was_any():
     p = {"forcing_frequency": 3.0, "force_amplitude": 0.15, "mass_damping": 30.0}
-    outputs, _ = compute(rows(contact_stiffness=1e3, **p), depths=(1e-5, 1e-3))
-    assert np.isposinf(outputs["first_time_to_depth"][0, 1])
-    assert outputs["regime_changes"][0] == 0.0
+    worn, _ = compute(rows(contact_stiffness=1e3, **p), depths=(1e-5, 1e-3))
+    before, _ = compute(rows(contact_stiffness=1e3, **p), depths=(1e-5, 2e-4))
+    assert np.isposinf(worn["first_time_to_depth"][0, 1])
+    assert before["regime_changes"][0] == 0.0
+    assert worn["regime_changes"][0] >= 1.0
     free, _ = compute(rows(force_amplitude=0.05))
     assert free["regime_changes"][0] == 0.0
 
