@@ -4,22 +4,18 @@ With them go the Figures 3 to 6 of Knudsen & Massih 2002 and the bifurcation dia
 journal paper. Basins of attraction, of this model or any other, come from ``uq.basins``.
 """
 
-from collections.abc import Iterator
-from types import ModuleType
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from models.beam import exact, response, wear
-from models.beam.batch import PROPAGATORS, initial_gaps
+from models.beam import response, wear
+from models.beam.batch import initial_gaps
 from models.beam.looks import CONFIRMED, changes_of, confirmed_regimes
-from models.beam.modal import Array, Record, beams
+from models.beam.modal import Array, beams
 from models.beam.parameters import REGIMES, SITES, Params, Rows, Settings
-
-Sweep = Literal["none", "up", "down"]
-Settled = tuple[NDArray[np.intp], response.Response, Record]
+from models.beam.sweeps import Sweep, one_system, settled_rows, upcrossing_rates
 
 _WORDS = np.array([*REGIMES, "none"])  # -1 is the last
 _SITE = {"site": list(SITES)}
@@ -85,7 +81,7 @@ def wear_history(
             "could not be told"
         )
     p = _rows(params, 1)
-    propagator, system = _only(p, settings)
+    propagator, system = one_system(p, settings)
     gaps, x0 = initial_gaps(p), p.initial_gap
     state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
     settled = response.settle(propagator, system, state, gaps)
@@ -152,7 +148,7 @@ def work_rate_against_gap(
     apart = _gaps(gaps)
     p = _rows(params, len(apart))
     work, regime, period = _blank(len(apart))
-    for rows, settled, _ in _settled(p, apart / params.initial_gap, settings, sweep, 0):
+    for rows, settled, _ in settled_rows(p, apart / params.initial_gap, settings, sweep, 0):
         work[rows], regime[rows], period[rows] = settled.work, settled.regime, settled.period
     w0 = beams(_rows(params, 1), settings).frequency[0, 0]
     return _dataset(
@@ -204,7 +200,7 @@ def phase_portrait(
     p = _rows(params, len(apart))
     _, regime, _ = _blank(len(apart))
     x, v = np.empty((2, len(apart), 0))
-    for rows, settled, record in _settled(p, apart / x0, settings, sweep, periods + 2):
+    for rows, settled, record in settled_rows(p, apart / x0, settings, sweep, periods + 2):
         steps = record.trace.shape[1] // (periods + 2)
         if not x.size:
             x, v = np.full((2, len(apart), periods * steps), np.nan)
@@ -267,11 +263,11 @@ def bifurcation_diagram(
     gaps = initial_gaps(p)
     work, regime, period = _blank(len(frequency))
     impacts: list[Array] = [np.empty(0)] * len(frequency)
-    for rows, settled, record in _settled(p, gaps, settings, sweep, periods):
+    for rows, settled, record in settled_rows(p, gaps, settings, sweep, periods):
         work[rows], regime[rows], period[rows] = settled.work, settled.regime, settled.period
         steps = record.trace.shape[1] // periods
         for row, trace in zip(rows, record.trace, strict=True):
-            impacts[row] = _upcrossing_rates(trace, gaps[row, 0]) * steps * frequency[row]
+            impacts[row] = upcrossing_rates(trace, gaps[row, 0]) * steps * frequency[row]
     velocity = np.full((len(frequency), max(map(len, impacts), default=0)), np.nan)
     for row, each in enumerate(impacts):
         velocity[row, : len(each)] = each
@@ -292,72 +288,6 @@ def bifurcation_diagram(
         },
         settings,
     )
-
-
-def _settled(
-    p: Rows, gaps: Array, settings: Settings, sweep: Sweep, periods: int
-) -> Iterator[Settled]:
-    """Settle n beams at their gaps [X0], and trace them over some periods more.
-
-    Yields
-    ------
-    rows : ndarray of int
-        Which of the n beams these are.
-    settled : Response
-    record : Record
-        Of the further periods.
-    """
-    if sweep not in ("none", "up", "down"):
-        raise ValueError(f"sweep must be 'none', 'up' or 'down', not {sweep!r}")
-    b = beams(p, settings)
-    propagator = PROPAGATORS[settings.propagator] if sweep == "none" else exact
-    u, v = p.initial_displacement / p.initial_gap, p.initial_velocity / p.initial_gap
-
-    def look(system: Any, state: Array, at: Array) -> tuple[response.Response, Record]:
-        settled = response.settle(propagator, system, state, at)
-        still = np.zeros_like(at)
-        return settled, propagator.advance(system, state, at.copy(), still, periods, trace=True)
-
-    for rows, system in propagator.groups(b, settings):
-        state = propagator.start(system, u[rows], v[rows])
-        if sweep == "none":
-            yield rows, *look(system, state, gaps[rows])
-            continue
-        order = rows if sweep == "up" else rows[::-1]
-        before, now = order[0], state[order[:1]]
-        m = system.modal.shape[1]
-        for row in order:
-            # The state holds velocities per radian of the force.
-            now[:, m : 2 * m] *= b.forcing[before] / b.forcing[row]
-            one = np.array([row])
-            yield one, *look(system.take(one), now, gaps[one])
-            before = row
-
-
-def _upcrossing_rates(trace: Array, level: float) -> Array:
-    """Return the slopes, per sample, with which a trace rises through a level.
-
-    By the cubic through the two samples before and the two after.
-    """
-    below = trace[1:-2] < level
-    k = 1 + np.flatnonzero(below & (trace[2:-1] >= level))
-    y = np.stack([trace[k - 1], trace[k], trace[k + 1], trace[k + 2]]) - level
-    c1 = -y[0] / 3 - y[1] / 2 + y[2] - y[3] / 6
-    c2 = y[0] / 2 - y[1] + y[2] / 2
-    c3 = (y[3] - y[0]) / 6 + (y[1] - y[2]) / 2
-    s = -y[1] / (y[2] - y[1])
-    for _ in range(3):
-        s -= (y[1] + s * (c1 + s * (c2 + s * c3))) / (c1 + s * (2 * c2 + 3 * s * c3))
-    return c1 + s * (2 * c2 + 3 * s * c3)
-
-
-def _only(p: Rows, settings: Settings) -> tuple[ModuleType, Any]:
-    """Return the propagator of one beam, and what it prepares."""
-    b = beams(p, settings)
-    for propagator in (PROPAGATORS[settings.propagator], exact):
-        for _, system in propagator.groups(b, settings):
-            return propagator, system
-    raise AssertionError("the exact propagator takes any beam")
 
 
 def _rows(params: Params, n: int) -> Rows:

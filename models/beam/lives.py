@@ -59,7 +59,7 @@ class Lives(NamedTuple):
         unknown = np.full((2, n, 3, depths), np.nan)
         ratio = np.full((n, depths), np.nan)
         reached = np.zeros((n, 3, depths), bool)
-        return Lives(*unknown, reached, ratio, np.full(n, np.nan))
+        return Lives._make([*unknown, reached, ratio, np.full(n, np.nan)])
 
 
 def find_lives(

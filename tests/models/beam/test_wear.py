@@ -253,6 +253,29 @@ def test_the_end_of_wear_is_counted_but_not_where_there_never_was_any():
     assert free["regime_changes"][0] == 0.0
 
 
+@pytest.mark.parametrize("share", [0.4, 3.0])
+def test_unequal_wear_coefficients_wear_as_by_incremental_averaging(share):
+    x = rows(wear_coefficient_ratio=share)
+    outputs, _ = compute(x, depths=(0.4 * DEPTH,), accuracy=0.02)
+    p = Params(*map(float, x[0]))
+    known = incremental_lives(p, Settings(), (0.4,), increments=12, most=9.0)
+    lives = known.time[:2, 0] * known.unit
+    assert outputs["time_to_depth"][0, :, 0] == pytest.approx(lives, rel=5e-3)
+
+
+def test_wear_that_ends_does_so_by_incremental_averaging_too():
+    p = {"forcing_frequency": 3.0, "force_amplitude": 0.15, "mass_damping": 30.0}
+    x = rows(contact_stiffness=1e3, **p)
+    growths = np.array([0.04, 3.0, 4.0])
+    outputs, _ = compute(x, depths=tuple(growths * DEPTH), accuracy=0.02)
+    known = incremental_lives(Params(*map(float, x[0])), Settings(), growths, increments=80)
+    life, error = outputs["first_time_to_depth"][0], outputs["first_time_to_depth_error"][0]
+    assert np.isposinf(life[2]) and np.isposinf(known.time[2, 2])
+    allowed = 2 * (error + known.error[2] * known.unit)[:2]
+    assert (np.abs(life[:2] - known.time[2, :2] * known.unit) < allowed).all()
+    assert (error[:2] < 0.03 * life[:2]).all()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("row", range(6))
 def test_lives_anywhere_agree_with_incremental_averaging_by_the_exact_propagator(row):
