@@ -17,7 +17,7 @@ from models.beam.modal import Array
 
 SHORTEST = 64  # N of the first run; each further one lasts twice as long
 LEAST = 5  # runs: fewer are too fast to notice some branch changes
-LONGEST = 165  # over the accuracy: N of the last run at most, unless they are the least
+LONGEST = 330  # over the accuracy: N of the last run at most, unless they are the least
 
 
 def _fit_of_constant_and_inverse() -> Array:
@@ -140,7 +140,7 @@ def extrapolate(times: Array) -> tuple[Array, Array]:
     resolved yet.
 
     The error is made of what was added, how much it changes when the slowest life is left out,
-    and the differences themselves. Its factors are measured: see the benchmark of the beam.
+    and the differences themselves. Its factors are measured: see ``benchmarks/beam_lives.py``.
 
     Parameters
     ----------
