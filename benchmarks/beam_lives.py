@@ -24,7 +24,7 @@ STUDIES = Path(__file__).parent.parent / "studies"
 CASES = (("beam-lifetime-561", 0.02), ("beam-lifetime-561", 0.04), ("beam-lifetime", 0.01))
 CASES += (("beam-lifetime", 0.05),)
 DEPTHS = (2.5e-4,)
-ROWS, CHECKED, SETTLED = 512, 50, 40
+ROWS, CHECKED, SETTLED = 256, 50, 40
 
 
 def rows_of(name, begin, end):
