@@ -160,6 +160,7 @@ def work_rate_against_gap(
             "period": ("case", period),
         },
         settings,
+        sweep,
     )
 
 
@@ -218,6 +219,7 @@ def phase_portrait(
             "regime": ("case", _WORDS[regime]),
         },
         settings,
+        sweep,
     )
 
 
@@ -230,8 +232,10 @@ def bifurcation_diagram(
 ) -> xr.Dataset:
     """Return the velocities with which the tip meets the right stop, against the frequency.
 
-    They are the points of the settled response in the Poincare section x = x_1, v > 0 (eq 2). A
-    contact briefer than a step of the propagator may be missing.
+    They are the points of the settled response in the Poincare section x = x_1, v > 0 (eq 2),
+    interpolated between the propagator's samples: to 0.3 % by the fast one's own steps, to 0.05 %
+    by the exact one, as measured on periodic responses. A contact briefer than a sample may be
+    missing.
 
     Parameters
     ----------
@@ -287,6 +291,7 @@ def bifurcation_diagram(
             "period": (along, period),
         },
         settings,
+        sweep,
     )
 
 
@@ -315,10 +320,10 @@ def _watt(params: Params) -> float:
     return joule * params.forcing_frequency
 
 
-def _dataset(variables: dict[str, Any], settings: Settings) -> xr.Dataset:
+def _dataset(variables: dict[str, Any], settings: Settings, sweep: Sweep = "none") -> xr.Dataset:
     labelled = {
         name: (dims, values, {"units": _ABOUT[name][0], "long_name": _ABOUT[name][1]})
         for name, (dims, values) in variables.items()
     }
-    about = {"model": "beam", "propagator": settings.propagator}
-    return xr.Dataset(labelled, _SITE, about)
+    propagator = settings.propagator if sweep == "none" else "exact"
+    return xr.Dataset(labelled, _SITE, {"model": "beam", "propagator": propagator, "sweep": sweep})

@@ -69,7 +69,9 @@ def upcrossing_rates(trace: Array, level: float) -> Array:
     c3 = (y[3] - y[0]) / 6 + (y[1] - y[2]) / 2
     s = -y[1] / (y[2] - y[1])
     for _ in range(3):
-        s -= (y[1] + s * (c1 + s * (c2 + s * c3))) / (c1 + s * (2 * c2 + 3 * s * c3))
+        slope = c1 + s * (2 * c2 + 3 * s * c3)
+        off = y[1] + s * (c1 + s * (c2 + s * c3))
+        s = np.clip(s - np.divide(off, slope, out=np.zeros_like(s), where=slope > 0), 0.0, 1.0)
     return c1 + s * (2 * c2 + 3 * s * c3)
 
 
