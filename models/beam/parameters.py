@@ -270,5 +270,8 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "regime": Output("1", "kind of response at the initial gaps", "category", categories=REGIMES),
     "period": Output("1", "period of the response in forcing periods, 0 if aperiodic"),
+    "regime_changes": Output(
+        "1", "changes of regime until both sites have worn by the last depth, or for good"
+    ),
     "fundamental_frequency": Output("Hz", "first natural frequency of the beam out of contact"),
 }
