@@ -16,14 +16,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from models.beam.phases import exponentials, join, split
+from models.beam.modal import Array
+from models.beam.phases import exponentials, split
 from models.numerics.jit import kernel
 
 EVALUATIONS_PER_PERIOD = 100_000
+NOWHERE, RIGHT, LEFT = -1, 0, 1
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _SHORTEST = 1e-14  # no step of the search is shorter: time must pass
 _FADED = 1e-18  # a velocity too small to matter
-_NOWHERE, _RIGHT, _LEFT = -1, 0, 1
 
 
 class Tip(NamedTuple):
@@ -87,6 +88,12 @@ def _tip(phase, weight, live, s, power):
 
 
 @kernel
+def tip_at(phase, weight, s, power):
+    """Return the tip's displacement after the time s."""
+    return _tip(phase, weight, len(phase.speed), s, power).x
+
+
+@kernel
 def _parabola(distance, closing, bound):
     """First time at which distance - closing h - bound h^2/2 is zero."""
     square = closing * closing + 2 * bound * distance
@@ -129,11 +136,11 @@ def _fly(phase, weight, power, gaps, near, to_end):
     evaluations = 1
     tip = _tip(phase, weight, len(phase.speed), s, power)
     while evaluations < EVALUATIONS_PER_PERIOD:
-        to_right, to_left = gaps[_RIGHT] - tip.x, gaps[_LEFT] + tip.x
+        to_right, to_left = gaps[RIGHT] - tip.x, gaps[LEFT] + tip.x
         if _is_here(to_right, tip.v, tip.a, near):
-            return s, _RIGHT, evaluations
+            return s, RIGHT, evaluations
         if _is_here(to_left, -tip.v, -tip.a, near):
-            return s, _LEFT, evaluations
+            return s, LEFT, evaluations
         if s == to_end:
             break
         h = min(
@@ -143,7 +150,7 @@ def _fly(phase, weight, power, gaps, near, to_end):
         s = min(s + max(h, _SHORTEST), to_end)
         evaluations += 1
         tip = _tip(phase, weight, tip.live, s, power)
-    return s, _NOWHERE, evaluations
+    return s, NOWHERE, evaluations
 
 
 @kernel
@@ -190,59 +197,95 @@ def _touch(phase, weight, power, side, gap, near, slow, to_end):
     return s, False, work, deepest, evaluations
 
 
-@kernel
-def _sample(phase, weight, power, theta, until, trace):
-    """Set what of a period's trace falls after theta, up to `until`."""
-    step = 2 * math.pi / len(trace)
-    for k in range(len(trace)):
-        at = min((k + 1) * step, 2 * math.pi)
-        if theta < at <= until:
-            trace[k] = _tip(phase, weight, len(phase.speed), at - theta, power).x
+class Scratch(NamedTuple):
+    """Room for the terms of one phase: as `split`, `_weigh` and `exponentials` fill it.
+
+    Attributes
+    ----------
+    coefficient, weight, power : ndarray, shapes (2, T), (9, T), (3, T)
+    """
+
+    coefficient: Array
+    weight: Array
+    power: Array
+
+
+class Event(NamedTuple):
+    """What ends a phase.
+
+    Attributes
+    ----------
+    after : float
+        Time since the phase began.
+    site : int
+        Where the tip is from then on: `RIGHT`, `LEFT` or `NOWHERE`.
+    has_left : bool
+        Whether the event is the end of a contact.
+    work, deepest : float
+        Of the contact, if the phase is one.
+    effort : int
+        Evaluations of the tip.
+    """
+
+    after: float
+    site: int
+    has_left: bool
+    work: float
+    deepest: float
+    effort: int
 
 
 @kernel
-def run(free, contact, state, gaps, growth, record):
-    """Advance one beam over the periods of its record."""
-    work, strobe, peak, trace = record
-    size = len(state) - 2
-    m = size // 2
-    y, owed = state[:size], state[size:]
+def scratch(free, contact):
+    """Return room for the terms of either phase."""
     terms = max(len(free.speed), len(contact.speed))
-    coefficient, weight, power = np.empty((2, terms)), np.empty((9, terms)), np.empty((3, terms))
-    steps = len(trace) // len(work)
-    for period in range(len(work)):
-        x = y[:m].sum()
-        site = _RIGHT if x > gaps[_RIGHT] else _LEFT if x < -gaps[_LEFT] else _NOWHERE
-        theta = 0.0
-        evaluations = 0
-        while theta < 2 * math.pi:
-            to_end = 2 * math.pi - theta
-            phase = free if site == _NOWHERE else contact
-            side = -1.0 if site == _LEFT else 1.0
-            gap = 0.0 if site == _NOWHERE else gaps[site]
-            split(phase, y, side * gap, theta, coefficient)
-            near, slow = _weigh(phase, coefficient, weight)
-            near, slow = _ROUNDING * (near + gaps[_RIGHT] + gaps[_LEFT]), _ROUNDING * slow
-            if site == _NOWHERE:
-                s, site, effort = _fly(phase, weight, power, gaps, near, to_end)
-            else:
-                s, ended, piece, deepest, effort = _touch(
-                    phase, weight, power, side, gap, near, slow, to_end
-                )
-                work[period, site] += piece
-                owed[site] += piece
-                peak[site] = max(peak[site], deepest)
-                if ended:
-                    gaps[site] += growth[site] * owed[site]
-                    owed[site] = 0.0
-                    site = _NOWHERE
-            evaluations += effort
-            if evaluations >= EVALUATIONS_PER_PERIOD:
-                state[:] = work[period:] = strobe[period:] = trace[period * steps :] = math.nan
-                return
-            until = theta + s if s < to_end else 2 * math.pi
-            if steps:
-                _sample(phase, weight, power, theta, until, trace[period * steps :][:steps])
-            join(phase, coefficient, s, power, y)
-            theta = until
-        strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()
+    return Scratch(np.empty((2, terms)), np.empty((9, terms)), np.empty((3, terms)))
+
+
+@kernel
+def site_of(x, gaps):
+    """Return the site that a tip at x is in contact with."""
+    return RIGHT if x > gaps[RIGHT] else LEFT if x < -gaps[LEFT] else NOWHERE
+
+
+@kernel
+def next_event(phase, y, gaps, site, theta, to_end, room):
+    """Find what ends the phase that begins with y at force phase theta, within the time to_end."""
+    coefficient, weight, power = room
+    side = -1.0 if site == LEFT else 1.0
+    gap = 0.0 if site == NOWHERE else gaps[site]
+    split(phase, y, side * gap, theta, coefficient)
+    near, slow = _weigh(phase, coefficient, weight)
+    near, slow = _ROUNDING * (near + gaps[RIGHT] + gaps[LEFT]), _ROUNDING * slow
+    if site == NOWHERE:
+        s, site, effort = _fly(phase, weight, power, gaps, near, to_end)
+        return Event(s, site, False, 0.0, 0.0, effort)
+    s, has_left, work, deepest, effort = _touch(phase, weight, power, side, gap, near, slow, to_end)
+    return Event(s, NOWHERE if has_left else site, has_left, work, deepest, effort)
+
+
+@kernel
+def nearest_turn(phase, gaps, until, room):
+    """Return how near to a stop's face the tip turns in a phase, before the time `until`.
+
+    The room is as `next_event` leaves it.
+    """
+    slow = 0.0
+    for k in range(len(phase.speed)):
+        slow += room.weight[6, k]
+    slow *= _ROUNDING
+    s = 0.0
+    nearest = math.inf
+    tip = _tip(phase, room.weight, len(phase.speed), s, room.power)
+    way = 1.0 if tip.v > 0 or (tip.v == 0 and tip.a > 0) else -1.0
+    for _ in range(EVALUATIONS_PER_PERIOD):
+        speed, braking = way * tip.v, -way * tip.a
+        if _is_here(speed, braking, 0.0, slow):
+            nearest = min(nearest, abs(gaps[RIGHT] - tip.x), abs(gaps[LEFT] + tip.x))
+            way, speed, braking = -way, -speed, -braking
+        if s == until:
+            break
+        h = _parabola(max(speed, 0.0), braking, tip.bound_j)
+        s = min(s + max(h, _SHORTEST), until)
+        tip = _tip(phase, room.weight, tip.live, s, room.power)
+    return nearest
