@@ -17,6 +17,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.beam.events import (
     EVALUATIONS_PER_PERIOD,
@@ -63,7 +64,7 @@ class Passage(NamedTuple):
     tangents: Array
     work: Array
     peak: Array
-    contacts: Array
+    contacts: NDArray[np.int64]
     impacts: Array
     clearance: float
 

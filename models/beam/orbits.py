@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam import exact
 from models.beam.events import LEFT, RIGHT
 from models.beam.flow import Passage, passage
 from models.beam.modal import Array
@@ -20,6 +21,9 @@ from models.numerics.newton import Linear, find_root
 TOLERANCE = 1e-11  # of the state after a period, relative to the state
 SYMMETRIC = 1e-6  # difference of the sites' work, relative to their sum
 _SAME = 1e-6  # of states a divisor of the period apart, relative to the state
+
+_CLOSE = 0.1  # how near, relative to the state, a beam that settles must have come to its orbit
+_ROUND, _ROUNDS = 128, 16  # forcing periods between two looks, and looks
 
 Outcome = Literal["converged", "stalled", "singular", "unstable", "far"]
 
@@ -113,7 +117,7 @@ def find_orbit(
     Orbit
         See its `outcome`.
     """
-    size = np.linalg.norm(state)
+    size = float(np.linalg.norm(state)) or 1.0
     root = find_root(
         lambda y: defect(passage(beam, y, gaps, periods=period), y),
         state,
@@ -129,12 +133,55 @@ def find_orbit(
                 found, period = part, divisor
                 break
     orbit = orbit_of(found, root.state, gaps, period)
-    distance = np.linalg.norm(root.state - state) / np.linalg.norm(root.state)
+    distance = np.linalg.norm(root.state - state) / (np.linalg.norm(root.state) or 1.0)
     if outcome == "converged" and distance > farthest:
         outcome = "far"
     elif outcome == "converged" and stable_only and not orbit.is_stable:
         outcome = "unstable"
     return orbit._replace(iterations=root.iterations, distance=float(distance), outcome=outcome)
+
+
+def settled_orbit(beam: Beam, state: Array, gaps: Array, period: int = 1) -> Orbit:
+    """Let a beam settle and find the stable orbit that it settles on.
+
+    Parameters
+    ----------
+    beam : Beam
+    state : ndarray, shape (2 m,)
+        At phase 0 of the force.
+    gaps : ndarray, shape (2,)
+        In initial gaps.
+    period : int
+        In forcing periods.
+
+    Returns
+    -------
+    Orbit
+
+    Raises
+    ------
+    ValueError
+        If the beam does not settle on an orbit of this period.
+    """
+    for _ in range(_ROUNDS):
+        orbit = find_orbit(beam, state, gaps, period, stable_only=True, farthest=_CLOSE)
+        if orbit.outcome == "converged" and orbit.period == period:
+            return orbit
+        state = _advanced(beam, state, gaps)
+    raise ValueError(
+        f"the beam does not settle on an orbit of period {period} from this state within "
+        f"{_ROUNDS * _ROUND} forcing periods: try another state or period"
+    )
+
+
+def _advanced(beam: Beam, state: Array, gaps: Array) -> Array:
+    """Return the state some periods on."""
+    m = len(state) // 2
+    system = exact.System(((beam.free, beam.contact),), np.zeros((1, m), complex), np.ones(1), 0)
+    row = exact.start(system, np.zeros(1), np.zeros(1))
+    row[0, : 2 * m] = state
+    exact.advance(system, row, gaps[None].copy(), np.zeros((1, 2)), _ROUND)
+    return row[0, : 2 * m]
 
 
 def defect(found: Passage, state: Array, by_parameter: Array | None = None) -> Linear:

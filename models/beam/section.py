@@ -6,7 +6,7 @@ point of the flow y' = f along the section is dy - f dtheta at constant phase of
 flow carries the one wherever it carries the other.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,7 +96,7 @@ def return_map(beam: Beam, state: Array, phase: float, gaps: Array) -> Return:
     after = _on_section(_rate(beam.free, found.state, found.phase))
     before = _on_section(_rate(beam.free, state, phase))
     flow = found.tangents[:, :size]
-    jacobian = np.linalg.solve(after, flow @ before)
+    jacobian: Any = np.linalg.solve(after, flow @ before)
     return Return(found.state, found.phase + 2 * np.pi * turns, jacobian)
 
 

@@ -31,7 +31,7 @@ class Beam(NamedTuple):
     @staticmethod
     def of(pair: tuple[Phase, Phase]) -> "Beam":
         """Return a beam whose forcing frequency is never asked about."""
-        return Beam(*pair, np.zeros((2, *pair[0].shape.shape[1:])))
+        return Beam(pair[0], pair[1], np.zeros((2, *pair[0].shape.shape[1:])))
 
 
 class Tuning:
@@ -48,6 +48,8 @@ class Tuning:
         The angular frequency at which it is forced in `beams` [rad s-1].
     fundamental : float
         First natural angular frequency out of contact [rad s-1].
+    size : int
+        Of the state: 2 m.
     """
 
     def __init__(self, beams: Beams, row: int = 0):
@@ -55,15 +57,16 @@ class Tuning:
         self._phases = phases(self._beams, 0)
         self.forcing = float(self._beams.forcing[0])
         self.fundamental = float(self._beams.frequency[0, 0])
+        self.size = 2 * self._beams.frequency.shape[1]
 
     def at(self, forcing: float) -> Beam:
         """Return the beam forced at an angular frequency [rad s-1]."""
         free, contact = self._steady(forcing)
         ratio = self.forcing / forcing
         each = (free, contact)
-        pair = (_scaled(p, ratio, z) for p, (z, _) in zip(self._phases, each, strict=True))
+        pair = [_scaled(p, ratio, z) for p, (z, _) in zip(self._phases, each, strict=True)]
         detuning = [np.concatenate([change, 1j * (z + change)]) for z, change in each]
-        return Beam(*pair, np.stack([[d.real, d.imag] for d in detuning]))
+        return Beam(pair[0], pair[1], np.stack([[d.real, d.imag] for d in detuning]))
 
     def _steady(self, forcing: float) -> tuple[tuple[NDArray[np.complex128], ...], ...]:
         """Return the steady amplitude of each mode and its derivative, free and in contact."""

@@ -122,7 +122,7 @@ def step(function: Function, point: Point, length: float, tolerance: float) -> P
         correction = _solve(at, point.tangent, np.append(-at.residual, 0.0))
         if correction is None:
             return None
-        allowed -= np.linalg.norm(correction)
+        allowed -= float(np.linalg.norm(correction))
         if allowed < 0:
             return None
         u = u + correction
@@ -195,7 +195,9 @@ def locate(
 def _tangent(linear: Linear, along: Array) -> Array | None:
     """Return the unit tangent on the same side as `along`."""
     solution = _solve(linear, along, np.append(np.zeros(len(along) - 1), 1.0))
-    return None if solution is None else solution / np.linalg.norm(solution)
+    if solution is not None:
+        solution /= np.linalg.norm(solution)
+    return solution
 
 
 def _solve(linear: Linear, along: Array, right: Array) -> Array | None:

@@ -81,7 +81,7 @@ def find_root(
     Root
     """
     y, at = start, function(start)
-    size = np.linalg.norm(at.residual)
+    size = float(np.linalg.norm(at.residual))
     outcome: Literal["converged", "stalled", "singular"] = "stalled"
     done = 0
     while np.isfinite(size):
@@ -95,11 +95,12 @@ def find_root(
         except np.linalg.LinAlgError:
             outcome = "singular"
             break
-        step *= min(1.0, longest / np.linalg.norm(step))
+        length = float(np.linalg.norm(step))
+        step = step * min(1.0, longest / length)
         done += 1
         for halving in range(_HALVINGS):
             trial = function(y + step / 2**halving)
-            trial_size = np.linalg.norm(trial.residual)
+            trial_size = float(np.linalg.norm(trial.residual))
             if trial_size < size:
                 y, at, size = y + step / 2**halving, trial, trial_size
                 break
