@@ -1,14 +1,9 @@
 """Events of the exact propagator: where contacts begin, turn and end.
 
-Between events the beam is linear and the tip a sum of exponentials, none of which grows:
-
-    x(s) = Re sum_k a_k exp(r_k s),    |d^p x/ds^p (s')| <= sum_k |a_k| |r_k|^p |exp(r_k s)|
-
-for all s' >= s. These bounds of the second and third derivative say how long the next event is
-certain to stay away, and each step of the search goes just that far. So it misses no event,
-however brief the contact, and close to one it converges like Newton's method. Just after leaving
-a site the distance is zero to rounding, but it is opening, and the same bounds carry the search
-beyond the turning point, or to it.
+Each step of the search goes just as far as the next event is certain to stay away, by the bounds of
+`models.beam.tip`. So it misses no event, however brief the contact, and close to one it converges
+like Newton's method. Just after leaving a site the distance is zero to rounding, but it is opening,
+and the same bounds carry the search beyond the turning point, or to it.
 """
 
 import math
@@ -17,110 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from models.beam.modal import Array
-from models.beam.phases import exponentials, split
+from models.beam.phases import split
+from models.beam.tip import parabola, reach, tip_after, weigh
 from models.numerics.jit import kernel
 
 EVALUATIONS_PER_PERIOD = 100_000
 NOWHERE, RIGHT, LEFT = -1, 0, 1
 _ROUNDING = 16 * float(np.finfo(float).eps)
 _SHORTEST = 1e-14  # no step of the search is shorter: time must pass
-_FADED = 1e-18  # a velocity too small to matter
-
-
-class Tip(NamedTuple):
-    """The tip at one instant, and what bounds it ever after.
-
-    Attributes
-    ----------
-    x, v, a : float
-        Displacement and its first two derivatives.
-    bound_a, bound_j : float
-        No later acceleration or jerk is larger.
-    live : int
-        Number of terms that have not faded.
-    """
-
-    x: float
-    v: float
-    a: float
-    bound_a: float
-    bound_j: float
-    live: int
-
-
-@kernel
-def _weigh(phase, coefficient, weight):
-    """Set weight (9, T) to what each term brings to the tip; return the sizes of x and v.
-
-    Rows: real and imaginary part for x, v, a, then the moduli for v, a and the jerk.
-    """
-    near = slow = 0.0
-    for k in range(len(phase.speed)):
-        c, e = coefficient[0, k], coefficient[1, k]
-        u, v = phase.tip[0, k], phase.tip[1, k]
-        re, im = c * u - e * v, c * v + e * u
-        size = math.sqrt(re * re + im * im)
-        near += size
-        slow += size * phase.speed[k]
-        for p in range(3):
-            weight[2 * p, k], weight[2 * p + 1, k] = re, im
-            size *= phase.speed[k]
-            weight[6 + p, k] = size
-            u, v = phase.rate[0, k], phase.rate[1, k]
-            re, im = re * u - im * v, re * v + im * u
-    return near, slow
-
-
-@kernel
-def _tip(phase, weight, live, s, power):
-    exponentials(phase, live, s, power)
-    x = v = a = bound_a = bound_j = 0.0
-    for k in range(live):
-        p, q = 1 + power[0, k], power[1, k]
-        x += weight[0, k] * p - weight[1, k] * q
-        v += weight[2, k] * p - weight[3, k] * q
-        a += weight[4, k] * p - weight[5, k] * q
-        bound_a += weight[7, k] * power[2, k]
-        bound_j += weight[8, k] * power[2, k]
-    while live > 2 and weight[6, live - 1] * power[2, live - 1] < _FADED:
-        live -= 1
-    return Tip(x, v, a, bound_a, bound_j, live)
-
-
-@kernel
-def tip_at(phase, weight, s, power):
-    """Return the tip's displacement after the time s."""
-    return _tip(phase, weight, len(phase.speed), s, power).x
-
-
-@kernel
-def _parabola(distance, closing, bound):
-    """First time at which distance - closing h - bound h^2/2 is zero."""
-    square = closing * closing + 2 * bound * distance
-    if square < 0 or (closing <= 0 and bound <= 0):
-        return math.inf
-    if closing > 0:
-        return 2 * distance / (closing + math.sqrt(square))
-    return (math.sqrt(square) - closing) / bound
-
-
-@kernel
-def _reach(distance, closing, gathering, bound, bound_next):
-    """Time for which a distance is certain to stay positive.
-
-    It closes with the given speed, gathering speed at a rate that never exceeds `bound` and
-    itself grows at most by `bound_next` in unit time.
-    """
-    distance = max(distance, 0.0)
-    sure = _parabola(distance, closing, bound)
-    trial = max(2 * sure, -0.5 * gathering / bound_next)
-    for _ in range(4):
-        over_trial = gathering + bound_next * trial
-        if not over_trial < bound:
-            break
-        sure = max(sure, min(trial, _parabola(distance, closing, over_trial)))
-        trial *= 2
-    return sure
 
 
 @kernel
@@ -134,7 +33,7 @@ def _fly(phase, weight, power, gaps, near, to_end):
     """Fly until a site is met or the time is up; return the time, the site and the effort."""
     s = 0.0
     evaluations = 1
-    tip = _tip(phase, weight, len(phase.speed), s, power)
+    tip = tip_after(phase, weight, len(phase.speed), s, power)
     while evaluations < EVALUATIONS_PER_PERIOD:
         to_right, to_left = gaps[RIGHT] - tip.x, gaps[LEFT] + tip.x
         if _is_here(to_right, tip.v, tip.a, near):
@@ -144,12 +43,12 @@ def _fly(phase, weight, power, gaps, near, to_end):
         if s == to_end:
             break
         h = min(
-            _reach(to_right, tip.v, tip.a, tip.bound_a, tip.bound_j),
-            _reach(to_left, -tip.v, -tip.a, tip.bound_a, tip.bound_j),
+            reach(to_right, tip.v, tip.a, tip.bound_a, tip.bound_j),
+            reach(to_left, -tip.v, -tip.a, tip.bound_a, tip.bound_j),
         )
         s = min(s + max(h, _SHORTEST), to_end)
         evaluations += 1
-        tip = _tip(phase, weight, tip.live, s, power)
+        tip = tip_after(phase, weight, tip.live, s, power)
     return s, NOWHERE, evaluations
 
 
@@ -162,7 +61,7 @@ def _touch(phase, weight, power, side, gap, near, slow, to_end):
     """
     s = 0.0
     evaluations = 1
-    tip = _tip(phase, weight, len(phase.speed), s, power)
+    tip = tip_after(phase, weight, len(phase.speed), s, power)
     last = deepest = max(side * tip.x - gap, 0.0)
     inward = side * tip.v > 0 or (tip.v == 0 and side * tip.a > 0)
     work = 0.0
@@ -185,20 +84,20 @@ def _touch(phase, weight, power, side, gap, near, slow, to_end):
         if is_turning:
             inward = not inward
         if inward:
-            h = _parabola(max(speed, 0.0), -gathering, tip.bound_j)
+            h = parabola(max(speed, 0.0), -gathering, tip.bound_j)
         else:
             h = min(
-                _parabola(max(-speed, 0.0), gathering, tip.bound_j),
-                _reach(depth, -speed, -gathering, tip.bound_a, tip.bound_j),
+                parabola(max(-speed, 0.0), gathering, tip.bound_j),
+                reach(depth, -speed, -gathering, tip.bound_a, tip.bound_j),
             )
         s = min(s + max(h, _SHORTEST), to_end)
         evaluations += 1
-        tip = _tip(phase, weight, tip.live, s, power)
+        tip = tip_after(phase, weight, tip.live, s, power)
     return s, False, work, deepest, evaluations
 
 
 class Scratch(NamedTuple):
-    """Room for the terms of one phase: as `split`, `_weigh` and `exponentials` fill it.
+    """Room for the terms of one phase: as `split`, `weigh` and `exponentials` fill it.
 
     Attributes
     ----------
@@ -255,7 +154,7 @@ def next_event(phase, y, gaps, site, theta, to_end, room):
     side = -1.0 if site == LEFT else 1.0
     gap = 0.0 if site == NOWHERE else gaps[site]
     split(phase, y, side * gap, theta, coefficient)
-    near, slow = _weigh(phase, coefficient, weight)
+    near, slow = weigh(phase, coefficient, weight)
     near, slow = _ROUNDING * (near + gaps[RIGHT] + gaps[LEFT]), _ROUNDING * slow
     if site == NOWHERE:
         s, site, effort = _fly(phase, weight, power, gaps, near, to_end)
@@ -276,7 +175,7 @@ def nearest_turn(phase, gaps, until, room):
     slow *= _ROUNDING
     s = 0.0
     nearest = math.inf
-    tip = _tip(phase, room.weight, len(phase.speed), s, room.power)
+    tip = tip_after(phase, room.weight, len(phase.speed), s, room.power)
     way = 1.0 if tip.v > 0 or (tip.v == 0 and tip.a > 0) else -1.0
     for _ in range(EVALUATIONS_PER_PERIOD):
         speed, braking = way * tip.v, -way * tip.a
@@ -285,7 +184,7 @@ def nearest_turn(phase, gaps, until, room):
             way, speed, braking = -way, -speed, -braking
         if s == until:
             break
-        h = _parabola(max(speed, 0.0), braking, tip.bound_j)
+        h = parabola(max(speed, 0.0), braking, tip.bound_j)
         s = min(s + max(h, _SHORTEST), until)
-        tip = _tip(phase, room.weight, tip.live, s, room.power)
+        tip = tip_after(phase, room.weight, tip.live, s, room.power)
     return nearest

@@ -12,11 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.events import EVALUATIONS_PER_PERIOD, NOWHERE, next_event, scratch, site_of, tip_at
+from models.beam.events import EVALUATIONS_PER_PERIOD, NOWHERE, next_event, scratch, site_of
 from models.beam.flow import passage
 from models.beam.modal import Array, Beams, Record, steady_response
 from models.beam.parameters import Settings
 from models.beam.phases import Phase, join, phases
+from models.beam.tip import tip_at
 from models.beam.tuning import Beam
 from models.numerics.jit import kernel
 

@@ -20,6 +20,7 @@ from models.numerics.newton import Linear, find_root
 
 TOLERANCE = 1e-11  # of the state after a period, relative to the state
 SYMMETRIC = 1e-6  # difference of the sites' work, relative to their sum
+_ROUNDING = 1e-7  # of a multiplier that meets another
 _SAME = 1e-6  # of states a divisor of the period apart, relative to the state
 
 _CLOSE = 0.1  # how near, relative to the state, a beam that settles must have come to its orbit
@@ -78,8 +79,13 @@ class Orbit(NamedTuple):
 
     @property
     def is_stable(self) -> bool:
-        """Whether every multiplier is within the unit circle."""
-        return bool(abs(self.multipliers[0]) < 1)
+        """Whether no multiplier is outside the unit circle."""
+        return not np.isnan(self.multipliers[0]) and self.unstable_directions == 0
+
+    @property
+    def unstable_directions(self) -> int:
+        """How many multipliers are outside the unit circle, by more than rounding."""
+        return int((np.abs(self.multipliers) > 1 + _ROUNDING).sum())
 
     @property
     def is_symmetric(self) -> bool:

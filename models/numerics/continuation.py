@@ -8,7 +8,7 @@ something only if y and the parameter are comparable: it is for the caller to sc
 """
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -204,6 +204,7 @@ def _solve(linear: Linear, along: Array, right: Array) -> Array | None:
     """Solve the equations of F, bordered by one along the branch."""
     upper = np.column_stack([linear.by_state, linear.by_parameter])
     try:
-        return np.linalg.solve(np.vstack([upper, along]), right)
+        solution: Any = np.linalg.solve(np.vstack([upper, along]), right)
     except np.linalg.LinAlgError:
         return None
+    return solution

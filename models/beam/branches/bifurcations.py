@@ -31,7 +31,7 @@ class Event(NamedTuple):
     value : float
         Of the parameter.
     before, after : Orbit
-        On either side, as near as was asked for; None where no orbit was found beyond.
+        On either side, as near as was asked for; None where there is no orbit beyond.
     """
 
     kind: Kind
@@ -44,11 +44,6 @@ class Event(NamedTuple):
         """Whether the orbit is stable before and not after."""
         beyond = self.after is not None and self.after.is_stable
         return self.before.is_stable and not beyond
-
-
-def unstable_directions(orbit: Orbit) -> int:
-    """Return how many multipliers are outside the unit circle."""
-    return int((np.abs(orbit.multipliers) > 1).sum())
 
 
 def kind_of(before: Orbit, after: Orbit, turns: bool) -> Kind:

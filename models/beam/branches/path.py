@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from models.beam.branches.bifurcations import Event, cause_of_loss, kind_of, unstable_directions
+from models.beam.branches.bifurcations import Event, cause_of_loss, kind_of
 from models.beam.flow import passage
 from models.beam.modal import Array
 from models.beam.orbits import TOLERANCE, Orbit, defect, orbit_of
@@ -48,8 +48,10 @@ class Branch(NamedTuple):
     events : tuple of Event
         In the order in which they happen.
     end : str
-        What lost stability, where that ends the branch; ``stop`` or ``start`` where it left the
-        range; ``stalled`` where no step was short enough; ``budget`` after `POINTS` points.
+        What lost stability, where that ends the branch; ``symmetry-breaking`` where asymmetric
+        orbits become symmetric, beyond which there are only their mirror images; ``stop`` or
+        ``start`` where it left the range; ``stalled`` where no step was short enough; ``budget``
+        after `POINTS` points.
     """
 
     values: Array
@@ -138,9 +140,9 @@ class Path:
             tests.append(lambda p: _turns(a, p))
         if before.contacts.tolist() != after.contacts.tolist():
             tests.append(lambda p: p.linear.about.contacts.tolist() != before.contacts.tolist())
-        outside = unstable_directions(before)
-        if unstable_directions(after) != outside:
-            tests.append(lambda p: unstable_directions(self.orbit(p)) != outside)
+        outside = before.unstable_directions
+        if after.unstable_directions != outside:
+            tests.append(lambda p: self.orbit(p).unstable_directions != outside)
         found: dict[str, tuple[float, Event]] = {}
         for has_changed in tests:
             near, far = locate(self.function, a, b, has_changed, self._nearness, self._tolerance)
@@ -174,13 +176,14 @@ def trace(path: Path, orbit: Orbit, stable_only: bool, largest: float) -> Branch
         return Branch(np.array(values), tuple(orbits), (), "stalled")
     for new in path.points(point, largest):
         after = path.orbit(new)
-        events += path.events(point, new, orbits[-1], after)
-        cause = cause_of_loss(events)
-        if stable_only and cause:
-            (lost,) = (event for event in events if event.loses_stability)
-            values.append(lost.value)
-            orbits.append(lost.before)
-            return Branch(np.array(values), tuple(orbits), tuple(events), cause)
+        for event in path.events(point, new, orbits[-1], after):
+            merges = event.kind == "symmetry-breaking" and not orbits[-1].is_symmetric
+            events.append(event._replace(after=None) if merges else event)
+            cause = cause_of_loss(events) if stable_only else None
+            if merges or cause:
+                values.append(event.value)
+                orbits.append(event.before)
+                return Branch(np.array(values), tuple(orbits), tuple(events), cause or event.kind)
         values.append(path.value(new.parameter))
         orbits.append(after)
         point = new
