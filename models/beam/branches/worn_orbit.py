@@ -70,6 +70,8 @@ class _Place(NamedTuple):
         Of the orbit, at phase 0 of the force.
     found : Passage
         Over its period.
+    rate : float
+        ds/dT.
     slope : ndarray, shape (3,)
         Of `at`, with s.
     """
@@ -77,6 +79,7 @@ class _Place(NamedTuple):
     at: Array
     state: Array
     found: Passage
+    rate: float
     slope: Array
 
 
@@ -98,8 +101,9 @@ class _Way:
         if root.outcome != "converged" or np.linalg.norm(root.state - state) > _NEAR * size:
             return None
         rates = root.linear.about.work / self._period * self._share
-        total = max(rates.sum(), np.finfo(float).tiny)
-        return _Place(at, root.state, root.linear.about, np.append(rates, 1.0) / total)
+        rate = float(rates.sum())
+        slope = np.append(rates, 1.0) / rate if rate > 0 else np.zeros(3)
+        return _Place(at, root.state, root.linear.about, rate, slope)
 
     def orbit(self, place: _Place) -> Orbit:
         """Return the orbit at a place."""
@@ -162,7 +166,7 @@ def wear_along(beam: Beam, orbit: Orbit, share: Array, stop: float, accuracy: fl
     if here is None or not orbit.is_stable:
         raise ValueError(f"no stable orbit to follow: the one given is {orbit.outcome}")
     places, orbits, events = [here], [orbit], list[Event]()
-    last_rate = _EXTINCT / here.slope[2]
+    last_rate = _EXTINCT * here.rate
     step, wall, end = _FIRST, np.inf, ""
     for _ in range(ATTEMPTS):
         end = _end(here, stop, last_rate)
@@ -180,6 +184,10 @@ def wear_along(beam: Beam, orbit: Orbit, share: Array, stop: float, accuracy: fl
             wall = step
             continue
         there, difference = stepped
+        too_far = there.at[:2].max() - stop
+        if too_far > _ARRIVED:
+            step *= 1 - too_far / (there.at - here.at)[:2].max()
+            continue
         error = np.abs(difference / [1.0, 1.0, there.at[2]]).max() / accuracy
         factor = min(_SAFETY * max(error, 1e-3) ** (-1 / 3), _GROWTH)
         if error <= 1:
@@ -201,7 +209,7 @@ def _contacts(place: _Place) -> list[int]:
 
 def _end(here: _Place, stop: float, last_rate: float) -> str:
     """Tell why wear goes no further, empty if it does."""
-    if here.slope[2] * last_rate > 1:
+    if here.rate <= last_rate:
         return "no-impact"
     return "stop" if stop - here.at[:2].max() < _ARRIVED else ""
 

@@ -208,3 +208,10 @@ def test_wear_fades_where_contact_does():
     assert ds.work_rate[-1].sum() < 2e-6 * ds.work_rate[0].sum()
     rate = ds.work_rate.sum("site")
     assert (rate[-100:].diff("point") < 0).all()
+
+
+def test_without_contact_there_is_no_wear():
+    ds = follow_wear(Params(force_amplitude=0.05), stop=2 * X0)
+    assert ds.end == "no-impact"
+    assert ds.time.values.tolist() == [0.0]
+    assert not ds.work_rate.any()
