@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from models.beam.modal import Array
-from models.beam.phases import split
-from models.beam.tip import parabola, reach, tip_after, weigh
+from models.beam.phases import join, split
+from models.beam.tip import parabola, reach, tip_after, tip_at, weigh
 from models.numerics.jit import kernel
 
 EVALUATIONS_PER_PERIOD = 100_000
@@ -188,3 +188,51 @@ def nearest_turn(phase, gaps, until, room):
         s = min(s + max(h, _SHORTEST), until)
         tip = tip_after(phase, room.weight, tip.live, s, room.power)
     return nearest
+
+
+@kernel
+def _sample(phase, weight, power, theta, until, trace):
+    """Set what of a period's trace falls after theta, up to `until`."""
+    step = 2 * math.pi / len(trace)
+    for k in range(len(trace)):
+        at = min((k + 1) * step, 2 * math.pi)
+        if theta < at <= until:
+            trace[k] = tip_at(phase, weight, at - theta, power)
+
+
+@kernel
+def run(free, contact, state, gaps, growth, record):
+    """Advance one beam over the periods of its record."""
+    work, strobe, peak, trace = record
+    size = len(state) - 2
+    m = size // 2
+    y, owed = state[:size], state[size:]
+    room = scratch(free, contact)
+    steps = len(trace) // len(work)
+    for period in range(len(work)):
+        site = site_of(y[:m].sum(), gaps)
+        theta = 0.0
+        evaluations = 0
+        while theta < 2 * math.pi:
+            to_end = 2 * math.pi - theta
+            phase = free if site == NOWHERE else contact
+            event = next_event(phase, y, gaps, site, theta, to_end, room)
+            if site != NOWHERE:
+                work[period, site] += event.work
+                owed[site] += event.work
+                peak[site] = max(peak[site], event.deepest)
+                if event.has_left:
+                    gaps[site] += growth[site] * owed[site]
+                    owed[site] = 0.0
+            evaluations += event.effort
+            if evaluations >= EVALUATIONS_PER_PERIOD:
+                state[:] = work[period:] = strobe[period:] = trace[period * steps :] = math.nan
+                return
+            until = theta + event.after if event.after < to_end else 2 * math.pi
+            if steps:
+                _sample(
+                    phase, room.weight, room.power, theta, until, trace[period * steps :][:steps]
+                )
+            join(phase, room.coefficient, event.after, room.power, y)
+            theta, site = until, event.site
+        strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()

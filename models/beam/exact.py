@@ -5,21 +5,18 @@ found to rounding, see `models.beam.events`. One beam at a time, at some twenty 
 `models.beam.lanes`, whose interface this module shares.
 """
 
-import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.events import EVALUATIONS_PER_PERIOD, NOWHERE, next_event, scratch, site_of
+from models.beam.events import run
 from models.beam.flow import passage
 from models.beam.modal import Array, Beams, Record, steady_response
 from models.beam.parameters import Settings
-from models.beam.phases import Phase, join, phases
-from models.beam.tip import tip_at
+from models.beam.phases import Phase, phases
 from models.beam.tuning import Beam
-from models.numerics.jit import kernel
 
 TRACE_STEPS = 200
 
@@ -118,7 +115,7 @@ def advance(
     record = Record.empty(len(state), periods, system.steps if trace else 0)
     for i, (free, contact) in enumerate(system.phases):
         row = Record(*(a[i] for a in record))
-        _run(free, contact, state[i], gaps[i], growth[i], row)
+        run(free, contact, state[i], gaps[i], growth[i], row)
     return record
 
 
@@ -146,51 +143,3 @@ def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
         found = passage(Beam.of(pair), state[i, :size], gaps[i], periods=periods)
         out[i, :size, :size] = found.tangents[:, :size]
     return out
-
-
-@kernel
-def _run(free, contact, state, gaps, growth, record):
-    """Advance one beam over the periods of its record."""
-    work, strobe, peak, trace = record
-    size = len(state) - 2
-    m = size // 2
-    y, owed = state[:size], state[size:]
-    room = scratch(free, contact)
-    steps = len(trace) // len(work)
-    for period in range(len(work)):
-        site = site_of(y[:m].sum(), gaps)
-        theta = 0.0
-        evaluations = 0
-        while theta < 2 * math.pi:
-            to_end = 2 * math.pi - theta
-            phase = free if site == NOWHERE else contact
-            event = next_event(phase, y, gaps, site, theta, to_end, room)
-            if site != NOWHERE:
-                work[period, site] += event.work
-                owed[site] += event.work
-                peak[site] = max(peak[site], event.deepest)
-                if event.has_left:
-                    gaps[site] += growth[site] * owed[site]
-                    owed[site] = 0.0
-            evaluations += event.effort
-            if evaluations >= EVALUATIONS_PER_PERIOD:
-                state[:] = work[period:] = strobe[period:] = trace[period * steps :] = math.nan
-                return
-            until = theta + event.after if event.after < to_end else 2 * math.pi
-            if steps:
-                _sample(
-                    phase, room.weight, room.power, theta, until, trace[period * steps :][:steps]
-                )
-            join(phase, room.coefficient, event.after, room.power, y)
-            theta, site = until, event.site
-        strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()
-
-
-@kernel
-def _sample(phase, weight, power, theta, until, trace):
-    """Set what of a period's trace falls after theta, up to `until`."""
-    step = 2 * math.pi / len(trace)
-    for k in range(len(trace)):
-        at = min((k + 1) * step, 2 * math.pi)
-        if theta < at <= until:
-            trace[k] = tip_at(phase, weight, at - theta, power)

@@ -11,7 +11,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam import exact
 from models.beam.events import LEFT, RIGHT
 from models.beam.flow import Passage, passage
 from models.beam.modal import Array
@@ -173,21 +172,11 @@ def settled_orbit(beam: Beam, state: Array, gaps: Array, period: int = 1) -> Orb
         orbit = find_orbit(beam, state, gaps, period, stable_only=True, farthest=_CLOSE)
         if orbit.outcome == "converged" and orbit.period == period:
             return orbit
-        state = _advanced(beam, state, gaps)
+        state = passage(beam, state, gaps, periods=_ROUND).state
     raise ValueError(
         f"the beam does not settle on an orbit of period {period} from this state within "
         f"{_ROUNDS * _ROUND} forcing periods: try another state or period"
     )
-
-
-def _advanced(beam: Beam, state: Array, gaps: Array) -> Array:
-    """Return the state some periods on."""
-    m = len(state) // 2
-    system = exact.System(((beam.free, beam.contact),), np.zeros((1, m), complex), np.ones(1), 0)
-    row = exact.start(system, np.zeros(1), np.zeros(1))
-    row[0, : 2 * m] = state
-    exact.advance(system, row, gaps[None].copy(), np.zeros((1, 2)), _ROUND)
-    return row[0, : 2 * m]
 
 
 def defect(found: Passage, state: Array, by_parameter: Array | None = None) -> Linear:

@@ -93,4 +93,4 @@ def _scaled(phase: Phase, ratio: float, steady: NDArray[np.complex128]) -> Phase
     shape[1] = whole.real, whole.imag
     tip = phase.tip.copy()
     tip[:, 1] = steady.sum().real, steady.sum().imag
-    return Phase(rate, np.hypot(*rate), tip, shape, dual)
+    return phase._replace(rate=rate, speed=np.hypot(*rate), tip=tip, shape=shape, dual=dual)
