@@ -204,9 +204,9 @@ def _sample(phase, weight, power, theta, until, trace):
 def run(free, contact, state, gaps, growth, record):
     """Advance one beam over the periods of its record."""
     work, strobe, peak, trace = record
-    size = len(state) - 2
+    size = len(state) - 3
     m = size // 2
-    y, owed = state[:size], state[size:]
+    y, owed = state[:size], state[size + 1 :]
     terms = max(len(free.speed), len(contact.speed))
     coefficient, weight, power = np.empty((2, terms)), np.empty((9, terms)), np.empty((3, terms))
     steps = len(trace) // len(work)
@@ -246,3 +246,4 @@ def run(free, contact, state, gaps, growth, record):
             join(phase, coefficient, s, power, y)
             theta = until
         strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()
+        state[size] += 1

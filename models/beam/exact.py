@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.events import run
-from models.beam.modal import Array, Beams, Record, steady_response
+from models.beam.modal import Array, Beams, Record, reach, steady_response
 from models.beam.parameters import Settings
-from models.beam.phases import Phase, phases
+from models.beam.phases import Phase, phases, set_lines
+from models.beam.random_load import COUNT, SPEED, TURN, draw, turn_at
 
 TRACE_STEPS = 200
 
@@ -28,6 +29,9 @@ class System(NamedTuple):
         Free flight and contact of each beam.
     modal : ndarray, shape (n, m), complex
         Steady amplitude of each mode without contact.
+    reach : ndarray, shape (n,)
+        Bound of the tip's displacement without contact.
+    beams : Beams
     forcing : ndarray, shape (n,)
         [rad s-1]
     steps : int
@@ -36,13 +40,27 @@ class System(NamedTuple):
 
     phases: tuple[tuple[Phase, Phase], ...]
     modal: NDArray[np.complex128]
+    reach: Array
+    beams: Beams
     forcing: Array
     steps: int
+
+    @property
+    def is_random(self) -> NDArray[np.bool_]:
+        """Which beams have a random load, shape (n,)."""
+        return self.beams.load["power"] > 0
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return the systems of some rows."""
         chosen = tuple(self.phases[i] for i in rows)
-        return System(chosen, self.modal[rows], self.forcing[rows], self.steps)
+        return System(
+            chosen,
+            self.modal[rows],
+            self.reach[rows],
+            self.beams.take(rows),
+            self.forcing[rows],
+            self.steps,
+        )
 
 
 def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
@@ -62,7 +80,8 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     rows = np.arange(len(beams.forcing))
     each = tuple(phases(beams, i) for i in range(len(rows)))
     steps = settings.steps_per_period or TRACE_STEPS
-    yield rows, System(each, steady_response(beams), beams.forcing, steps)
+    modal = steady_response(beams)
+    yield rows, System(each, modal, reach(beams), beams, beams.forcing, steps)
 
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:
@@ -76,11 +95,12 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
 
     Returns
     -------
-    ndarray, shape (n, 2 m + 2)
-        z and dz/d(Omega t) of each mode, then the work of each site's unfinished contact.
+    ndarray, shape (n, 2 m + 3)
+        z and dz/d(Omega t) of each mode, the clock: forcing periods since the start, and the work
+        of each site's unfinished contact.
     """
     n, m = system.modal.shape
-    state = np.zeros((n, 2 * m + 2))
+    state = np.zeros((n, 2 * m + 3))
     state[:, 0] = displacement
     state[:, m] = velocity / system.forcing
     return state
@@ -94,7 +114,7 @@ def advance(
     Parameters
     ----------
     system : System
-    state : ndarray, shape (n, 2 m + 2)
+    state : ndarray, shape (n, 2 m + 3)
         Updated in place.
     gaps : ndarray, shape (n, 2)
         Right and left, in initial gaps; updated in place, at the end of each contact.
@@ -113,5 +133,40 @@ def advance(
     record = Record.empty(len(state), periods, system.steps if trace else 0)
     for i, (free, contact) in enumerate(system.phases):
         row = Record(*(a[i] for a in record))
-        run(free, contact, state[i], gaps[i], growth[i], row)
+        if system.beams.load[i]["power"] > 0:
+            _advance_random(system, i, state[i], gaps[i], growth[i], row)
+        else:
+            run(free, contact, state[i], gaps[i], growth[i], row)
     return record
+
+
+def _advance_random(
+    system: System, row: int, state: Array, gaps: Array, growth: Array, record: Record
+) -> None:
+    """Advance one beam under a random load, whose phasors are set anew in each period."""
+    free, contact = system.phases[row]
+    load = system.beams.load[row]
+    lines = np.empty((COUNT, 3))
+    drawn = -1
+    periods = len(record.work)
+    steps = len(record.trace) // periods
+    for period in range(periods):
+        if np.isnan(state[0]):  # the budget ended
+            record.work[period:] = record.strobe[period:] = np.nan
+            record.trace[period * steps :] = np.nan
+            return
+        epoch, since = divmod(int(state[-3]), int(load["epoch"]))
+        if epoch != drawn:
+            draw(load, epoch, lines)
+            set_lines(free, contact, system.beams, row, lines)
+            drawn = epoch
+        for j in range(COUNT):
+            angle = 2 * np.pi * turn_at(lines[j, SPEED], lines[j, TURN], since)
+            free.phasor[:, j] = np.cos(angle), np.sin(angle)
+        one = Record(
+            record.work[period : period + 1],
+            record.strobe[period : period + 1],
+            record.peak,
+            record.trace[period * steps : (period + 1) * steps],
+        )
+        run(free, contact, state, gaps, growth, one)

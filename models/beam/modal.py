@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from models.beam.finite_element import modes
 from models.beam.parameters import Rows, Settings
+from models.beam.random_load import random_load, sure_reach, tip_deviation
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,8 @@ class Beams(NamedTuple):
         F/X0 [N m-1].
     stiffness : ndarray, shape (n,)
         k_c [N m-1].
+    load : ndarray of random_load.LOAD, shape (n,)
+        The random force over X0.
     """
 
     forcing: Array
@@ -41,13 +44,14 @@ class Beams(NamedTuple):
     mobility: Array
     force: Array
     stiffness: Array
+    load: NDArray[np.void]
 
     def take(self, rows: NDArray[np.intp]) -> "Beams":
         """Return the beams of some rows."""
         return Beams._make(a[rows] for a in self)
 
 
-def beams(p: Rows, settings: Settings) -> Beams:
+def beams(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -> Beams:
     """Bring n beams into modal form.
 
     Parameters
@@ -56,6 +60,8 @@ def beams(p: Rows, settings: Settings) -> Beams:
         Each field an ndarray of shape (n,).
     settings : Settings
         Its `elements` and `modes` count.
+    seed : ndarray of uint64, shape (n,), optional
+        Of the random load; 0 if not given.
 
     Returns
     -------
@@ -72,13 +78,17 @@ def beams(p: Rows, settings: Settings) -> Beams:
     )
     w = shapes.frequency
     decay = 0.5 * (p.mass_damping[:, None] + p.stiffness_damping[:, None] * w**2)
+    mobility = shapes.tip**2
+    if seed is None:
+        seed = np.zeros(len(w), np.uint64)
     return Beams(
         2 * np.pi * p.forcing_frequency,
         w,
         decay,
-        shapes.tip**2,
+        mobility,
         p.force_amplitude / p.initial_gap,
         p.contact_stiffness,
+        random_load(p, w, decay, mobility, seed),
     )
 
 
@@ -97,6 +107,26 @@ def steady_response(b: Beams) -> NDArray[np.complex128]:
     forcing = b.forcing[:, None]
     stiffness = np.asarray(b.frequency**2 - forcing**2 + 2j * b.decay * forcing, complex)
     return b.mobility * b.force[:, None] / stiffness
+
+
+def reach(b: Beams) -> Array:
+    """Return what the displacement of the tip never exceeds without contact.
+
+    Parameters
+    ----------
+    b : Beams
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In initial gaps. A random force has no such bound, but one that no life is long enough to
+        see exceeded.
+    """
+    harmonic = np.abs(steady_response(b).sum(axis=1))
+    if not b.load["power"].any():
+        return harmonic
+    random = tip_deviation(b.load, b.forcing, b.frequency, b.decay, b.mobility)
+    return harmonic + sure_reach(random)
 
 
 class Record(NamedTuple):
