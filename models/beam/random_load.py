@@ -14,11 +14,12 @@ some 0.3 Hz wide. So only half of their edges lie evenly, and the others at equa
 that a white force gives to the modes, sum_i b_i d_i/((w - w_i)^2 + d_i^2).
 
 J lines go on for ever in the way they were drawn; a process forgets. So all are drawn anew, from
-the row's seed and the number of the epoch, after each epoch of 8 (1/d + 1/B) with the slowest decay
-d and the bandwidth B: eight times as long as the beam remembers. The force never repeats, and the
-time mean of a work-rate tends to its mean over all realisations, that of the process. The force
-jumps from epoch to epoch, and the steady response with it; what the modes lack they keep as free
-vibration. The band's ends are blurred by the inverse of an epoch, some 0.1 Hz.
+the row's seed and the number of the epoch, after each epoch of 2/d + 200/B, with the slowest decay d
+and the bandwidth B: a few times as long as beam and force remember. The force never repeats, and
+the time mean of a work-rate tends to its mean over all realisations, that of the process. From epoch
+to epoch the force jumps, and the steady response with it; what the modes lack then they keep as free
+vibration. The jumps blur the band: at a distance D beyond its ends there is a level of
+S/(2 pi^2 D epoch), less than S B/(3900 D).
 
 Time is counted in whole forcing periods, and phases from the beginning of the epoch, so that
 neither a long run nor where it is interrupted makes a difference.
@@ -50,7 +51,7 @@ seed
 """
 
 AMPLITUDE, SPEED, TURN = range(3)  # columns of the lines of an epoch
-_EPOCH = 8
+_MEMORIES, _TURNS = 2, 200  # of the slowest mode, and of the bandwidth, in an epoch
 _SURE = 9.0  # standard deviations that no life ever sees: once in some 10^17 oscillations
 _NODES = 4  # of the quadrature of each sub-band
 _STRIDE, _MIX_1, _MIX_2 = map(np.uint64, (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
@@ -99,11 +100,11 @@ def random_load(
     )
     modes = (a[rows] for a in (frequency, decay, mobility))
     edges = _divide(2 * np.pi * low, 2 * np.pi * high, *modes) / (2 * np.pi * forcing[:, None])
-    memory = 1 / decay[rows].min(axis=1) + 1 / (high - low)
+    epoch = _MEMORIES / decay[rows].min(axis=1) + _TURNS / (high - low)
     one = np.empty(len(rows), LOAD)
     one["power"] = 2 * p.random_force_level[rows] * forcing / p.initial_gap[rows] ** 2
     one["edges"] = edges
-    one["epoch"] = np.ceil(_EPOCH * memory * forcing)
+    one["epoch"] = np.ceil(epoch * forcing)
     one["seed"] = seed[rows]
     load[rows] = one
     return load
