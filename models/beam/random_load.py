@@ -18,8 +18,9 @@ the row's seed and the number of the epoch, after each epoch of 2/d + 200/B, wit
 and the bandwidth B: a few times as long as beam and force remember. The force never repeats, and
 the time mean of a work-rate tends to its mean over all realisations, that of the process. From epoch
 to epoch the force jumps, and the steady response with it; what the modes lack then they keep as free
-vibration. The jumps blur the band: at a distance D beyond its ends there is a level of
-S/(2 pi^2 D epoch), less than S B/(3900 D).
+vibration. The jumps blur the band, to a level of S B/(2 pi^2 |f - f_low| |f - f_high|) over the
+epoch outside. Where that would make the tip vary more than 1 % by modes that lie outside, the epoch
+is longer, up to 30 times.
 
 Time is counted in whole forcing periods, and phases from the beginning of the epoch, so that
 neither a long run nor where it is interrupted makes a difference.
@@ -52,6 +53,8 @@ seed
 
 AMPLITUDE, SPEED, TURN = range(3)  # columns of the lines of an epoch
 _MEMORIES, _TURNS = 2, 200  # of the slowest mode, and of the bandwidth, in an epoch
+_BLUR = 0.01  # of the tip's variance, from modes outside the band
+_LONGER = 30.0
 _SURE = 9.0  # standard deviations that no life ever sees: once in some 10^17 oscillations
 _NODES = 4  # of the quadrature of each sub-band
 _STRIDE, _MIX_1, _MIX_2 = map(np.uint64, (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
@@ -98,14 +101,16 @@ def random_load(
     forcing, low, high = (
         a[rows] for a in (p.forcing_frequency, p.random_force_low, p.random_force_high)
     )
-    modes = (a[rows] for a in (frequency, decay, mobility))
+    modes = tuple(a[rows] for a in (frequency, decay, mobility))
     edges = _divide(2 * np.pi * low, 2 * np.pi * high, *modes) / (2 * np.pi * forcing[:, None])
-    epoch = _MEMORIES / decay[rows].min(axis=1) + _TURNS / (high - low)
     one = np.empty(len(rows), LOAD)
     one["power"] = 2 * p.random_force_level[rows] * forcing / p.initial_gap[rows] ** 2
     one["edges"] = edges
-    one["epoch"] = np.ceil(epoch * forcing)
     one["seed"] = seed[rows]
+    own = tip_deviation(one, 2 * np.pi * forcing, *modes) ** 2
+    blur = one["power"] / (2 * forcing) * _blur(low, high, *modes)
+    epoch = _MEMORIES / decay[rows].min(axis=1) + _TURNS / (high - low)
+    one["epoch"] = np.ceil(forcing * np.clip(blur / (_BLUR * own), epoch, _LONGER * epoch))
     load[rows] = one
     return load
 
@@ -129,6 +134,16 @@ def _divide(low: Array, high: Array, frequency: Array, decay: Array, mobility: A
     )
     uneven = w + d * np.tan(angle + (goal - (total - own)) / b)
     return np.sort(np.hstack([even, np.clip(uneven, low[:, None], high[:, None])]), axis=1)
+
+
+def _blur(low: Array, high: Array, frequency: Array, decay: Array, mobility: Array) -> Array:
+    """Return the tip's variance from modes outside the band, times epoch over level, shape (n,)."""
+    low, high, natural = low[:, None], high[:, None], frequency / (2 * np.pi)
+    band = high - low
+    to_low, to_high = (np.maximum(np.abs(natural - end), band / 20) for end in (low, high))
+    outside = (natural < low) | (natural > high)
+    level = outside * band / (2 * np.pi**2 * to_low * to_high)
+    return (level * mobility**2 / (8 * decay * frequency**2)).sum(axis=1)
 
 
 @kernel
