@@ -59,9 +59,7 @@ def batch(
     return _in_units(p, _take(simulated, back.reshape(-1)), settings)
 
 
-def simulate_rows(
-    p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None
-) -> Simulated:
+def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -> Simulated:
     """Find the settled response and the nondimensional lives of n beams.
 
     Parameters

@@ -18,7 +18,6 @@ are added to the sampled penetration; measured, that makes the error of a work-r
 times smaller.
 """
 
-
 import numpy as np
 
 from models.beam.lane_lines import Lines, Load, draw_lines, redraw_lines, sum_lines
@@ -239,7 +238,7 @@ def advance(
         np.sin(phase),
         aligned(groups * _UNROLL * _MODE * LANES),
         aligned(_HEAD * LANES),
-        Lines.room(system.is_random.any(), system.steps, system.oscillators.shape[2]),
+        Lines.room(bool(system.is_random.any()), system.steps, system.oscillators.shape[2]),
         tuple(record),
     )
     return record

@@ -123,7 +123,7 @@ def _note(
             continue
         wear = _Wear(x, rate[:, site], doubt[:, site])
         simulated = max(simulated, wear.life(x[-1])[0])
-        for depth in np.flatnonzero(growths <= x[-1] * (1 + 1e-9)):
+        for depth in np.flatnonzero(growths <= x[-1] * (1 + 1e-9)).tolist():
             out.time[i, site, depth], out.error[i, site, depth] = wear.life(growths[depth])
             out.reached[i, site, depth] = True
             at[site, depth] = np.interp(growths[depth], x, np.arange(len(x)))
@@ -148,7 +148,6 @@ class _Wear:
         if self.interpolated:
             self.log, self.relative = np.log(rate), relative
         else:
-            # The first node's mean is of a longer run; others vary alike, relative to their size.
             self.coefficient, self.covariance = _fit(x / x[-1], rate)
 
     def life(self, end: float) -> tuple[float, float]:

@@ -10,17 +10,17 @@ width of the band, and its expected spectrum is flat. A line acts through the ex
 as the harmonic force does, so that nothing is sampled.
 
 Sub-bands of equal width would leave a sharp resonance to one line, or to none: the beam's own are
-some 0.3 Hz wide. So only half of their edges lie evenly, and the others at equal shares of the power
-that a white force gives to the modes, sum_i b_i d_i/((w - w_i)^2 + d_i^2).
+some 0.3 Hz wide. So only half of their edges lie evenly, and the others at equal shares of the
+power that a white force gives to the modes, sum_i b_i d_i/((w - w_i)^2 + d_i^2).
 
 J lines go on for ever in the way they were drawn; a process forgets. So all are drawn anew, from
-the row's seed and the number of the epoch, after each epoch of 2/d + 200/B, with the slowest decay d
-and the bandwidth B: a few times as long as beam and force remember. The force never repeats, and
-the time mean of a work-rate tends to its mean over all realisations, that of the process. From epoch
-to epoch the force jumps, and the steady response with it; what the modes lack then they keep as free
-vibration. The jumps blur the band, to a level of S B/(2 pi^2 |f - f_low| |f - f_high|) over the
-epoch outside. Where that would make the tip vary more than 1 % by modes that lie outside, the epoch
-is longer, up to 30 times.
+the row's seed and the number of the epoch, after each epoch of 2/d + 200/B, with the slowest decay
+d and the bandwidth B: a few times as long as beam and force remember. The force never repeats, and
+the time mean of a work-rate tends to its mean over all realisations, that of the process. From
+epoch to epoch the force jumps, and the steady response with it; what the modes lack then they keep
+as free vibration. The jumps blur the band, to a level of S B/(2 pi^2 |f - f_low| |f - f_high|) over
+the epoch outside. Where that would make the tip vary more than 1 % by modes that lie outside, the
+epoch is longer, up to 30 times.
 
 Time is counted in whole forcing periods, and phases from the beginning of the epoch, so that
 neither a long run nor where it is interrupted makes a difference.
@@ -57,7 +57,9 @@ _BLUR = 0.01  # of the tip's variance, from modes outside the band
 _LONGER = 30.0
 _SURE = 9.0  # standard deviations that no life ever sees: once in some 10^17 oscillations
 _NODES = 4  # of the quadrature of each sub-band
-_STRIDE, _MIX_1, _MIX_2 = map(np.uint64, (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB))
+_STRIDE, _MIX_1, _MIX_2 = map(
+    np.uint64, (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB)
+)
 
 
 def has_band(p: Rows) -> NDArray[np.bool_]:

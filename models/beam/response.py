@@ -22,7 +22,7 @@ LONGEST_PERIOD = 16
 TRANSIENT = 4  # segments left out of a time mean
 BUDGET = 32  # segments
 RANDOM_ACCURACY = 0.05  # relative error of a mean work-rate under a random load
-RANDOM_BUDGET = 32_768  # periods
+RANDOM_BUDGET = 16_384  # periods
 _SETTLED = 1e-4  # distance to the orbit, relative to the response
 _SHRINKING = 0.9  # factor of that distance from one look to the next
 _SYMMETRIC = 1e-3  # difference of the sites' work, relative to their sum
@@ -123,9 +123,7 @@ def _settle_random(
 ) -> None:
     """Average over a random load: nothing repeats, so only silence can be told from the rest."""
     now = state[rows]
-    mean = time_mean(
-        propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, RANDOM_BUDGET
-    )
+    mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, RANDOM_BUDGET)
     state[rows] = now
     out.work[rows], out.error[rows], out.peak[rows] = mean
     silent = rows[never_touches[rows] & (mean.work == 0).all(axis=1)]

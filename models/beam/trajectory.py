@@ -56,5 +56,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         random = params.initial_gap * random_load.force(b.load[0], time * params.forcing_frequency)
         quantities["random_force"] = ("N", "random force at the tip", random)
     if not has_band(p)[0]:
-        quantities = {name: (*about, np.nan * x) for name, (*about, _) in quantities.items()}
+        quantities = {
+            name: (unit, meaning, np.nan * x) for name, (unit, meaning, _) in quantities.items()
+        }
     return Trajectory(time, quantities)

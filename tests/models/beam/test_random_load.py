@@ -9,8 +9,8 @@ from scipy.stats import kstest
 from models.beam import MODEL, exact, lanes
 from models.beam.modal import beams, reach
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
-from models.beam.random_load import COUNT, force, tip_deviation
 from models.beam.random_lives import _fit
+from models.beam.random_load import COUNT, force, tip_deviation
 from models.beam.response import settle
 from uq import simulate
 from uq.contract import Status
@@ -164,7 +164,10 @@ def test_through_contacts_lanes_converge_to_exact():
 
 def test_exact_is_an_independent_integration_of_the_beam_under_the_same_force():
     p = nominal(
-        random_force_level=LEVEL, mass_damping=60.0, random_force_low=10.0, initial_displacement=4e-4
+        random_force_level=LEVEL,
+        mass_damping=60.0,
+        random_force_low=10.0,
+        initial_displacement=4e-4,
     )
     elements, periods = 2, 4
     b, system = prepared(exact, p, [11], elements=elements)
