@@ -57,7 +57,7 @@ def many_forces(n, seconds, rate, **values):
 
 
 def test_the_force_has_the_level_asked_for_within_the_band_and_little_outside():
-    low, high = 20.0, 120.0
+    low, high = 5.0, 120.0
     band = {"random_force_low": low, "random_force_high": high, "mass_damping": 60.0}
     f = many_forces(24, 60.0, 500.0, **band)
     variance = f.var(axis=1)
