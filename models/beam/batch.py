@@ -10,6 +10,8 @@ from models.beam import exact, lanes, response
 from models.beam.lives import Lives, find_lives
 from models.beam.modal import Array, beams
 from models.beam.parameters import Params, Rows, Settings
+from models.beam.random_lives import find_random_lives
+from models.beam.random_load import has_band
 from uq.contract import Status
 
 PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
@@ -36,7 +38,7 @@ def batch(
     x : ndarray, shape (n, d)
         Parameters in the order of `Params`.
     seed : ndarray of uint64, shape (n,)
-        Not used: the beam under a harmonic force is deterministic.
+        Of the random force's realisation; without one the beam is deterministic.
     settings : Settings
 
     Returns
@@ -44,15 +46,20 @@ def batch(
     outputs : dict of str to ndarray, shape (n, ...)
         As `models.beam.parameters.OUTPUTS` says, with ``*_censored`` beside each lifetime.
     status : ndarray of int8, shape (n,)
+        Non-finite, as are all outputs, where the band of a random force has no width.
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
-    dynamic = np.delete(x, _SCALES, axis=1)
+    seed = np.where(p.random_force_level > 0, seed, np.uint64(0))
+    # The halves of a seed are floats without rounding.
+    halves = np.stack([seed >> np.uint64(32), seed & np.uint64(0xFFFFFFFF)], axis=1)
+    dynamic = np.hstack([np.delete(x, _SCALES, axis=1), halves.astype(float)])
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
-    simulated = simulate_rows(Params._make(np.ascontiguousarray(x[first].T)), settings)
+    some: Rows = Params._make(np.ascontiguousarray(x[first].T))
+    simulated = simulate_rows(some, settings, seed[first])
     return _in_units(p, _take(simulated, back.reshape(-1)), settings)
 
 
-def simulate_rows(p: Rows, settings: Settings) -> Simulated:
+def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -> Simulated:
     """Find the settled response and the nondimensional lives of n beams.
 
     Parameters
@@ -60,17 +67,22 @@ def simulate_rows(p: Rows, settings: Settings) -> Simulated:
     p : Params
         Each field an ndarray of shape (n,).
     settings : Settings
+    seed : ndarray of uint64, shape (n,), optional
+        Of the random force; 0 if not given.
 
     Returns
     -------
     Simulated
-        NaN for a beam that takes too many steps or events in a period.
+        NaN for a beam that takes too many steps or events in a period, and for one whose random
+        force has no band.
     """
-    b = beams(p, settings)
+    b = beams(p, settings, seed)
     propagator = PROPAGATORS[settings.propagator]
     n, depths = len(p.length), len(settings.depths)
     whole = Simulated(response.Response.nothing(n), Lives.nothing(n, depths), b.frequency[:, 0])
-    for rows, system in propagator.groups(b, settings):
+    possible = np.flatnonzero(has_band(p))
+    for some, system in propagator.groups(b.take(possible), settings):
+        rows = possible[some]
         q = Params._make(field[rows] for field in p)
         settled, lives = _simulate_group(propagator, system, q, settings)
         fields: tuple[Any, ...] = (*whole.response, *whole.lives)
@@ -93,9 +105,20 @@ def _simulate_group(
     settled = response.settle(propagator, system, state, gaps)
     share = np.stack([np.ones_like(x0), p.wear_coefficient_ratio], axis=1)
     growths = np.asarray(settings.depths) / x0[:, None]
-    lives = find_lives(
-        propagator, system, state, gaps, settled.work, share, growths, settings.accuracy
-    )
+    lives = Lives.nothing(*growths.shape)
+    for is_random in (False, True):
+        rows = np.flatnonzero(system.is_random == is_random)
+        if not len(rows):
+            continue
+        start = (propagator, system.take(rows), state[rows], gaps[rows], settled.work[rows])
+        wear = (share[rows], growths[rows], settings.accuracy)
+        part = (
+            find_random_lives(*start, settled.error[rows], *wear)
+            if is_random
+            else find_lives(*start, *wear)
+        )
+        for field, some in zip(lives, part, strict=True):
+            field[rows] = some
     return settled, lives
 
 
@@ -160,4 +183,7 @@ def _in_units(
     outputs["regime"] = np.where(lost, np.int8(-1), s.response.regime)
     unfinished = (censored & (time < settings.horizon)).any(axis=(1, 2))
     status = np.where(lost | unfinished, Status.OUT_OF_BUDGET, Status.OK).astype(np.int8)
+    absurd = ~has_band(p)
+    status[absurd] = Status.NON_FINITE
+    outputs["fundamental_frequency"][absurd] = np.nan
     return outputs, status

@@ -204,9 +204,9 @@ def _sample(phase, weight, power, theta, until, trace):
 def run(free, contact, state, gaps, growth, record):
     """Advance one beam over the periods of its record."""
     work, strobe, peak, trace = record
-    size = len(state) - 2
+    size = len(state) - 3
     m = size // 2
-    y, owed = state[:size], state[size:]
+    y, owed = state[:size], state[size + 1 :]
     room = scratch(free, contact)
     steps = len(trace) // len(work)
     for period in range(len(work)):
@@ -236,3 +236,4 @@ def run(free, contact, state, gaps, growth, record):
             join(phase, room.coefficient, event.after, room.power, y)
             theta, site = until, event.site
         strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()
+        state[size] += 1

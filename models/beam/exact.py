@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from models.beam.events import run
 from models.beam.flow import passage
-from models.beam.modal import Array, Beams, Record, steady_response
+from models.beam.modal import Array, Beams, Record, reach, steady_response
 from models.beam.parameters import Settings
-from models.beam.phases import Phase, phases
+from models.beam.phases import Phase, phases, set_lines
+from models.beam.random_load import COUNT, SPEED, TURN, draw, turn_at
 from models.beam.tuning import Beam
 
 TRACE_STEPS = 200
@@ -30,6 +31,9 @@ class System(NamedTuple):
         Free flight and contact of each beam.
     modal : ndarray, shape (n, m), complex
         Steady amplitude of each mode without contact.
+    reach : ndarray, shape (n,)
+        Bound of the tip's displacement without contact.
+    beams : Beams
     forcing : ndarray, shape (n,)
         [rad s-1]
     steps : int
@@ -38,13 +42,27 @@ class System(NamedTuple):
 
     phases: tuple[tuple[Phase, Phase], ...]
     modal: NDArray[np.complex128]
+    reach: Array
+    beams: Beams
     forcing: Array
     steps: int
+
+    @property
+    def is_random(self) -> NDArray[np.bool_]:
+        """Which beams have a random load, shape (n,)."""
+        return self.beams.load["power"] > 0
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return the systems of some rows."""
         chosen = tuple(self.phases[i] for i in rows)
-        return System(chosen, self.modal[rows], self.forcing[rows], self.steps)
+        return System(
+            chosen,
+            self.modal[rows],
+            self.reach[rows],
+            self.beams.take(rows),
+            self.forcing[rows],
+            self.steps,
+        )
 
 
 def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
@@ -64,7 +82,8 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     rows = np.arange(len(beams.forcing))
     each = tuple(phases(beams, i) for i in range(len(rows)))
     steps = settings.steps_per_period or TRACE_STEPS
-    yield rows, System(each, steady_response(beams), beams.forcing, steps)
+    modal = steady_response(beams)
+    yield rows, System(each, modal, reach(beams), beams, beams.forcing, steps)
 
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:
@@ -78,11 +97,12 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
 
     Returns
     -------
-    ndarray, shape (n, 2 m + 2)
-        z and dz/d(Omega t) of each mode, then the work of each site's unfinished contact.
+    ndarray, shape (n, 2 m + 3)
+        z and dz/d(Omega t) of each mode, the clock: forcing periods since the start, and the work
+        of each site's unfinished contact.
     """
     n, m = system.modal.shape
-    state = np.zeros((n, 2 * m + 2))
+    state = np.zeros((n, 2 * m + 3))
     state[:, 0] = displacement
     state[:, m] = velocity / system.forcing
     return state
@@ -96,7 +116,7 @@ def advance(
     Parameters
     ----------
     system : System
-    state : ndarray, shape (n, 2 m + 2)
+    state : ndarray, shape (n, 2 m + 3)
         Updated in place.
     gaps : ndarray, shape (n, 2)
         Right and left, in initial gaps; updated in place, at the end of each contact.
@@ -115,7 +135,10 @@ def advance(
     record = Record.empty(len(state), periods, system.steps if trace else 0)
     for i, (free, contact) in enumerate(system.phases):
         row = Record(*(a[i] for a in record))
-        run(free, contact, state[i], gaps[i], growth[i], row)
+        if system.beams.load[i]["power"] > 0:
+            _advance_random(system, i, state[i], gaps[i], growth[i], row)
+        else:
+            run(free, contact, state[i], gaps[i], growth[i], row)
     return record
 
 
@@ -125,7 +148,7 @@ def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
     Parameters
     ----------
     system : System
-    state : ndarray, shape (n, 2 m + 2)
+    state : ndarray, shape (n, 2 m + 3)
         At phase 0 of the force; not changed.
     gaps : ndarray, shape (n, 2)
         Constant, in initial gaps.
@@ -133,9 +156,9 @@ def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
 
     Returns
     -------
-    ndarray, shape (n, 2 m + 2, 2 m + 2)
+    ndarray, shape (n, 2 m + 3, 2 m + 3)
         Derivative of each component after (rows) with respect to each before (columns); zero for
-        the work of unfinished contacts. NaN where `advance` gives NaN.
+        clock and the work of unfinished contacts. NaN where `advance` gives NaN.
     """
     out = np.zeros((*state.shape, state.shape[1]))
     size = 2 * system.modal.shape[1]
@@ -143,3 +166,35 @@ def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
         found = passage(Beam.of(pair), state[i, :size], gaps[i], periods=periods)
         out[i, :size, :size] = found.tangents[:, :size]
     return out
+
+
+def _advance_random(
+    system: System, row: int, state: Array, gaps: Array, growth: Array, record: Record
+) -> None:
+    """Advance one beam under a random load, whose phasors are set anew in each period."""
+    free, contact = system.phases[row]
+    load = system.beams.load[row]
+    lines = np.empty((COUNT, 3))
+    drawn = -1
+    periods = len(record.work)
+    steps = len(record.trace) // periods
+    for period in range(periods):
+        if np.isnan(state[0]):  # the budget ended
+            record.work[period:] = record.strobe[period:] = np.nan
+            record.trace[period * steps :] = np.nan
+            return
+        epoch, since = divmod(int(state[-3]), int(load["epoch"]))
+        if epoch != drawn:
+            draw(load, epoch, lines)
+            set_lines(free, contact, system.beams, row, lines)
+            drawn = epoch
+        for j in range(COUNT):
+            angle = 2 * np.pi * turn_at(lines[j, SPEED], lines[j, TURN], since)
+            free.phasor[:, j] = np.cos(angle), np.sin(angle)
+        one = Record(
+            record.work[period : period + 1],
+            record.strobe[period : period + 1],
+            record.peak,
+            record.trace[period * steps : (period + 1) * steps],
+        )
+        run(free, contact, state, gaps, growth, one)

@@ -6,13 +6,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.modal import Array, Beams, steady_response
+from models.beam.modal import Array, Beams, reach, steady_response
 from models.beam.parameters import Settings
+from models.beam.random_load import COUNT, add_modes, draw
 from models.numerics.jit import kernel
 
 LADDER = tuple(base << k for k in range(8) for base in (64, 96))
 COMPLIANCE = 0.01
 UNSTABLE = 0.03  # compliance from which on the corrections below may feed themselves
+RESOLVED = 16  # least steps in a turn of the random load's fastest line
 
 
 class System(NamedTuple):
@@ -28,6 +30,11 @@ class System(NamedTuple):
         Displacement within the step per unit of its final penetration, negative.
     modal : ndarray, shape (n, all modes), complex
         Steady amplitude of each mode.
+    reach : ndarray, shape (n,)
+        Bound of the tip's displacement without contact.
+    load : ndarray of random_load.LOAD, shape (n,)
+    oscillators : ndarray, shape (n, 3, all modes)
+        w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode: how it responds to the random load.
     forcing : ndarray, shape (n,)
         [rad s-1]
     steps : int
@@ -38,8 +45,16 @@ class System(NamedTuple):
     begin: Array
     sigma: Array
     modal: NDArray[np.complex128]
+    reach: Array
+    load: NDArray[np.void]
+    oscillators: Array
     forcing: Array
     steps: int
+
+    @property
+    def is_random(self) -> NDArray[np.bool_]:
+        """Which beams have a random load, shape (n,)."""
+        return self.load["power"] > 0
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return the systems of some rows."""
@@ -136,13 +151,13 @@ def _prepare(forcing, frequency, decay, gain, moving, steps, modes, begin, sigma
 
 
 @kernel
-def _choose_steps(forcing, frequency, decay, gain, moving, steps):
+def _choose_steps(forcing, frequency, decay, gain, moving, least, steps):
     for n in range(frequency.shape[0]):
         for candidate in LADDER:
             h = 2 * np.pi / (forcing[n] * candidate)
             sigma, _ = _compliance(frequency[n], decay[n], gain[n], moving[n], h)
             steps[n] = candidate
-            if abs(sigma) <= COMPLIANCE:
+            if abs(sigma) <= COMPLIANCE and candidate >= least[n]:
                 break
 
 
@@ -151,8 +166,9 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
 
     Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
     gives way by no more than `COMPLIANCE` of its penetration, residual flexibility left out; the
-    error of a work-rate is then about 0.1 %. A row whose step stays too long, because contact is
-    too stiff for the longest of the ladder or for the steps that are set, is in no group.
+    error of a work-rate is then about 0.1 %. A turn of the fastest line of a random load takes
+    `RESOLVED` steps at least. A row whose step stays too long, because contact is too stiff or the
+    load too fast for the longest of the ladder or for the steps that are set, is in no group.
 
     Parameters
     ----------
@@ -168,8 +184,9 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     n, m = beams.frequency.shape
     gain = -beams.stiffness[:, None] * beams.mobility
     steps = np.full(n, settings.steps_per_period)
+    least = RESOLVED * beams.load["edges"][:, -1]
     if not settings.steps_per_period:
-        _choose_steps(beams.forcing, beams.frequency, beams.decay, gain, beams.moving, steps)
+        _choose_steps(beams.forcing, beams.frequency, beams.decay, gain, beams.moving, least, steps)
     for count in np.unique(steps):
         rows = np.flatnonzero(steps == count)
         b = beams.take(rows)
@@ -189,11 +206,31 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
         )
         last = 1 + np.flatnonzero(begin[:, 2].any(axis=0)).max(initial=0)
         modes, begin = modes[:, :, :last], begin[:, :, :last]
-        response = steady_response(b)
-        system = System(modes, begin, sigma + residual, response, b.forcing, int(count))
-        sound = np.flatnonzero(np.abs(sigma) <= UNSTABLE)
+        system = System(
+            modes,
+            begin,
+            sigma + residual,
+            steady_response(b),
+            reach(b),
+            b.load,
+            np.stack([b.frequency, b.decay, b.mobility], axis=1),
+            b.forcing,
+            int(count),
+        )
+        sound = np.flatnonzero((np.abs(sigma) <= UNSTABLE) & (least[rows] <= count))
         if len(sound):
             yield rows[sound], system.take(sound)
+
+
+@kernel
+def _open(load, forcing, oscillators, opening):
+    """Add the modes' steady response to the random load at t = 0."""
+    lines = np.empty((COUNT, 3))
+    for n in range(load.size):
+        if load[n]["power"] > 0:
+            frequency, decay, mobility = oscillators[n]
+            draw(load[n], 0, lines)
+            add_modes(lines, 0, 1.0, forcing[n], frequency, decay, mobility, opening[n])
 
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:
@@ -209,19 +246,25 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
 
     Returns
     -------
-    ndarray, shape (n, 2 m + 3)
-        y and r of each mode, then penetration, displacement and the displacement a step before.
+    ndarray, shape (n, 2 m + 4)
+        y and r of each mode, then penetration, displacement, the displacement a step before, and
+        the clock: forcing periods since the start.
     """
     n, _, m = system.modes.shape
     to_displacement, to_velocity, moving = system.begin.transpose(1, 0, 2)
     modal = system.modal[:, :m]
     z = -modal.real * moving
     v = modal.imag * system.forcing[:, None]
+    if system.is_random.any():
+        opening = np.zeros((n, 2, system.oscillators.shape[2]))
+        _open(system.load, system.forcing, system.oscillators, opening)
+        z -= opening[:, 0, :m] * moving
+        v -= opening[:, 1, :m]
     z[:, 0] += displacement
     v[:, 0] += velocity
-    state = np.zeros((n, 2 * m + 3))
+    state = np.zeros((n, 2 * m + 4))
     state[:, :m] = z
     state[:, m : 2 * m] = to_displacement * z + to_velocity * v - system.modes[:, 0] * z
-    state[:, -2] = displacement
-    state[:, -1] = displacement
+    state[:, 2 * m + 1] = displacement
+    state[:, 2 * m + 2] = displacement
     return state

@@ -1,7 +1,8 @@
 """The fast propagator: sixteen beams abreast, fixed steps, exact between the samples of the force.
 
 Each mode is propagated exactly under a contact force that is linear within a step; the harmonic
-force enters through the exact steady response, so modes carry only what contact does to them. A
+force enters through the exact steady response, so modes carry only what contact does to them, and
+so does a random one, see `models.beam.lane_lines`. A
 damped mode under a sampled force obeys a two-term recurrence, kept here in transposed direct form:
 
     y_i <- t_i y_i + r_i + alpha_i p,    r_i <- beta_i p - d_i y_i,
@@ -19,6 +20,7 @@ times smaller.
 
 import numpy as np
 
+from models.beam.lane_lines import Lines, Load, draw_lines, redraw_lines, sum_lines
 from models.beam.lane_systems import System, groups, start
 from models.beam.modal import Array, Record
 from models.numerics.blocks import LANES, aligned
@@ -30,7 +32,7 @@ _UNROLL = 4  # modes in the straight-line body of the inner loop
 _MODE = 6  # slots of a mode: y, r, t, d, alpha, beta
 # slots of a lane beside its modes
 _P, _RIGHT, _LEFT, _RE, _IM, _STIFF, _SIGMA, _X1, _X2 = range(9)
-_WORK_R, _WORK_L, _PEAK_R, _PEAK_L, _SUM, _HEAD = range(9, 15)
+_WORK_R, _WORK_L, _PEAK_R, _PEAK_L, _SUM, _RANDOM, _HEAD = range(9, 16)
 
 
 @kernel
@@ -62,7 +64,7 @@ def _load(system_modes, sigma, response, state, gaps, first, w, head):
 @kernel
 def _store(w, head, first, state, gaps, peak):
     """Bring lanes back into their rows."""
-    m = (state.shape[1] - 3) // 2
+    m = (state.shape[1] - 4) // 2
     for n in range(first, min(first + LANES, state.shape[0])):
         lane = n - first
         for i in range(m):
@@ -113,6 +115,7 @@ def _step(w, head, groups, cosine, sine):
             head[_SUM * LANES + lane]
             + head[_RE * LANES + lane] * cosine
             - head[_IM * LANES + lane] * sine
+            + head[_RANDOM * LANES + lane]
         )
         over, under = free - right, -free - left
         p = ((over if over > 0.0 else 0.0) - (under if under > 0.0 else 0.0)) * head[
@@ -150,7 +153,9 @@ def _step(w, head, groups, cosine, sine):
 
 
 @kernel
-def _advance(system_modes, sigma, response, state, gaps, growth, cosine, sine, w, head, record):
+def _advance(
+    system_modes, sigma, response, load, state, gaps, growth, cosine, sine, w, head, lines, record
+):
     work, strobe, peak, trace = record
     n, periods, _ = work.shape
     steps = cosine.size
@@ -158,15 +163,22 @@ def _advance(system_modes, sigma, response, state, gaps, growth, cosine, sine, w
     for first in range(0, n, LANES):
         _load(system_modes, sigma, response, state, gaps, first, w, head)
         rows = min(LANES, n - first)
+        is_random = draw_lines(load, state, first, steps, lines)
         for period in range(periods):
             for lane in range(LANES):
                 head[_WORK_R * LANES + lane] = 0.0
                 head[_WORK_L * LANES + lane] = 0.0
+            if is_random:
+                redraw_lines(load, state, first, period, steps, lines, w, _MODE * LANES)
+                sum_lines(load, state, first, period, lines)
             last_but_two = np.zeros(LANES)
             for s in range(steps):
                 if s == steps - 1:
                     for lane in range(LANES):
                         last_but_two[lane] = head[_X2 * LANES + lane]
+                if is_random:
+                    for lane in range(LANES):
+                        head[_RANDOM * LANES + lane] = lines.total[s * LANES + lane]
                 _step(w, head, groups, cosine[s], sine[s])
                 if trace.size:
                     for lane in range(rows):
@@ -185,6 +197,7 @@ def _advance(system_modes, sigma, response, state, gaps, growth, cosine, sine, w
                 head[_RIGHT * LANES + lane] += growth[row, 0] * work[row, period, 0]
                 head[_LEFT * LANES + lane] += growth[row, 1] * work[row, period, 1]
         _store(w, head, first, state, gaps, peak)
+    state[:, state.shape[1] - 1] += periods
 
 
 def advance(
@@ -195,7 +208,7 @@ def advance(
     Parameters
     ----------
     system : System
-    state : ndarray, shape (n, 2 m + 3)
+    state : ndarray, shape (n, 2 m + 4)
         Updated in place.
     gaps : ndarray, shape (n, 2)
         Right and left, in initial gaps; updated in place, at the end of each period.
@@ -217,6 +230,7 @@ def advance(
         system.modes,
         system.sigma,
         system.modal.sum(axis=1),
+        Load(system.load, system.oscillators, system.begin, system.forcing),
         state,
         gaps,
         growth,
@@ -224,6 +238,7 @@ def advance(
         np.sin(phase),
         aligned(groups * _UNROLL * _MODE * LANES),
         aligned(_HEAD * LANES),
+        Lines.room(bool(system.is_random.any()), system.steps, system.oscillators.shape[2]),
         tuple(record),
     )
     return record

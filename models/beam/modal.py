@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from models.beam.finite_element import modes
 from models.beam.parameters import Rows, Settings
+from models.beam.random_load import random_load, sure_reach, tip_deviation
 
 Array = NDArray[np.float64]
 
@@ -35,6 +36,8 @@ class Beams(NamedTuple):
         k_c [N m-1].
     moving : ndarray of int, shape (n,)
         How many modes obey their equations; those beyond follow the contact force at once.
+    load : ndarray of random_load.LOAD, shape (n,)
+        The random force over X0.
     """
 
     forcing: Array
@@ -44,13 +47,14 @@ class Beams(NamedTuple):
     force: Array
     stiffness: Array
     moving: NDArray[np.int64]
+    load: NDArray[np.void]
 
     def take(self, rows: NDArray[np.intp]) -> "Beams":
         """Return the beams of some rows."""
         return Beams._make(a[rows] for a in self)
 
 
-def beams(p: Rows, settings: Settings) -> Beams:
+def beams(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -> Beams:
     """Bring n beams into modal form.
 
     Parameters
@@ -59,6 +63,8 @@ def beams(p: Rows, settings: Settings) -> Beams:
         Each field an ndarray of shape (n,).
     settings : Settings
         Its `elements`, `modes` and `residual_flexibility` count.
+    seed : ndarray of uint64, shape (n,), optional
+        Of the random load; 0 if not given.
 
     Returns
     -------
@@ -76,14 +82,18 @@ def beams(p: Rows, settings: Settings) -> Beams:
     )
     w = shapes.frequency
     decay = 0.5 * (p.mass_damping[:, None] + p.stiffness_damping[:, None] * w**2)
+    mobility = shapes.tip**2
+    if seed is None:
+        seed = np.zeros(len(w), np.uint64)
     return Beams(
         2 * np.pi * p.forcing_frequency,
         w,
         decay,
-        shapes.tip**2,
+        mobility,
         p.force_amplitude / p.initial_gap,
         p.contact_stiffness,
         np.full(len(w), min(kept or w.shape[1], w.shape[1])),
+        random_load(p, w, decay, mobility, seed),
     )
 
 
@@ -102,6 +112,26 @@ def steady_response(b: Beams) -> NDArray[np.complex128]:
     forcing = b.forcing[:, None]
     stiffness = np.asarray(b.frequency**2 - forcing**2 + 2j * b.decay * forcing, complex)
     return b.mobility * b.force[:, None] / stiffness
+
+
+def reach(b: Beams) -> Array:
+    """Return what the displacement of the tip never exceeds without contact.
+
+    Parameters
+    ----------
+    b : Beams
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In initial gaps. A random force has no such bound, but one that no life is long enough to
+        see exceeded.
+    """
+    harmonic = np.abs(steady_response(b).sum(axis=1))
+    if not b.load["power"].any():
+        return harmonic
+    random = tip_deviation(b.load, b.forcing, b.frequency, b.decay, b.mobility)
+    return harmonic + sure_reach(random)
 
 
 class Record(NamedTuple):

@@ -168,6 +168,36 @@ class Params(NamedTuple):
             "at rest, assumed",
         ),
     ] = 0.0
+    random_force_level: Annotated[
+        float,
+        Parameter(
+            "S",
+            "N2 Hz-1",
+            "one-sided spectral level of the random force at the tip",
+            (0.0, 1e3),
+            "no random force, assumed: the paper names it as the next step",
+        ),
+    ] = 0.0
+    random_force_low: Annotated[
+        float,
+        Parameter(
+            "f_low",
+            "Hz",
+            "lower end of the random force's band",
+            (0.0, 1e3),
+            "assumed: well below the first natural frequency, 5.8 Hz",
+        ),
+    ] = 2.0
+    random_force_high: Annotated[
+        float,
+        Parameter(
+            "f_high",
+            "Hz",
+            "upper end of the random force's band; it must be above the lower one",
+            (1.0, 6e3),
+            "assumed: the first four natural frequencies, up to 189 Hz, are within the band",
+        ),
+    ] = 200.0
 
 
 Rows = Any

@@ -4,8 +4,9 @@ With y = [z, z'] of all modes and the time s since the phase began,
 
     y(s) = Re sum_k c_k shape_k exp(rate_k s),
 
-where one term is what the gap holds (rate 0), one the response to the force (rate i), and the
-others are the decaying modes of the phase, one for each conjugate pair. Damping is proportional
+where one term is what the gap holds (rate 0), one the response to the force (rate i), J more those
+to the lines of a random force, if there is one, and the others are the decaying modes of the phase,
+one for each conjugate pair. Damping is proportional
 in free flight but not in contact, whose modes are complex. Time is the phase of the forcing,
 Omega t; lengths are in initial gaps. Complex arrays are split into real and imaginary parts,
 axis 0 or 1, so that the compiler can vectorise over the last axis.
@@ -18,26 +19,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.modal import Array, Beams
+from models.beam.random_load import AMPLITUDE, COUNT, SPEED
 from models.numerics.jit import kernel
 
 Complex = NDArray[np.complex128]
 
 
 class Phase(NamedTuple):
-    """One phase of one beam of m modes, in T = 2 + K terms.
+    """One phase of one beam of m modes, in T = 2 + J + K terms.
 
     Attributes
     ----------
     rate : ndarray, shape (2, T)
-        Real and imaginary part; the modes after gap and force, slowest decay first.
+        Real and imaginary part; the modes after gap, force and lines, slowest decay first.
     speed : ndarray, shape (T,)
         Moduli of the rates.
     tip : ndarray, shape (2, T)
         Sum of the displacements in `shape`.
     shape : ndarray, shape (T, 2, 2 m)
-        Per unit gap, per unit force phasor, per unit coefficient of each mode.
+        Per unit gap, per unit phasor of the force and of each line, per unit coefficient of each
+        mode.
     dual : ndarray, shape (2 m, 2, K)
-        Takes y, less what gap and force hold, to the modes' coefficients.
+        Takes y, less what gap, force and lines hold, to the modes' coefficients.
+    phasor : ndarray, shape (2, J)
+        Of the lines, at phase 0 of the force in the present period; see `set_lines`.
     """
 
     rate: Array
@@ -45,6 +50,7 @@ class Phase(NamedTuple):
     tip: Array
     shape: Array
     dual: Array
+    phasor: Array
 
 
 def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
@@ -65,13 +71,42 @@ def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
     b = beams.mobility[row] / forcing**2
     response = b / (w**2 - 1 + 2j * d)
     flexibility = b / w**2
-    free = _phase(*_free_modes(w, d), np.zeros_like(b), force * response)
+    phasor = np.zeros((2, COUNT if beams.load[row]["power"] > 0 else 0))
+    free = _phase(*_free_modes(w, d), np.zeros_like(b), force * response, phasor)
     contact = _phase(
         *_contact_modes(w, d, b, stiffness),
         stiffness * flexibility / (1 + stiffness * flexibility.sum()),
         force * response / (1 + stiffness * response.sum()),
+        phasor,
     )
     return free, contact
+
+
+def set_lines(free: Phase, contact: Phase, beams: Beams, row: int, lines: Array) -> None:
+    """Put the lines of an epoch into both phases of one beam.
+
+    Parameters
+    ----------
+    free, contact : Phase
+        Updated in place.
+    beams : Beams
+    row : int
+    lines : ndarray, shape (J, 3)
+        As `models.beam.random_load.draw` sets them.
+    """
+    forcing, stiffness = beams.forcing[row], beams.stiffness[row]
+    w = beams.frequency[row] / forcing
+    d = beams.decay[row] / forcing
+    b = beams.mobility[row] / forcing**2
+    speed = lines[:, SPEED, None]
+    response = b / (w**2 - speed**2 + 2j * d * speed)
+    held = 1 + stiffness * response.sum(axis=1, keepdims=True)
+    here = slice(2, 2 + len(lines))
+    for phase, per_line in ((free, response), (contact, response / held)):
+        per_line = lines[:, AMPLITUDE, None] * per_line
+        phase.rate[1, here] = phase.speed[here] = lines[:, SPEED]
+        phase.tip[:, here] = _parts(per_line.sum(axis=1), 0)
+        phase.shape[here] = _parts(np.hstack([per_line, 1j * speed * per_line]), 1)
 
 
 def _free_modes(w: Array, d: Array) -> tuple[Complex, Complex, Complex]:
@@ -108,23 +143,31 @@ def _contact_modes(
 
 
 def _phase(
-    rate: Complex, shape: Complex, dual: Complex, per_gap: Array, per_force: Complex
+    rate: Complex,
+    shape: Complex,
+    dual: Complex,
+    per_gap: Array,
+    per_force: Complex,
+    phasor: Array,
 ) -> Phase:
     """Put the parts together, one term for each conjugate pair of modes."""
     keep = np.flatnonzero(rate.imag >= 0)
     keep = keep[np.argsort(-rate[keep].real)]
     twice = np.where(rate[keep].imag > 0, 2.0, 1.0)
-    rate = np.concatenate([[0, 1j], rate[keep]])
+    lines = phasor.shape[1]
+    rate = np.concatenate([[0, 1j], np.zeros(lines), rate[keep]])
     gap_column = np.concatenate([per_gap, np.zeros_like(per_gap)])
     force_column = np.concatenate([per_force, 1j * per_force])
-    shape = np.vstack([gap_column, force_column, shape.T[keep]])
-    dual = np.hstack([np.zeros((len(dual.T), 2)), dual.T[:, keep] * twice])
+    unset = np.zeros((lines, len(gap_column)))
+    shape = np.vstack([gap_column, force_column, unset, shape.T[keep]])
+    dual = np.hstack([np.zeros((len(dual.T), 2 + lines)), dual.T[:, keep] * twice])
     return Phase(
         _parts(rate, 0),
         np.hypot(*_parts(rate, 0)),
         _parts(shape[:, : len(per_gap)].sum(axis=1), 0),
         _parts(shape, 1),
         _parts(dual, 1),
+        phasor,
     )
 
 
@@ -167,11 +210,19 @@ def exponentials(phase, terms, s, power):
 def split(phase, y, gap, theta, coefficient):
     """Set coefficient (2, T) to the terms of a phase that begins with y at force phase theta."""
     coefficient[:] = 0.0
+    for j in range(phase.phasor.shape[1]):
+        angle = theta * phase.speed[2 + j]
+        c, e = math.cos(angle), math.sin(angle)
+        u, v = phase.phasor[0, j], phase.phasor[1, j]
+        coefficient[0, 2 + j], coefficient[1, 2 + j] = c * u - e * v, c * v + e * u
     c, e = math.cos(theta), math.sin(theta)
     for i in range(len(y)):
         rest = y[i] - phase.shape[0, 0, i] * gap
         rest -= phase.shape[1, 0, i] * c - phase.shape[1, 1, i] * e
-        for k in range(len(phase.speed)):
+        for k in range(2, 2 + phase.phasor.shape[1]):
+            rest -= phase.shape[k, 0, i] * coefficient[0, k]
+            rest += phase.shape[k, 1, i] * coefficient[1, k]
+        for k in range(2 + phase.phasor.shape[1], len(phase.speed)):
             coefficient[0, k] += phase.dual[i, 0, k] * rest
             coefficient[1, k] += phase.dual[i, 1, k] * rest
     coefficient[0, 0], coefficient[0, 1], coefficient[1, 1] = gap, c, e

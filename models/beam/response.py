@@ -2,7 +2,8 @@
 
 The tip is looked at once per forcing period. A response whose strobe points return after k periods
 is periodic, and its work-rate is exact; one that has not settled within the budget is aperiodic,
-and its work-rate is a time mean with the standard error of batch means.
+and its work-rate is a time mean with the standard error of batch means. Under a random load it
+never settles, see `models.beam.averages`.
 """
 
 from types import ModuleType
@@ -11,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.averages import time_mean
 from models.beam.modal import Array
 from models.beam.parameters import REGIMES
 from models.numerics.batch_means import mean_and_error
@@ -19,6 +21,8 @@ SEGMENT = 32  # periods between two looks; also the length of a batch
 LONGEST_PERIOD = 16
 TRANSIENT = 4  # segments left out of a time mean
 BUDGET = 32  # segments
+RANDOM_ACCURACY = 0.05  # relative error of a mean work-rate under a random load
+RANDOM_BUDGET = 16_384  # periods
 _SETTLED = 1e-4  # distance to the orbit, relative to the response
 _SHRINKING = 0.9  # factor of that distance from one look to the next
 _SYMMETRIC = 1e-3  # difference of the sites' work, relative to their sum
@@ -82,10 +86,13 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
         np.full(n, APERIODIC, np.int8),
         np.zeros(n),
     )
-    never_touches = np.abs(system.modal.sum(axis=1)) < gaps.min(axis=1)
+    never_touches = system.reach < gaps.min(axis=1)
     batches = np.zeros((n, BUDGET, 2))
     distance = np.full((n, LONGEST_PERIOD), np.inf)
-    left = np.arange(n)
+    random = np.flatnonzero(system.is_random)
+    if len(random):
+        _settle_random(propagator, system, state, gaps, never_touches, random, out)
+    left = np.flatnonzero(~system.is_random)
     for segment in range(BUDGET):
         if not len(left):
             break
@@ -103,6 +110,24 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
         left = left[period == 0]
     _note_aperiodic(out, left, batches)
     return out
+
+
+def _settle_random(
+    propagator: ModuleType,
+    system: Any,
+    state: Array,
+    gaps: Array,
+    never_touches: NDArray[np.bool_],
+    rows: NDArray[np.intp],
+    out: Response,
+) -> None:
+    """Average over a random load: nothing repeats, so only silence can be told from the rest."""
+    now = state[rows]
+    mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, RANDOM_BUDGET)
+    state[rows] = now
+    out.work[rows], out.error[rows], out.peak[rows] = mean
+    silent = rows[never_touches[rows] & (mean.work == 0).all(axis=1)]
+    out.regime[silent], out.period[silent] = NO_IMPACT, 1
 
 
 def _distances(strobe: Array) -> Array:

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from models.beam import exact
+from models.beam import exact, random_load
 from models.beam.batch import PROPAGATORS, initial_gaps
 from models.beam.modal import beams
 from models.beam.parameters import Params, Rows, Settings
+from models.beam.random_load import has_band
 from uq.contract import Trajectory
 
 PERIODS = 100
@@ -19,18 +20,20 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     params : Params
     settings : Settings
     seed : int
-        Not used: the beam under a harmonic force is deterministic.
+        Of the random force's realisation.
 
     Returns
     -------
     Trajectory
+        NaN where the band of a random force has no width.
     """
     p: Rows = Params._make(np.array([value], float) for value in params)
+    b = beams(p, settings, np.array([seed], np.uint64))
     propagator = PROPAGATORS[settings.propagator]
-    groups = list(propagator.groups(beams(p, settings), settings))
-    if not groups:  # contact too stiff for fixed steps
+    groups = list(propagator.groups(b, settings))
+    if not groups:  # contact too stiff, or a random force too fast, for fixed steps
         propagator = exact
-        groups = list(exact.groups(beams(p, settings), settings))
+        groups = list(exact.groups(b, settings))
     ((_, system),) = groups
     gaps = initial_gaps(p)
     x0 = p.initial_gap
@@ -42,13 +45,18 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     force = params.force_amplitude * np.cos(2 * np.pi * params.forcing_frequency * time)
     velocity = params.initial_gap * np.gradient(x, time)
     right, left = (contact * np.maximum(d, 0.0) for d in (x - gaps[0, 0], -x - gaps[0, 1]))
-    return Trajectory(
-        time,
-        {
-            "displacement": ("m", "tip displacement", params.initial_gap * x),
-            "velocity": ("m s-1", "tip velocity", velocity),
-            "contact_force_right": ("N", "force of the right stop on the tip", right),
-            "contact_force_left": ("N", "force of the left stop on the tip", left),
-            "force": ("N", "harmonic force at the tip", force),
-        },
-    )
+    quantities = {
+        "displacement": ("m", "tip displacement", params.initial_gap * x),
+        "velocity": ("m s-1", "tip velocity", velocity),
+        "contact_force_right": ("N", "force of the right stop on the tip", right),
+        "contact_force_left": ("N", "force of the left stop on the tip", left),
+        "force": ("N", "harmonic force at the tip", force),
+    }
+    if params.random_force_level > 0:
+        random = params.initial_gap * random_load.force(b.load[0], time * params.forcing_frequency)
+        quantities["random_force"] = ("N", "random force at the tip", random)
+    if not has_band(p)[0]:
+        quantities = {
+            name: (unit, meaning, np.nan * x) for name, (unit, meaning, _) in quantities.items()
+        }
+    return Trajectory(time, quantities)

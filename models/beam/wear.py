@@ -124,7 +124,7 @@ def run(
         History.nothing(n, looks * OVERTIME),
     )
     rate = work * share
-    reach = np.abs(system.modal.sum(axis=1))
+    reach = system.reach
     clock, grown, silence = np.zeros(n), np.zeros((n, 2)), np.zeros(n, np.int64)
     life = _Life(gaps, share, growths, reach, rate.max(axis=1), rate, grown, clock, silence)
     left, state, here = np.arange(n), state.copy(), gaps.copy()

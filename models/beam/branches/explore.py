@@ -80,7 +80,7 @@ def continue_orbit(
     Raises
     ------
     ValueError
-        If no such orbit is found at the start.
+        If no such orbit is found at the start, or the load is random.
     """
     if start is None:
         start = params.forcing_frequency if parameter == "forcing_frequency" else params.initial_gap
@@ -148,7 +148,7 @@ def follow_wear(
     Raises
     ------
     ValueError
-        If no stable orbit of this period is found at the initial gaps.
+        If no stable orbit of this period is found at the initial gaps, or the load is random.
     """
     tuning = _tuning(params, settings or Settings())
     beam = tuning.at(tuning.forcing)
@@ -170,6 +170,10 @@ def follow_wear(
 
 
 def _tuning(params: Params, settings: Settings) -> Tuning:
+    if params.random_force_level > 0:
+        raise ValueError("under a random load there are no periodic orbits: random_force_level > 0")
+    if settings.residual_flexibility:
+        raise ValueError("orbits are those of the exact propagator, without residual_flexibility")
     rows: Any = Params._make(np.array([value], float) for value in params)
     return Tuning(beams(rows, settings))
 
