@@ -21,11 +21,12 @@ times smaller.
 import numpy as np
 
 from models.beam.lane_systems import System, groups, start
+from models.beam.lane_tangents import carry
 from models.beam.modal import Array, Record
 from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
 
-__all__ = ["advance", "groups", "start"]
+__all__ = ["advance", "groups", "monodromy", "start"]
 
 _UNROLL = 4  # modes in the straight-line body of the inner loop
 _MODE = 6  # slots of a mode: y, r, t, d, alpha, beta
@@ -228,3 +229,28 @@ def advance(
         tuple(record),
     )
     return record
+
+
+def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
+    """Return the derivative of the state after some periods with respect to the state now.
+
+    It is that of the scheme itself, not of the beam that the scheme approximates.
+
+    Parameters
+    ----------
+    system : System
+    state : ndarray, shape (n, 2 m + 3)
+        Not changed.
+    gaps : ndarray, shape (n, 2)
+        In initial gaps, constant.
+    periods : int
+
+    Returns
+    -------
+    ndarray, shape (n, 2 m + 3, 2 m + 3)
+    """
+    record = advance(system, state.copy(), gaps.copy(), np.zeros_like(gaps), periods, trace=True)
+    n, size = state.shape
+    tangents = np.tile(np.eye(size), (n, 1, 1))
+    carry(system, state, gaps, record.trace, tangents)
+    return tangents
