@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.modal import Array
-from models.numerics.linear import solve
+from models.numerics.linear import inverse
+from models.numerics.multipliers import largest_multiplier
 
 _FARTHEST = 0.3  # longest first step, relative to the response
 _FASTER = 0.3  # each step over the one before, at most
@@ -80,29 +81,37 @@ def approached(
         np.full(n, periods),
         np.full(n, np.inf),
     )
-    left, longest = np.arange(n), _FARTHEST * size
+    inverted, left = _newton(propagator, system, state, gaps, periods)
+    longest = _FARTHEST * size
     for _ in range(_STEPS):
         if not len(left):
             break
-        part, here = system.take(left), out.state[left]
-        there, at = here.copy(), gaps[left].copy()
-        propagator.advance(part, there, at, np.zeros_like(at), periods)
-        flow = propagator.monodromy(part, here, at, periods)
-        equations = np.eye(here.shape[1]) - flow
-        steps, regular = solve(equations, (there - here)[:, :, None])
-        length = np.abs(steps[:, :, 0]).max(axis=1)
-        out.state[left] += steps[:, :, 0]
-        going = regular & (length <= longest[left])
+        residual = _advanced(propagator, system, out.state, gaps, periods, left)[0]
+        steps = (inverted @ residual[:, :, None])[:, :, 0]
+        out.state[left] += steps
+        length = np.abs(steps).max(axis=1)
+        going = length <= longest[left]
         longest[left] = _FASTER * length
         last = going & (length <= _LAST * size[left])
-        if last.any():
-            out.found[left[last]] = True
-            multipliers = np.linalg.eigvals(flow[last])
-            out.multiplier[left[last]] = np.abs(multipliers).max(axis=1)
-        left = left[going & ~last]
-    out.found[:] = out.multiplier < 1
+        out.found[left[last]] = True
+        going &= ~last
+        left, inverted = left[going], inverted[going]
     _describe(propagator, system, gaps, size, periods, out)
     return out
+
+
+def _newton(propagator, system, state, gaps, periods):
+    flow = propagator.monodromy(system, state, gaps, periods)
+    inverted, regular = inverse(np.eye(state.shape[1]) - flow)
+    rows = np.flatnonzero(regular)
+    return inverted[rows], rows
+
+
+def _advanced(propagator, system, state, gaps, periods, rows):
+    here, at = state[rows], gaps[rows]
+    there = here.copy()
+    record = propagator.advance(system.take(rows), there, at, np.zeros_like(at), periods)
+    return there - here, record
 
 
 def _describe(
@@ -110,10 +119,11 @@ def _describe(
 ) -> None:
     """Note work, peak and shortest period of the orbits that were found."""
     rows = np.flatnonzero(out.found)
-    at = gaps[rows]
-    record = propagator.advance(
-        system.take(rows), out.state[rows], at, np.zeros_like(at), periods
-    )
+    flow = propagator.monodromy(system.take(rows), out.state[rows], gaps[rows], periods)
+    out.multiplier[rows] = largest_multiplier(flow)
+    out.found[:] = out.multiplier < 1
+    rows = np.flatnonzero(out.found)
+    _, record = _advanced(propagator, system, out.state, gaps, periods, rows)
     out.work[rows], out.peak[rows] = record.work.mean(axis=1), record.peak
     for shorter in range(periods - 1, 0, -1):
         if periods % shorter == 0:

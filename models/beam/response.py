@@ -111,8 +111,9 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
         before, distance[left] = distance[left], _distances(record.strobe, size)
         silent = never_touches[left] & (record.work == 0).all(axis=(1, 2))
         _note_silence(out, left[silent])
-        guess = _guess(before, distance[left], tried[left])
-        guess[silent] = 0
+        guess = np.zeros(len(left), int)
+        if (segment + 1) % (1 + segment // 4) == 0:  # late ones wait for company
+            guess = np.where(silent, 0, _guess(before, distance[left], tried[left]))
         for k in np.unique(guess[guess > 0]):
             rows = left[guess == k]
             tried[rows, k - 1] = distance[rows, k - 1]
@@ -145,8 +146,11 @@ def _distances(strobe, size):
 
 def _guess(before: Array, now: Array, tried: Array) -> NDArray[np.int64]:
     """Return the shortest period an orbit may have that a response comes near, 0 if none."""
-    near = (now < _SHRINKING * before) & (now < _NEARER * tried)
-    return np.where(near.any(axis=1), near.argmax(axis=1) + 1, 0)
+    shrinking = now < _SHRINKING * before
+    first = shrinking.argmax(axis=1)
+    rows = np.arange(len(now))
+    near = shrinking[rows, first] & (now[rows, first] < _NEARER * tried[rows, first])
+    return np.where(near, first + 1, 0)
 
 
 def _note_silence(out: Response, rows: NDArray[np.intp]) -> None:
