@@ -1,8 +1,8 @@
 """The stable orbits that many beams approach at once, by Newton's method on the map of k periods.
 
-A beam's state is near an orbit when Newton's steps from it shrink as they do where the map is
-nearly linear: then a stable orbit is also the one that the beam comes to in time. A step that is
-long, or not much shorter than the one before, ends the search.
+A beam's state is near an orbit where steps with the Jacobian of its first point shrink fast: the
+map is nearly linear between the two, and a stable orbit is then also the one that the beam comes
+to in time. A step that is long, or not much shorter than the one before, ends the search.
 """
 
 from types import ModuleType
@@ -11,14 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.modal import Array
+from models.beam.modal import Array, Record
 from models.numerics.linear import inverse
 from models.numerics.multipliers import largest_multiplier
 
 _FARTHEST = 0.3  # longest first step, relative to the response
 _FASTER = 0.3  # each step over the one before, at most
 _LAST = 1e-6  # a step so short, relative to the response, is the last one
-_STEPS = 8
+_STEPS = 12
 _SAME = 1e-5  # of strobe points, relative to the response
 
 
@@ -49,6 +49,27 @@ class Approached(NamedTuple):
     multiplier: Array
 
 
+class _Map(NamedTuple):
+    """The map of k periods of n beams at constant gaps, strobed at phase 0 of the force."""
+
+    propagator: ModuleType
+    system: Any
+    gaps: Array
+    periods: int
+
+    def take(self, rows: NDArray[np.intp]) -> "_Map":
+        return self._replace(system=self.system.take(rows), gaps=self.gaps[rows])
+
+    def advance(self, state: Array) -> tuple[Array, Record]:
+        """Return the image of the state, and what is said of the way there."""
+        image, gaps = state.copy(), self.gaps.copy()
+        still = np.zeros_like(gaps)
+        return image, self.propagator.advance(self.system, image, gaps, still, self.periods)
+
+    def derivative(self, state: Array) -> Array:
+        return self.propagator.monodromy(self.system, state, self.gaps, self.periods)
+
+
 def approached(
     propagator: ModuleType, system: Any, state: Array, gaps: Array, size: Array, periods: int
 ) -> Approached:
@@ -73,61 +94,48 @@ def approached(
     Approached
     """
     n = len(state)
+    strobed = _Map(propagator, system, gaps, periods)
+    fixed = state.copy()
+    found = _fixed_points(strobed, fixed, size)
     out = Approached(
         np.zeros(n, bool),
-        state.copy(),
+        fixed,
         np.zeros((n, 2)),
         np.zeros((n, 2)),
         np.full(n, periods),
         np.full(n, np.inf),
     )
-    inverted, left = _newton(propagator, system, state, gaps, periods)
-    longest = _FARTHEST * size
-    for _ in range(_STEPS):
-        if not len(left):
-            break
-        residual = _advanced(propagator, system, out.state, gaps, periods, left)[0]
-        steps = (inverted @ residual[:, :, None])[:, :, 0]
-        out.state[left] += steps
-        length = np.abs(steps).max(axis=1)
-        going = length <= longest[left]
-        longest[left] = _FASTER * length
-        last = going & (length <= _LAST * size[left])
-        out.found[left[last]] = True
-        going &= ~last
-        left, inverted = left[going], inverted[going]
-    _describe(propagator, system, gaps, size, periods, out)
+    if not len(found):
+        return out
+    orbits = strobed.take(found)
+    out.multiplier[found] = largest_multiplier(orbits.derivative(fixed[found]))
+    out.found[:] = out.multiplier < 1
+    _, record = orbits.advance(fixed[found])
+    out.work[found], out.peak[found] = record.work.mean(axis=1), record.peak
+    for divisor in range(periods - 1, 0, -1):
+        if periods % divisor == 0:
+            apart = np.abs(record.strobe[:, divisor - 1] - record.strobe[:, -1]).max(axis=1)
+            out.period[found[apart <= _SAME * size[found]]] = divisor
+    out.multiplier[:] **= out.period / periods
     return out
 
 
-def _newton(propagator, system, state, gaps, periods):
-    flow = propagator.monodromy(system, state, gaps, periods)
-    inverted, regular = inverse(np.eye(state.shape[1]) - flow)
-    rows = np.flatnonzero(regular)
-    return inverted[rows], rows
-
-
-def _advanced(propagator, system, state, gaps, periods, rows):
-    here, at = state[rows], gaps[rows]
-    there = here.copy()
-    record = propagator.advance(system.take(rows), there, at, np.zeros_like(at), periods)
-    return there - here, record
-
-
-def _describe(
-    propagator: ModuleType, system: Any, gaps: Array, size: Array, periods: int, out: Approached
-) -> None:
-    """Note work, peak and shortest period of the orbits that were found."""
-    rows = np.flatnonzero(out.found)
-    flow = propagator.monodromy(system.take(rows), out.state[rows], gaps[rows], periods)
-    out.multiplier[rows] = largest_multiplier(flow)
-    out.found[:] = out.multiplier < 1
-    rows = np.flatnonzero(out.found)
-    _, record = _advanced(propagator, system, out.state, gaps, periods, rows)
-    out.work[rows], out.peak[rows] = record.work.mean(axis=1), record.peak
-    for shorter in range(periods - 1, 0, -1):
-        if periods % shorter == 0:
-            apart = np.abs(record.strobe[:, shorter - 1] - record.strobe[:, -1]).max(axis=1)
-            same = rows[apart <= _SAME * size[rows]]
-            out.period[same] = shorter
-    out.multiplier[rows] **= out.period[rows] / periods
+def _fixed_points(strobed: _Map, state: Array, size: Array) -> NDArray[np.intp]:
+    """Move states to fixed points of the map near them; return the rows where there is one."""
+    by_residual, regular = inverse(np.eye(state.shape[1]) - strobed.derivative(state))
+    found = np.zeros(len(state), bool)
+    left, longest = np.flatnonzero(regular), _FARTHEST * size
+    for _ in range(_STEPS):
+        if not len(left):
+            break
+        image, _ = strobed.take(left).advance(state[left])
+        residual = (image - state[left])[:, :, None]
+        step = (by_residual[left] @ residual)[:, :, 0]
+        state[left] += step
+        length = np.abs(step).max(axis=1)
+        shrinking = length <= longest[left]
+        longest[left] = _FASTER * length
+        last = shrinking & (length <= _LAST * size[left])
+        found[left[last]] = True
+        left = left[shrinking & ~last]
+    return np.flatnonzero(found)

@@ -17,7 +17,6 @@ are added to the sampled penetration; measured, that makes the error of a work-r
 times smaller.
 """
 
-
 import numpy as np
 
 from models.beam.lane_systems import System, groups, start

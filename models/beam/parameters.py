@@ -264,5 +264,10 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "regime": Output("1", "kind of response at the initial gaps", "category", categories=REGIMES),
     "period": Output("1", "period of the response in forcing periods, 0 if aperiodic"),
+    "floquet_multiplier": Output(
+        "1",
+        "largest modulus of the periodic response's Floquet multipliers, over its period",
+        may_be_undefined=True,
+    ),
     "fundamental_frequency": Output("Hz", "first natural frequency of the beam out of contact"),
 }

@@ -23,7 +23,7 @@ SEGMENT = 32  # periods between two looks; also the length of a batch
 LONGEST_PERIOD = 16
 TRANSIENT = 4  # segments left out of a time mean
 BUDGET = 32  # segments
-_NEAR = 0.05  # distance of strobe points a period apart, relative to the response
+_NEAR = 0.05  # k times the distance of strobe points k periods apart, relative to the response
 _SHRINKING = 0.9  # factor of that distance from one look to the next
 _NEARER = 0.5  # that distance over the one at which an orbit was looked for in vain
 _SYMMETRIC = 1e-3  # difference of the sites' work, relative to their sum
@@ -96,7 +96,8 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
     never_touches = np.abs(system.modal.sum(axis=1)) < gaps.min(axis=1)
     batches = np.zeros((n, BUDGET, 2))
     distance = np.full((n, LONGEST_PERIOD), np.inf)
-    tried = np.full((n, LONGEST_PERIOD), _NEAR / _NEARER)
+    lag = np.arange(1, LONGEST_PERIOD + 1)
+    tried = np.tile(_NEAR / _NEARER / lag, (n, 1))
     left = np.arange(n)
     for segment in range(BUDGET):
         if not len(left):
@@ -128,9 +129,9 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
 
 @kernel
 def _distances(strobe, size):
-    """Return how far strobe points k periods apart lie from each other, relative to the response's size.
+    """Return how far strobe points k periods apart lie from each other, over the response's size.
 
-    For each k the largest of the last `LONGEST_PERIOD` distances.
+    For each k, the largest of the last `LONGEST_PERIOD` distances.
     """
     n, periods, _ = strobe.shape
     distance = np.zeros((n, LONGEST_PERIOD))

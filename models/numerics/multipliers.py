@@ -55,6 +55,7 @@ def _raise_to_power(flow, small, scale, room):
     rows = room.reshape(-1, width)
     power, square, part, basis = rows[:k], rows[k : 2 * k], rows[2 * k], rows[2 * k + 1 :]
     for row in range(n):
+        power[:] = 0.0
         power[:, :k] = flow[row]
         log_scale = 0.0
         for _ in range(_DOUBLINGS):
@@ -86,10 +87,10 @@ def _square(power, square):
     for i in range(k):
         for j in range(width):
             square[i, j] = 0.0
-        for l in range(k):
-            factor = power[i, l]
+        for r in range(k):
+            factor = power[i, r]
             for j in range(width):
-                square[i, j] += factor * power[l, j]
+                square[i, j] += factor * power[r, j]
     return -np.log(inverse)
 
 
