@@ -158,6 +158,7 @@ def _note_silence(out: Response, rows: NDArray[np.intp]) -> None:
     out.regime[rows] = NO_IMPACT
     out.period[rows] = 1
     out.peak[rows] = 0
+    out.multiplier[rows] = np.nan
 
 
 def _note_orbit(out: Response, rows: Any, orbit: Approached, state: Array) -> None:
@@ -171,6 +172,7 @@ def _note_orbit(out: Response, rows: Any, orbit: Approached, state: Array) -> No
     symmetric = np.abs(work[:, 0] - work[:, 1]) <= _SYMMETRIC * work.sum(axis=1)
     single = np.where(symmetric, SYMMETRIC, ASYMMETRIC)
     out.regime[rows] = np.where(orbit.period[good] == 1, single, PERIODIC)
+    _note_silence(out, rows[(work == 0).all(axis=1)])
 
 
 def _note_aperiodic(out: Response, rows: Any, batches: Array) -> None:

@@ -62,7 +62,7 @@ def inverse(matrix: Array) -> tuple[Array, NDArray[np.bool_]]:
     n, k, _ = matrix.shape
     out = np.empty((n, k, k))
     _invert(matrix, out, np.zeros((k, -(-k // _VECTOR) * _VECTOR)), np.empty(k, np.int64))
-    regular: NDArray[np.bool_] = np.isfinite(out).all(axis=(1, 2))
+    regular = np.asarray(np.isfinite(out).all(axis=(1, 2)), bool)
     out[~regular] = 0.0
     return out, regular
 
