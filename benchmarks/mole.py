@@ -77,7 +77,8 @@ class Stretch:
 
     def by_lanes(self, rows, tolerance):
         """Run in lanes."""
-        machines = Machines(*(field[:rows].copy() for field in self.machines))
+        *fields, budget = self.machines
+        machines = Machines(*(field[:rows].copy() for field in fields), budget)
         _run(machines, rows, machines.periods([0])[0] + self.halves // 2, tolerance)
         first, last = row_at.PROGRESS, row_at.ELECTRIC + 1
         return np.hstack([machines.record[:, first:last] / DURATION, machines.record[:, :3]])

@@ -100,6 +100,9 @@ def grid_of(
         Everything that is wrong, one line each.
     """
     found = find_model(model) if isinstance(model, str) else model
+    for what, given in (("axes", axes), ("fixed", fixed), ("settings", settings)):
+        if not isinstance(given, Mapping):
+            raise InputError(f"{what} must be a dictionary with names as keys: {given!r}")
     faults = [] if axes else ["axes: nothing varies; give at least one parameter its values"]
     for name, axis in axes.items():
         if problem := _axis_problem(found, name, axis):

@@ -101,24 +101,26 @@ def _is_static(w, d, h):
 
 
 @kernel
-def _compliance(frequency, decay, gain, h):
-    """Return sigma of one beam: the displacement within a step per unit of final penetration."""
-    total = 0.0
+def _compliance(frequency, decay, gain, moving, h):
+    """Return what the modes that move, and what the others, bring to sigma of one beam."""
+    total = residual = 0.0
     for i in range(frequency.size):
         w, d = frequency[i], decay[i]
-        if _is_static(w, d, h):
+        if i >= moving:
+            residual += gain[i] / (w * w)
+        elif _is_static(w, d, h):
             total += gain[i] / (w * w)
         else:
             total += gain[i] * _mode_step(w, d, h)[6]
-    return total
+    return total, residual
 
 
 @kernel
-def _prepare(forcing, frequency, decay, gain, steps, modes, begin, sigma):
+def _prepare(forcing, frequency, decay, gain, moving, steps, modes, begin, sigma, residual):
     for n in range(frequency.shape[0]):
         h = 2 * np.pi / (forcing[n] * steps)
-        sigma[n] = _compliance(frequency[n], decay[n], gain[n], h)
-        for i in range(frequency.shape[1]):
+        sigma[n], residual[n] = _compliance(frequency[n], decay[n], gain[n], moving[n], h)
+        for i in range(moving[n]):
             w, d, b = frequency[n, i], decay[n, i], gain[n, i]
             if _is_static(w, d, h):
                 continue
@@ -134,11 +136,11 @@ def _prepare(forcing, frequency, decay, gain, steps, modes, begin, sigma):
 
 
 @kernel
-def _choose_steps(forcing, frequency, decay, gain, steps):
+def _choose_steps(forcing, frequency, decay, gain, moving, steps):
     for n in range(frequency.shape[0]):
         for candidate in LADDER:
             h = 2 * np.pi / (forcing[n] * candidate)
-            sigma = _compliance(frequency[n], decay[n], gain[n], h)
+            sigma, _ = _compliance(frequency[n], decay[n], gain[n], moving[n], h)
             steps[n] = candidate
             if abs(sigma) <= COMPLIANCE:
                 break
@@ -148,9 +150,9 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     """Prepare n beams, in groups that share a number of steps.
 
     Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
-    gives way by no more than `COMPLIANCE` of its penetration; the error of a work-rate is then
-    about 0.1 %. A row whose step stays too long, because contact is too stiff for the longest of
-    the ladder or for the steps that are set, is in no group.
+    gives way by no more than `COMPLIANCE` of its penetration, residual flexibility left out; the
+    error of a work-rate is then about 0.1 %. A row whose step stays too long, because contact is
+    too stiff for the longest of the ladder or for the steps that are set, is in no group.
 
     Parameters
     ----------
@@ -167,16 +169,28 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     gain = -beams.stiffness[:, None] * beams.mobility
     steps = np.full(n, settings.steps_per_period)
     if not settings.steps_per_period:
-        _choose_steps(beams.forcing, beams.frequency, beams.decay, gain, steps)
+        _choose_steps(beams.forcing, beams.frequency, beams.decay, gain, beams.moving, steps)
     for count in np.unique(steps):
         rows = np.flatnonzero(steps == count)
         b = beams.take(rows)
         modes, begin = np.zeros((len(rows), 4, m)), np.zeros((len(rows), 3, m))
-        sigma = np.empty(len(rows))
-        _prepare(b.forcing, b.frequency, b.decay, gain[rows], int(count), modes, begin, sigma)
+        sigma, residual = np.empty((2, len(rows)))
+        _prepare(
+            b.forcing,
+            b.frequency,
+            b.decay,
+            gain[rows],
+            b.moving,
+            int(count),
+            modes,
+            begin,
+            sigma,
+            residual,
+        )
         last = 1 + np.flatnonzero(begin[:, 2].any(axis=0)).max(initial=0)
         modes, begin = modes[:, :, :last], begin[:, :, :last]
-        system = System(modes, begin, sigma, steady_response(b), b.forcing, int(count))
+        response = steady_response(b)
+        system = System(modes, begin, sigma + residual, response, b.forcing, int(count))
         sound = np.flatnonzero(np.abs(sigma) <= UNSTABLE)
         if len(sound):
             yield rows[sound], system.take(sound)

@@ -33,6 +33,8 @@ class Beams(NamedTuple):
         F/X0 [N m-1].
     stiffness : ndarray, shape (n,)
         k_c [N m-1].
+    moving : ndarray of int, shape (n,)
+        How many modes obey their equations; those beyond follow the contact force at once.
     """
 
     forcing: Array
@@ -41,6 +43,7 @@ class Beams(NamedTuple):
     mobility: Array
     force: Array
     stiffness: Array
+    moving: NDArray[np.int64]
 
     def take(self, rows: NDArray[np.intp]) -> "Beams":
         """Return the beams of some rows."""
@@ -55,12 +58,13 @@ def beams(p: Rows, settings: Settings) -> Beams:
     p : Params
         Each field an ndarray of shape (n,).
     settings : Settings
-        Its `elements` and `modes` count.
+        Its `elements`, `modes` and `residual_flexibility` count.
 
     Returns
     -------
     Beams
     """
+    kept = settings.modes or None
     shapes = modes(
         p.length,
         p.flexural_rigidity,
@@ -68,7 +72,7 @@ def beams(p: Rows, settings: Settings) -> Beams:
         p.lateral_support_stiffness,
         p.rotational_support_stiffness,
         settings.elements,
-        settings.modes or None,
+        None if settings.residual_flexibility else kept,
     )
     w = shapes.frequency
     decay = 0.5 * (p.mass_damping[:, None] + p.stiffness_damping[:, None] * w**2)
@@ -79,6 +83,7 @@ def beams(p: Rows, settings: Settings) -> Beams:
         shapes.tip**2,
         p.force_amplitude / p.initial_gap,
         p.contact_stiffness,
+        np.full(len(w), min(kept or w.shape[1], w.shape[1])),
     )
 
 

@@ -189,6 +189,10 @@ class Settings:
     modes: Annotated[
         int, Setting("modes kept, lowest first; 0 keeps all 2 elements + 2", bounds=(0, 82))
     ] = 0
+    residual_flexibility: Annotated[
+        bool,
+        Setting("whether the modes left out still give way to the contact force, as springs"),
+    ] = False
     steps_per_period: Annotated[
         int,
         Setting(
@@ -208,6 +212,8 @@ class Settings:
     ] = 0.02
 
     def __post_init__(self):
+        if self.residual_flexibility and self.propagator == "exact":
+            raise ValueError("residual_flexibility needs propagator = 'fast'")
         depths = self.depths
         if not depths or any(b <= a for a, b in zip(depths, depths[1:], strict=False)):
             raise ValueError("depths must be a list of increasing numbers")

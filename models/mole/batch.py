@@ -56,14 +56,18 @@ def batch(
         common_periods(p.control_frequency, p.supply_frequency),
         p.initial_displacement,
         p.initial_velocity,
+        settings.transient + settings.duration,
     )
     response = Response.nothing(len(x))
     repeating, other = settle(machines, settings.transient, settings.tolerance)
-    follow_repeating(machines, repeating, settings.duration, settings.tolerance, response)
-    follow_other(machines, other, settings.duration, settings.tolerance, response)
+    duration, tolerance = settings.duration, settings.tolerance
+    unstable = follow_repeating(machines, repeating, duration, tolerance, response)
+    other = np.concatenate([other, unstable])
+    follow_other(machines, other, duration, tolerance, response)
     if not settings.transient:
-        late = settle_late(machines, other, settings.tolerance, response)
-        follow_repeating(machines, late, settings.duration, settings.tolerance, response)
+        late = settle_late(machines, other, tolerance, response)
+        unstable = follow_repeating(machines, late, duration, tolerance, response)
+        follow_other(machines, unstable, duration, tolerance, response)
     outputs = _outputs(p, response)
     lost = np.isnan(response.time)
     over = machines.record[:, OUTCOME] == OUT_OF_BUDGET

@@ -29,7 +29,7 @@ _FAR = 8.0  # widths of the coil, from where on the bar adds 1e-14 of its induct
 
 
 class Coil(NamedTuple):
-    """Inductance (10) of the coil and its derivatives by u.
+    """Inductance (10) of the coil and its derivative by u.
 
     Attributes
     ----------
@@ -37,13 +37,10 @@ class Coil(NamedTuple):
         L [H]
     slope : float
         L' [H m-1]
-    curvature : float
-        L'' [H m-2]
     """
 
     inductance: float
     slope: float
-    curvature: float
 
 
 class Mode(NamedTuple):
@@ -93,8 +90,7 @@ def coil(q, u):
     """Return the `Coil` with the bar at u."""
     bar = q.bar_inductance * math.exp(-q.sharpness * u * u)
     slope = -2 * q.sharpness * u * bar
-    curvature = -2 * q.sharpness * (bar + u * slope)
-    return Coil(q.coil_inductance + bar, slope, curvature)
+    return Coil(q.coil_inductance + bar, slope)
 
 
 @inlined

@@ -68,10 +68,11 @@ def history(
     Raises
     ------
     ValueError
-        If not 0 <= begin < end.
+        If not 0 <= begin < end, or `points` is not positive.
     """
     if not 0 <= begin < end < np.inf:
         raise ValueError(f"must have 0 <= begin < end: begin = {begin!r}, end = {end!r}")
+    _check_counts(points=points)
     q = mole(params, settings.formulation)
     time = np.linspace(begin, end, points)
     motion = exact.propagate(q, exact.start(params, q), end, settings.tolerance, time)
@@ -122,8 +123,10 @@ def poincare_section(
     Raises
     ------
     ValueError
-        If there is no common period.
+        If there is no common period, `periods` is not positive, `dropped` negative, or `starts` not
+        a list of pairs.
     """
+    _check_counts(periods=periods, dropped=dropped)
     stride = 1
     if common:
         stride = int(common_periods(params.control_frequency, params.supply_frequency))
@@ -134,7 +137,10 @@ def poincare_section(
             )
     if starts is None:
         return _strobed("start", _rows(params, 1), settings, dropped, periods, stride).isel(start=0)
-    u, v = np.asarray(starts, float).T
+    pairs = np.asarray(starts, float)
+    if pairs.ndim != 2 or pairs.shape[1] != 2:
+        raise ValueError(f"starts must be pairs (displacement, velocity): {starts!r}")
+    u, v = pairs.T
     rows = _rows(params, len(u), initial_displacement=u, initial_velocity=v)
     ds = _strobed("start", rows, settings, dropped, periods, stride)
     return ds.assign_coords(
@@ -171,8 +177,16 @@ def bifurcation_diagram(
         Along ``control_frequency`` and ``period`` what `poincare_section` returns; along
         ``control_frequency`` the ``progression_rate`` and the ``regime`` of the settled response,
         which are outputs of the model.
+
+    Raises
+    ------
+    ValueError
+        If a frequency or `kept` is not positive, or `dropped` negative.
     """
+    _check_counts(kept=kept, dropped=dropped)
     frequencies = np.asarray(frequencies, float)
+    if not np.all(frequencies > 0):
+        raise ValueError(f"control frequencies must be positive: {frequencies.min():g} Hz")
     rows = _rows(params, len(frequencies), control_frequency=frequencies)
     ds = _strobed("control_frequency", rows, settings, dropped, kept, 1)
     seed = np.zeros(len(frequencies), np.uint64)
@@ -189,6 +203,14 @@ def bifurcation_diagram(
     ).assign_coords(
         {along: (along, frequencies, {"units": "Hz", "long_name": "control frequency"})}
     )
+
+
+def _check_counts(dropped: int = 0, **positive: int) -> None:
+    if dropped < 0:
+        raise ValueError(f"dropped must not be negative: {dropped!r}")
+    for name, count in positive.items():
+        if count < 1:
+            raise ValueError(f"{name} must be positive: {count!r}")
 
 
 def _rows(params: Params, n: int, **varied: Array) -> Any:
@@ -208,6 +230,7 @@ def _strobed(
         common_periods(p.control_frequency, p.supply_frequency),
         p.initial_displacement,
         p.initial_velocity,
+        dropped + points * stride,
     )
     rows = np.arange(n)
 

@@ -55,7 +55,9 @@ WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(57, 65)
 
 # Of the coil: what the bar adds in its middle, its width, and how long a step may be near it.
 ADDED_MOST, WIDTH, REACH = range(65, 68)
-ROWS = 68
+
+GROWTH = 68  # logarithm of what tangents were divided by
+ROWS = 69
 
 LONGEST_PERIOD = 64
 """Common periods among which a repetition is looked for."""
@@ -76,8 +78,8 @@ class Block(NamedTuple):
         All else, see the rows above.
     share, error : ndarray
         See `models.numerics.dop8.estimator`.
-    ring : ndarray, shape (LANES, LONGEST_PERIOD, 3)
-        (u, v, x) at the last common periods.
+    ring : ndarray, shape (LANES, LONGEST_PERIOD, MEASURED)
+        (u, v, x, |i|, |p|) at the last common periods.
     """
 
     whole: Any
@@ -104,7 +106,7 @@ class Block(NamedTuple):
             aligned(ROWS * LANES),
             aligned(MEASURED * LANES),
             aligned((1 + 2 * MEASURED) * LANES),
-            np.empty((LANES, LONGEST_PERIOD, 3)),
+            np.empty((LANES, LONGEST_PERIOD, MEASURED)),
         )
 
 

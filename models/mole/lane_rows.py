@@ -34,17 +34,16 @@ from models.numerics.jit import kernel, lean
     TRIALS,
     OUTCOME,
     PERIOD,
-) = range(18)
-RECORD = 18
+    GROWTH,
+) = range(19)
+RECORD = 19
 
 GOING, REPEATING, REACHED_END, OUT_OF_BUDGET, STUCK = range(5)
 """Outcomes of a run."""
 
 SCALES = (1e-2, 1.0, 0.1)
-REPEAT = 1e-6  # of the scales of u, v, x
+REPEAT = 1e-6  # of the scales of u, v, x, and of i and p by resistance and supply
 _ALIKE = 1e-4  # a divisor of the period at which the motion repeats so well is the period
-
-_FIRST = 0.1  # of the longest step
 
 
 class Task(NamedTuple):
@@ -55,9 +54,10 @@ class Task(NamedTuple):
     table : ndarray, shape (n, 20)
         `Mole`s.
     record : ndarray, shape (n, RECORD)
-        Where they stand, updated in place; integrals, contacts and extremes are those of this run.
+        Where they stand, updated in place; integrals, contacts, extremes and growth are those of
+        this run.
     tangents : ndarray, shape (n, 5 columns)
-        Updated in place.
+        Updated in place, and brought back to size 1; what sticks has no freedom.
     limit : ndarray of int, shape (n,)
         Control periods since the start at which to end.
     common : ndarray of int, shape (n,)
@@ -112,6 +112,11 @@ def load(lane, row, task, m, y, share, columns):
         y[j * LANES + lane] = r[U + j]
     for j in range(columns * MEASURED):
         y[(PLAIN + j) * LANES + lane] = task.tangents[row, j]
+    for column in range(columns):
+        z = PLAIN + MEASURED * column
+        y[(z + at.V) * LANES + lane] *= 1.0 if r[BAR_MODE] != 0 else 0.0
+        y[(z + at.X) * LANES + lane] *= 1.0 if r[MOLE_MODE] != 0 else 0.0
+    m[at.GROWTH * LANES + lane] = 0.0
     for j in range(INTEGRALS):
         m[(at.SUM + j) * LANES + lane] = 0.0
     m[at.DAMPING * LANES + lane] = q.damping
@@ -133,7 +138,7 @@ def load(lane, row, task, m, y, share, columns):
     m[at.TRIALS * LANES + lane] = r[TRIALS]
     set_supply(q, lane, m, y)
     enter(q, lane, m, y)
-    m[at.WISH * LANES + lane] = _FIRST * m[at.LONGEST * LANES + lane]
+    m[at.WISH * LANES + lane] = m[at.LONGEST * LANES + lane]
     next_step(lane, m, np.inf)
 
 
@@ -157,6 +162,7 @@ def unload(lane, task, m, y, columns, outcome):
     r[LOW] = min(m[at.LOW * LANES + lane], y[at.U * LANES + lane])
     r[HIGH] = max(m[at.HIGH * LANES + lane], y[at.U * LANES + lane])
     r[TRIALS] = m[at.TRIALS * LANES + lane]
+    r[GROWTH] = m[at.GROWTH * LANES + lane]
     r[OUTCOME] = outcome
 
 
@@ -169,42 +175,69 @@ def idle(lane, m):
 
 
 @lean
-def _repetition(lane, m, y, ring):
-    """Return after how many common periods the motion repeats, 0 if it does not."""
-    u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
+def _repetition(lane, q, m, y, ring):
+    """Return after how many common periods the motion repeats, 0 if it does not.
+
+    Current and voltage may return with the other sign: only their squares act on the bar.
+    """
+    here = (
+        y[at.U * LANES + lane],
+        y[at.V * LANES + lane],
+        y[at.X * LANES + lane],
+        abs(y[at.CURRENT * LANES + lane]),
+        abs(y[at.P * LANES + lane]),
+    )
     entries = int(m[at.ENTRIES * LANES + lane])
     length = len(ring)
     found = 0
     for back in range(1, min(entries, length) + 1):
-        if found == 0 and _distance(ring[(entries - back) % length], u, v, x) < REPEAT:
+        if found == 0 and _distance(q, ring[(entries - back) % length], here) < REPEAT:
             found = back
     for back in range(1, found):
         # Approached from alternating sides, an orbit looks twice its length.
-        if found % back == 0 and _distance(ring[(entries - back) % length], u, v, x) < _ALIKE:
+        if found % back == 0 and _distance(q, ring[(entries - back) % length], here) < _ALIKE:
             found = back
             break
-    here = ring[entries % length]
-    here[0], here[1], here[2] = u, v, x
+    for j in range(MEASURED):
+        ring[entries % length, j] = here[j]
     m[at.ENTRIES * LANES + lane] = entries + 1
     return found
 
 
 @lean
-def _distance(old, u, v, x):
+def _distance(q, old, new):
     return max(
-        abs(u - old[0]) / SCALES[0], abs(v - old[1]) / SCALES[1], abs(x - old[2]) / SCALES[2]
+        abs(new[0] - old[0]) / SCALES[0],
+        abs(new[1] - old[1]) / SCALES[1],
+        abs(new[2] - old[2]) / SCALES[2],
+        abs(new[3] - old[3]) * q.resistance / q.voltage,
+        abs(new[4] - old[4]) / q.voltage,
     )
 
 
 @lean
-def strobe(lane, task, m, y, ring):
+def _bring_back(lane, m, y, columns):
+    """Bring tangents back to size 1, all by one number."""
+    size = 0.0
+    for j in range(columns * MEASURED):
+        size = max(size, abs(y[(PLAIN + j) * LANES + lane]))
+    if size > 0:
+        m[at.GROWTH * LANES + lane] += math.log(size)
+        for j in range(columns * MEASURED):
+            y[(PLAIN + j) * LANES + lane] /= size
+
+
+@lean
+def strobe(lane, task, m, y, ring, columns):
     """Look at a lane at the beginning of half a control period; return its outcome."""
     row, half = int(m[at.ROW * LANES + lane]), int(m[at.HALF * LANES + lane])
     if half % 2 == 1:
         return GOING
+    if columns > 0:
+        _bring_back(lane, m, y, columns)
     periods, common = half // 2, task.common[row]
     if common > 0 and periods % common == 0:
-        found = _repetition(lane, m, y, ring[lane])
+        found = _repetition(lane, mole_of(task.table, row), m, y, ring[lane])
         if found > 0:
             task.record[row, PERIOD] = found
             return REPEATING

@@ -89,8 +89,7 @@ def conclude(lane, table, m, y, new, end, error, size, columns):
     if not error <= 1.0:
         factor = _SAFETY * error**-0.125
         factor = factor if factor > _SHRINK else _SHRINK
-        m[at.WISH * LANES + lane] = h * factor
-        next_step(lane, m, h * factor)
+        m[at.WISH * LANES + lane] = m[at.STEP * LANES + lane] = h * factor
         return False
     longest = m[at.LONGEST * LANES + lane]
     # The first guard that became negative, or came near it on the way.

@@ -84,7 +84,7 @@ def propagator(columns: int) -> Callable[..., None]:
                     continue
                 outcome = GOING
                 if conclude(lane, table, m, y, new, end, error[lane], size, columns):
-                    outcome = strobe(lane, task, m, y, ring)
+                    outcome = strobe(lane, task, m, y, ring, columns)
                 if outcome == GOING and m[at.TRIALS * LANES + lane] >= task.budget:
                     outcome = OUT_OF_BUDGET
                 if not m[at.STEP * LANES + lane] > _SHORTEST:

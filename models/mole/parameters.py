@@ -155,8 +155,8 @@ class Settings:
     duration: Annotated[
         int,
         Setting(
-            "control periods averaged, rounded up to whole periods of the response; 0: one of "
-            "these, or 200 at least where the motion does not repeat",
+            "control periods averaged, rounded up to whole periods of the response, or to 20 "
+            "times the common period where it does not repeat; 0: one period, or 200 at least",
             bounds=(0, 100_000),
         ),
     ] = 0
@@ -185,5 +185,5 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "lyapunov_exponent_error": Output("s-1", "standard error of it, 0 where the motion repeats"),
     "regime": Output("1", "kind of settled response", "category", categories=REGIMES),
-    "period": Output("1", "common periods in a periodic response, 0 in any other"),
+    "period": Output("1", "common periods after which the response repeats, 0 if it does not"),
 }

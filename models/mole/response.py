@@ -2,8 +2,9 @@
 
 The transient ends when the motion repeats itself over common periods of control and mains. Where
 there is no common period, it ends when the tangent flow has forgotten all but a millionth of the
-start. Motion that repeats is averaged over whole periods; other motion over batches of control
-periods, whose scatter tells the errors of the means.
+start. Motion that repeats is averaged over whole periods; other motion, and one that repeats by
+chance though its tangents grow, over batches of common periods, whose scatter tells the errors of
+the means.
 """
 
 from typing import NamedTuple
@@ -11,10 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.mole.lane_block import LONGEST_PERIOD, MEASURED
+from models.mole.lane_block import CURRENT, LONGEST_PERIOD, MEASURED, P
 from models.mole.lane_rows import (
     CONTACTS,
     ELECTRIC,
+    GROWTH,
     HALF,
     HIGH,
     IMPACT,
@@ -30,8 +32,9 @@ from models.mole.lane_rows import (
     begin,
 )
 from models.mole.lanes import run
+from models.mole.system import Mole
 from models.numerics.batch_means import mean_and_error
-from models.numerics.exponents import grown, log_multiplier
+from models.numerics.exponents import log_multiplier
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -39,11 +42,12 @@ Counts = NDArray[np.int64]
 
 LONGEST = 120.0  # s of transient
 LATEST = 1200.0  # s more where the tangent flow says that the motion is still settling
-BUDGET = 2_000_000  # trial steps
+BUDGET = 2_000_000  # trial steps, for as many control periods as are averaged at first
 APERIODIC = 200, 800, 3200
 """Control periods averaged where the motion does not repeat: as many as it takes to tell whether
 the exponent is positive."""
 SURE = 3.0  # standard errors by which it is
+_UNSTABLE = 1e-3  # logarithm of a multiplier from which on a motion that repeats is no attractor
 BATCHES = 20
 _FORGOTTEN = np.log(1e-6)
 _LOOK = 1.0  # s between two looks at the tangent flow
@@ -63,21 +67,30 @@ class Machines(NamedTuple):
         Common period of control and mains [control periods], 0 if there is none.
     record : ndarray, shape (n, RECORD)
         Where they stand.
+    budget : int
+        Trial steps of each.
     """
 
     table: Array
     control_frequency: Array
     common: Counts
     record: Array
+    budget: int
 
     @staticmethod
     def started(
-        table: Array, control_frequency: Array, common: Counts, displacement: Array, velocity: Array
+        table: Array,
+        control_frequency: Array,
+        common: Counts,
+        displacement: Array,
+        velocity: Array,
+        periods: int = 0,
     ) -> "Machines":
-        """Return moles just switched on."""
+        """Return moles just switched on, with a budget for so many control periods and more."""
         record = np.empty((len(table), RECORD))
         begin(table, displacement, velocity, record)
-        return Machines(table, control_frequency, common, record)
+        budget = BUDGET * max(1, -(-periods // APERIODIC[0]))
+        return Machines(table, control_frequency, common, record, budget)
 
     def run(
         self, rows: Counts, limit: Counts, tolerance: float, repeat: bool, tangents: Array
@@ -103,7 +116,7 @@ class Machines(NamedTuple):
         common = self.common[rows] if repeat else np.zeros(len(rows), np.int64)
         record = self.record[rows]
         run(
-            Task(self.table[rows], record, tangents, limit, common, tolerance, BUDGET),
+            Task(self.table[rows], record, tangents, limit, common, tolerance, self.budget),
             tangents.shape[1] // MEASURED,
         )
         self.record[rows] = record
@@ -223,7 +236,7 @@ def _forget(machines: Machines, rows: Counts, longest: Counts, tolerance: float)
     limit = look.copy()
     while len(rows):
         reached = machines.run(rows, np.minimum(limit, longest), tolerance, False, tangents)
-        growth += grown(tangents)
+        growth += machines.record[rows, GROWTH]
         settled = (growth < _FORGOTTEN) | (limit >= longest)
         done.append(rows[reached[settled[reached]]])
         keep = reached[~settled[reached]]
@@ -262,7 +275,7 @@ def settle_late(machines: Machines, rows: Counts, tolerance: float, known: Respo
 
 def follow_repeating(
     machines: Machines, rows: Counts, duration: int, tolerance: float, out: Response
-) -> None:
+) -> Counts:
     """Follow moles whose motion repeats through whole periods of the response.
 
     Parameters
@@ -273,9 +286,16 @@ def follow_repeating(
         Control periods to be averaged at least.
     tolerance : float
     out : Response
-        Updated in place.
+        Updated in place; nothing is known of those whose motion repeats but is unstable.
+
+    Returns
+    -------
+    ndarray of int
+        Rows whose motion repeats but is unstable: it came by chance, and is no attractor.
     """
     common = machines.common
+    half_cycles = machines.table[:, Mole._fields.index("supply_speed")] / np.pi
+    unstable = [np.empty(0, np.int64)]
     periods = machines.record[rows, PERIOD].astype(np.int64)
     whole = periods * common[rows]
     left = periods * np.maximum(-(-duration // whole), 1)  # common periods
@@ -290,15 +310,23 @@ def follow_repeating(
         reached = machines.run(here, begun[places] + step * common[here], tolerance, False, flow)
         places, flow = places[reached], flow[reached]
         out.note(rows[places], 0, machines.record[rows[places]])
-        growth[places] += grown(flow)
+        growth[places] += machines.record[rows[places], GROWTH]
         tangents[places] = flow
         ended = left[places] == step
         done, flow = places[ended], flow[ended].reshape(-1, MEASURED, MEASURED)
-        out.growth[rows[done], 0] = growth[done] + log_multiplier(flow)
-        control = left[done] * common[rows[done]]
-        out.time[rows[done]] = control / machines.control_frequency[rows[done]]
-        out.period[rows[done]] = periods[done]
+        here = rows[done]
+        time = left[done] * common[here] / machines.control_frequency[here]
+        # After an odd number of half mains cycles current and voltage have the other sign.
+        odd = np.round(time * half_cycles[here]) % 2 == 1
+        flow[odd, :, CURRENT : P + 1] *= -1
+        out.growth[here, 0] = growth[done] + log_multiplier(flow)
+        out.time[here] = time
+        out.period[here] = periods[done]
+        chance = here[out.growth[here, 0] > _UNSTABLE]
+        out.forget(chance)
+        unstable.append(chance)
         places = places[~ended]
+    return np.concatenate(unstable)
 
 
 def follow_other(
@@ -311,7 +339,8 @@ def follow_other(
     machines : Machines
     rows : ndarray of int
     duration : int
-        Control periods to be averaged at least; 0: as many as it takes.
+        Control periods to be averaged at least, in `BATCHES` batches of whole common periods; 0:
+        as many as it takes.
     tolerance : float
     out : Response
         Updated in place.
@@ -320,16 +349,17 @@ def follow_other(
     limit = machines.periods(rows) + _WARM_UP
     reached = machines.run(rows, limit, tolerance, False, tangents)
     rows, tangents = rows[reached], tangents[reached]
-    grown(tangents)
     for periods in (duration,) if duration else APERIODIC:
-        places = _follow_batches(machines, rows, -(-periods // BATCHES), tangents, tolerance, out)
+        common = np.maximum(machines.common[rows], 1)
+        each = -(-periods // (BATCHES * common)) * common
+        places = _follow_batches(machines, rows, each, tangents, tolerance, out)
         mean, error = mean_and_error(out.growth[rows[places]])
         places = places[np.abs(mean) <= SURE * error]
         rows, tangents = rows[places], tangents[places]
 
 
 def _follow_batches(
-    machines: Machines, rows: Counts, each: int, tangents: Array, tolerance: float, out: Response
+    machines: Machines, rows: Counts, each: Counts, tangents: Array, tolerance: float, out: Response
 ) -> Counts:
     """Follow moles through batches, forgetting earlier ones; return places of those that got on."""
     some = Response.nothing(len(rows))
@@ -341,9 +371,9 @@ def _follow_batches(
         reached = machines.run(rows[places], limit[places], tolerance, False, flow)
         places, flow = places[reached], flow[reached]
         some.note(places, batch, machines.record[rows[places]])
-        some.growth[places, batch] = grown(flow)
+        some.growth[places, batch] = machines.record[rows[places], GROWTH]
         tangents[places] = flow
-    some.time[places] = BATCHES * each / machines.control_frequency[rows[places]]
+    some.time[places] = BATCHES * each[places] / machines.control_frequency[rows[places]]
     # Who did not get so far keeps what a shorter run has told.
     for mine, new in zip(out, some, strict=True):
         mine[rows[places]] = new[places]

@@ -11,6 +11,7 @@ from scipy.linalg import expm
 from models.beam import exact, lane_systems, lanes
 from models.beam.modal import beams
 from models.beam.parameters import Params, Settings
+from models.beam.response import settle
 
 
 def nominal(n=1, **values):
@@ -157,6 +158,49 @@ def test_steps_are_as_long_as_contact_allows_and_set_by_the_row_alone():
         assert (np.abs(system.sigma) <= lane_systems.COMPLIANCE).all()
         chosen.update(dict.fromkeys(rows.tolist(), system.steps))
     assert chosen[0] < chosen[1] < chosen[2]
+
+
+@pytest.mark.parametrize(("frequency", "elements"), [(32.3591, 40), (57.1042, 10)])
+def test_residual_flexibility_stands_in_for_the_modes_left_out(frequency, elements):
+    """A few modes alone settle to other work-rates; with the others as springs, to the same."""
+    work = {}
+    p = nominal(forcing_frequency=frequency)
+    for modes, residual in ((0, False), (8, False), (8, True)):
+        system = prepared(
+            lanes,
+            p,
+            elements=elements,
+            modes=modes,
+            residual_flexibility=residual,
+            steps_per_period=384,
+        )
+        state, gaps = at_rest(lanes, system)
+        work[modes, residual] = settle(lanes, system, state, gaps).work[0]
+        assert system.modes.shape[2] == 8 or modes == 0
+    np.testing.assert_allclose(work[8, True], work[0, False], rtol=2e-3)
+    assert (abs(work[8, False] / work[0, False] - 1)).max() > 0.05
+
+
+def test_residual_flexibility_is_that_of_the_tip():
+    """A light tip, pressed slowly against its stop with the first mode alone in motion."""
+    p = nominal(forcing_frequency=1.0, mass_per_length=0.02, mass_damping=60, force_amplitude=2.0)
+    whole = beams(p, Settings())
+    flexibility = whole.mobility[0] / whole.frequency[0] ** 2
+    assert flexibility[0] < 0.99 * flexibility.sum()
+    k = p.contact_stiffness[0]
+    settings = {"modes": 1, "steps_per_period": 16384}
+    for residual, given in ((True, flexibility.sum()), (False, flexibility[0])):
+        system = prepared(lanes, p, residual_flexibility=residual, **settings)
+        state, gaps = at_rest(lanes, system)
+        lanes.advance(system, state, gaps, np.zeros((1, 2)), 2)
+        peak = lanes.advance(system, state, gaps, np.zeros((1, 2)), 1).peak[0]
+        free = p.force_amplitude[0] * given / p.initial_gap[0]
+        np.testing.assert_allclose(peak, (free - 1) / (1 + k * given), rtol=1e-3)
+
+
+def test_residual_flexibility_is_the_fast_propagators():
+    with pytest.raises(ValueError, match="residual_flexibility needs propagator = 'fast'"):
+        Settings(propagator="exact", residual_flexibility=True)
 
 
 def test_compiled_and_plain_python_agree():

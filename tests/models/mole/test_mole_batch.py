@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from models.mole import MODEL
+from models.mole import MODEL, table
 from models.mole.batch import batch
 from models.mole.parameters import CHAOTIC, NO_IMPACT, PERIODIC, QUASI_PERIODIC, Params, Settings
 from models.mole.periods import common_periods
-from models.mole.table import rows as claims
 from uq.contract import Status
 
 
@@ -68,8 +67,68 @@ def test_chaos_at_9_hz_in_the_physical_formulation():
     assert 0 < o["progression_rate_error"] < 5e-4
 
 
+@pytest.mark.parametrize(
+    ("frequency", "formulation", "common"),
+    [(8.0, "as-printed", 2), (12.0, "physical", 3), (12.0, "as-printed", 3), (7.0, "physical", 7)],
+)
+def test_an_exponent_is_the_same_over_twice_the_period(frequency, formulation, common):
+    """At 8 and 12 Hz these orbits span an odd number of half mains cycles."""
+    once = at(frequency, formulation=formulation)
+    twice = at(frequency, formulation=formulation, duration=2 * common)
+    assert once["period"] == 1
+    np.testing.assert_allclose(once["lyapunov_exponent"], twice["lyapunov_exponent"], rtol=1e-4)
+
+
+def test_what_sticks_for_good_has_no_freedom():
+    """The mole never slips: its velocity is no tangent that lasts."""
+    o = at(20.0)
+    assert o["progression_rate"] == 0 and o["displacement_range"] > 1e-4
+    np.testing.assert_allclose(o["lyapunov_exponent"], -7.688, atol=0.005)
+
+
+def test_a_bar_at_rest_has_not_settled_while_the_current_grows():
+    slow = {
+        "coil_inductance": 5.0,
+        "resistance": 0.9,
+        "capacitance": 1.9e-6,
+        "control_frequency": 50.0,
+    }
+    settled = compute(Settings(), slow)
+    known = compute(Settings(transient=20_000), slow)
+    np.testing.assert_allclose(settled["electrical_power"], known["electrical_power"], rtol=1e-3)
+    assert known["electrical_power"] > 1.6
+
+
+def test_an_orbit_that_repels_is_no_attractor():
+    """Weak chaos at 4 Hz comes within a millionth of where it was."""
+    o = at(4.0)
+    assert o["regime"] == CHAOTIC and o["period"] == 0
+    assert abs(o["lyapunov_exponent"] - 0.49) < 4 * o["lyapunov_exponent_error"]
+
+
+def test_what_does_not_repeat_is_averaged_over_whole_common_periods():
+    """At 9 Hz there are nine control periods in one: 20 batches of 9 for a duration of 1."""
+    impacts = at(9.0, duration=1)["impacts_per_period"] * 180
+    np.testing.assert_allclose(impacts, np.round(impacts), atol=1e-6)
+
+
+def test_a_long_average_has_steps_enough_and_an_exponent():
+    o = at(2.5, formulation="as-printed", duration=20_000)
+    assert o["regime"] == CHAOTIC
+    assert abs(o["lyapunov_exponent"] - 1.505) < 4 * o["lyapunov_exponent_error"] < 0.05
+
+
+def test_closed_curves_of_the_paper():
+    printed = Settings(formulation="as-printed")
+    counts = [
+        table.closed_curves(Params(control_frequency=speed / (2 * np.pi)), printed)
+        for speed in (31.0, 32.8, 47.0)
+    ]
+    assert counts == [2, 1, 1]
+
+
 def test_both_orbits_at_47_rad_per_second_as_printed():
-    both = claims()[-2:]
+    both = table.rows()[-2:]
     o, _ = batch(both, np.zeros(2, np.uint64), Settings(formulation="as-printed"))
     assert o["regime"].tolist() == [QUASI_PERIODIC] * 2
     np.testing.assert_allclose(o["progression_rate"], [35.7e-3, 42.7e-3], atol=1e-4)
@@ -77,10 +136,23 @@ def test_both_orbits_at_47_rad_per_second_as_printed():
 
 @pytest.mark.slow
 def test_the_exponent_of_the_paper_s_chaos():
-    o = at(2.5, formulation="as-printed", duration=6000)
-    assert o["regime"] == CHAOTIC
-    assert o["lyapunov_exponent_error"] < 0.02
-    np.testing.assert_allclose(o["lyapunov_exponent"], 1.505, atol=0.03)
+    outputs = table.responses("as-printed")
+    assert table.CLAIMS[0].control_frequency == 2.5
+    assert outputs["regime"][0] == CHAOTIC
+    assert outputs["lyapunov_exponent_error"][0] < 0.01
+    np.testing.assert_allclose(outputs["lyapunov_exponent"][0], 1.505, atol=0.03)
+
+
+def test_without_a_common_period_the_start_is_forgotten():
+    """Bars let go a tenth of a millimetre apart, averaged over the same control periods."""
+    frequency = 29.5 / (2 * np.pi)
+    o = compute(
+        Settings(duration=40),
+        *({"control_frequency": frequency, "initial_displacement": u} for u in (-22e-3, -22.1e-3)),
+    )
+    assert o["regime"].tolist() == [QUASI_PERIODIC] * 2
+    for name in ("progression_rate", "impact_work_rate"):
+        np.testing.assert_allclose(o[name][1], o[name][0], rtol=1e-8)
 
 
 def test_transient_and_duration_are_kept():

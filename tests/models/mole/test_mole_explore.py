@@ -131,3 +131,24 @@ def test_a_diagram_shows_each_frequency_as_if_alone():
     assert ds["regime"].values.tolist() == ["periodic", "periodic", "no-impact"]
     assert (ds["impacts"].sel(control_frequency=13.0) == 0).all()
     assert (ds["peak_contact_force"].sel(control_frequency=5.0) > 0).any()
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda: history(Params(), Settings(), 0.0, 1.0, points=0), "points must be positive: 0"),
+        (lambda: poincare_section(Params(), Settings(), -1, 0), "periods must be positive: -1"),
+        (lambda: poincare_section(Params(), Settings(), 8, -5), "dropped must not be negative: -5"),
+        (
+            lambda: poincare_section(Params(), Settings(), 8, 0, starts=(-0.02, 0.0)),
+            r"starts must be pairs \(displacement, velocity\)",
+        ),
+        (
+            lambda: bifurcation_diagram([8.0, -3.0], Params(), Settings(), 0, 1),
+            "control frequencies must be positive: -3 Hz",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_line(call, says):
+    with pytest.raises(ValueError, match=says):
+        call()
