@@ -155,6 +155,7 @@ def _in_units(
         "gap_ratio": np.where(first_reached, s.lives.ratio, np.nan),
         "period": s.response.period,
         "floquet_multiplier": s.response.multiplier,
+        "regime_changes": np.where(lost, np.nan, s.lives.changes),
         "fundamental_frequency": s.fundamental / (2 * np.pi),
     }
     outputs["regime"] = np.where(lost, np.int8(-1), s.response.regime)

@@ -12,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.events import run
+from models.beam.flow import passage
 from models.beam.modal import Array, Beams, Record, steady_response
 from models.beam.parameters import Settings
 from models.beam.phases import Phase, phases
+from models.beam.tuning import Beam
 
 TRACE_STEPS = 200
 
@@ -115,3 +117,29 @@ def advance(
         row = Record(*(a[i] for a in record))
         run(free, contact, state[i], gaps[i], growth[i], row)
     return record
+
+
+def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
+    """Return how the states after whole periods of the force depend on the states now.
+
+    Parameters
+    ----------
+    system : System
+    state : ndarray, shape (n, 2 m + 2)
+        At phase 0 of the force; not changed.
+    gaps : ndarray, shape (n, 2)
+        Constant, in initial gaps.
+    periods : int
+
+    Returns
+    -------
+    ndarray, shape (n, 2 m + 2, 2 m + 2)
+        Derivative of each component after (rows) with respect to each before (columns); zero for
+        the work of unfinished contacts. NaN where `advance` gives NaN.
+    """
+    out = np.zeros((*state.shape, state.shape[1]))
+    size = 2 * system.modal.shape[1]
+    for i, pair in enumerate(system.phases):
+        found = passage(Beam.of(pair), state[i, :size], gaps[i], periods=periods)
+        out[i, :size, :size] = found.tangents[:, :size]
+    return out

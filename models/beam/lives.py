@@ -12,10 +12,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam import wear
+from models.beam.looks import changes_of, confirmed_regimes
 from models.beam.modal import Array
 
 SHORTEST = 64  # N of the first run; each further one lasts twice as long
-LONGEST = 660  # over the accuracy: N of the last run at most
+LEAST = 5  # runs: fewer are too fast to notice some branch changes
+LONGEST = 330  # over the accuracy: N of the last run at most, unless they are the least
+
+
+def _fit_of_constant_and_inverse() -> Array:
+    """Return the weights with which four lives at N to 8 N enter the constant of their fit."""
+    periods = 2.0 ** np.arange(4)
+    basis = np.stack([np.ones(4), 1 / periods])
+    return np.linalg.solve(basis * periods @ basis.T, basis * periods)[0]
+
+
+_FIT = _fit_of_constant_and_inverse()
 
 
 class Lives(NamedTuple):
@@ -31,19 +43,23 @@ class Lives(NamedTuple):
         False where the time is infinite, or only the time simulated.
     ratio : ndarray, shape (n, D)
         As in `wear.Run`.
+    changes : ndarray, shape (n,)
+        Changes of regime in the slowest run, up to its end.
     """
 
     time: Array
     error: Array
     reached: NDArray[np.bool_]
     ratio: Array
+    changes: Array
 
     @staticmethod
     def nothing(n: int, depths: int) -> "Lives":
         """Return what is known of n beams before they are run."""
         unknown = np.full((2, n, 3, depths), np.nan)
         ratio = np.full((n, depths), np.nan)
-        return Lives._make([*unknown, np.zeros((n, 3, depths), bool), ratio])
+        reached = np.zeros((n, 3, depths), bool)
+        return Lives._make([*unknown, reached, ratio, np.full(n, np.nan)])
 
 
 def find_lives(
@@ -72,7 +88,7 @@ def find_lives(
     """
     n, depths = growths.shape
     out = Lives.nothing(n, depths)
-    levels = max(3, 1 + int(math.log2(LONGEST / (SHORTEST * accuracy))))
+    levels = max(LEAST, 1 + int(math.log2(LONGEST / (SHORTEST * accuracy))))
     times = np.empty((levels, n, 2, depths))
     left = np.arange(n)
     for level in range(levels):
@@ -89,9 +105,10 @@ def find_lives(
         times[level, left] = one.time
         before, out.reached[left, :2] = out.reached[left, :2], one.reached
         out.ratio[left] = one.ratio
-        if level < 2:
+        if level + 1 < LEAST:
             continue
-        time, error = extrapolate(times[level - 2 : level + 1, left])
+        out.changes[left] = changes_of(confirmed_regimes(one.history.regime)).sum(axis=1)
+        time, error = extrapolate(times[level + 1 - LEAST : level + 1, left])
         # A life that one of the runs did not reach is known no better than by its own size.
         error = np.where(before & np.isfinite(error), np.minimum(error, time), time)
         out.time[left, :2] = np.where(one.reached, time, one.time)
@@ -112,18 +129,22 @@ def _take_the_earlier(out: Lives) -> None:
 
 
 def extrapolate(times: Array) -> tuple[Array, Array]:
-    """Estimate the life at infinitely slow wear from lives at N, 2 N and 4 N periods.
+    """Estimate the life at infinitely slow wear from lives at N, 2 N, 4 N, 8 N and 16 N periods.
 
     Where the response follows the gaps smoothly it lags behind by a time that does not depend on
     the pace, so that the error falls like 1/N; through a change of branch (a slow passage) it
     falls like N^(-2/3). In both cases the differences of the lives are a geometric series of
-    ratio 2 or 1.6, whose rest is added; a third of that rest is kept as the error. Differences
-    that grow say that a change is not resolved yet, and their error is several times the last;
-    any other sequence is that of an aperiodic response, whose error is statistical.
+    ratio 2 or 1.6, whose rest is added. Any other sequence is, in part or wholly, that of an
+    aperiodic response: then the four slowest lives are fitted by a constant and an error like
+    1/N, each with the weight of its periods. Differences that grow say that a change is not
+    resolved yet.
+
+    The error is made of what was added, how much it changes when the slowest life is left out,
+    and the differences themselves. Its factors are measured: see ``benchmarks/beam_lives.py``.
 
     Parameters
     ----------
-    times : ndarray, shape (3, ...)
+    times : ndarray, shape (5, ...)
         Lives, the slowest wear last.
 
     Returns
@@ -131,11 +152,23 @@ def extrapolate(times: Array) -> tuple[Array, Array]:
     time, error : ndarray, shape (...)
     """
     with np.errstate(invalid="ignore", divide="ignore"):
-        previous, last = times[1] - times[0], times[2] - times[1]
-        ratio = previous / last
-        regular = (ratio > 1.4) & (ratio < 2.4)
-        growing = (ratio > 0) & (ratio < 1)
-        rest = np.where(regular, last / (ratio - 1), 0.0)
-        statistical = np.maximum(np.abs(last), 0.7 * np.abs(previous))
-        error = np.where(growing, 4 * np.abs(last), statistical)
-        return times[2] + rest, np.where(regular, np.abs(rest) / 3, error)
+        time, regular = _limit(times[1:])
+        before, _ = _limit(times[:-1])
+        added, change = np.abs(time - times[-1]), np.abs(time - before)
+        last, previous = np.abs(times[-1] - times[-2]), np.abs(times[-2] - times[-3])
+        same_sign = (times[-1] > times[-2]) == (times[-2] > times[-3])
+        growing = same_sign & (last > previous)
+        irregular = np.maximum.reduce(
+            [added / 2, 1.5 * change, last, 0.7 * previous, np.where(growing, 4 * last, 0.0)]
+        )
+        return time, np.where(regular, np.maximum(added / 3, change), irregular)
+
+
+def _limit(times: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the limit of lives at N, 2 N, 4 N and 8 N, and whether they are regular."""
+    slowest = times[-1]
+    last = slowest - times[-2]
+    ratio = (times[-2] - times[-3]) / last
+    regular = (ratio > 1.4) & (ratio < 2.4)
+    limit = np.where(regular, slowest + last / (ratio - 1), np.tensordot(_FIT, times, 1))
+    return np.where(np.abs(limit - slowest) < slowest / 2, limit, slowest), regular

@@ -275,5 +275,8 @@ OUTPUTS: Mapping[str, Output] = {
         "largest modulus of the periodic response's Floquet multipliers, over its period",
         may_be_undefined=True,
     ),
+    "regime_changes": Output(
+        "1", "changes of regime until both sites have worn by the last depth, or for good"
+    ),
     "fundamental_frequency": Output("Hz", "first natural frequency of the beam out of contact"),
 }

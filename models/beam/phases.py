@@ -188,3 +188,34 @@ def join(phase, coefficient, s, power, y):
         a, b = c * u - e * v, c * v + e * u
         for i in range(len(y)):
             y[i] += phase.shape[k, 0, i] * a - phase.shape[k, 1, i] * b
+
+
+@kernel
+def carry(phase, power, tangents, modal):
+    """Take tangents (2 m, C) through the time of `power`: y -> Re(shape exp(rate s) dual y).
+
+    `modal` (2, T, C) is room for their coefficients.
+    """
+    size, columns = tangents.shape
+    terms = len(phase.speed)
+    modal[:] = 0.0
+    for i in range(size):
+        for k in range(2, terms):
+            a, b = phase.dual[i, 0, k], phase.dual[i, 1, k]
+            if a == 0 and b == 0:  # modes are uncoupled in free flight
+                continue
+            for j in range(columns):
+                modal[0, k, j] += a * tangents[i, j]
+                modal[1, k, j] += b * tangents[i, j]
+    tangents[:] = 0.0
+    for k in range(2, terms):
+        u, v = 1 + power[0, k], power[1, k]
+        for j in range(columns):
+            a, b = modal[0, k, j], modal[1, k, j]
+            modal[0, k, j], modal[1, k, j] = a * u - b * v, a * v + b * u
+        for i in range(size):
+            a, b = phase.shape[k, 0, i], phase.shape[k, 1, i]
+            if a == 0 and b == 0:
+                continue
+            for j in range(columns):
+                tangents[i, j] += a * modal[0, k, j] - b * modal[1, k, j]

@@ -13,7 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.looks import WINDOW, History, regime_of
 from models.beam.modal import Array
+from models.beam.response import NO_IMPACT
 from models.numerics.jit import kernel
 
 LOOKS = 32  # changes of the acceleration in N periods
@@ -36,12 +38,15 @@ class Run(NamedTuple):
         Whether wear has stopped for good: what was not reached never will be.
     ratio : ndarray, shape (n, D)
         Gap of the other site over that of the first to reach the growth, then; NaN if never.
+    history : History
+        NaN after the end of a life.
     """
 
     time: Array
     reached: NDArray[np.bool_]
     ended: NDArray[np.bool_]
     ratio: Array
+    history: History
 
 
 class _Life(NamedTuple):
@@ -81,6 +86,7 @@ def run(
     share: Array,
     growths: Array,
     periods: int,
+    looks: int = LOOKS,
 ) -> Run:
     """Let the gaps of n beams grow in about `periods` forcing periods.
 
@@ -102,6 +108,8 @@ def run(
         Gap growths to reach, increasing, in X0.
     periods : int
         N: what the faster site takes to the last growth.
+    looks : int
+        In N periods.
 
     Returns
     -------
@@ -113,17 +121,19 @@ def run(
         np.zeros((n, 2, depths), bool),
         np.zeros(n, bool),
         np.full((n, depths), np.nan),
+        History.nothing(n, looks * OVERTIME),
     )
     rate = work * share
     reach = np.abs(system.modal.sum(axis=1))
     clock, grown, silence = np.zeros(n), np.zeros((n, 2)), np.zeros(n, np.int64)
     life = _Life(gaps, share, growths, reach, rate.max(axis=1), rate, grown, clock, silence)
     left, state, here = np.arange(n), state.copy(), gaps.copy()
-    for _ in range(LOOKS * OVERTIME):
+    for look in range(looks * OVERTIME):
         acceleration, growth = np.empty(len(left)), np.empty((len(left), 2))
         _pace(left, life, out.reached, periods, acceleration, growth)
-        record = propagator.advance(system, state, here, growth, periods // LOOKS)
+        record = propagator.advance(system, state, here, growth, periods // looks)
         _note(left, life, out, record.work, acceleration, growth)
+        _look(left, life, out, look, record.strobe, record.work)
         alive = ~(out.ended[left] | out.reached[left, :, -1].all(axis=1))
         if not alive.all():
             kept = np.flatnonzero(alive)
@@ -160,15 +170,19 @@ def _note(left, life, out, work, acceleration, growth):
     periods = work.shape[1]
     for j in range(left.size):
         i = left[j]
-        total = (0.0, 0.0)
-        for period in range(periods):
-            done = (work[j, period, 0], work[j, period, 1])
-            step = (growth[j, 0] * done[0], growth[j, 1] * done[1])
-            when = life.clock[i] + acceleration[j] * period
-            _note_crossings(i, life, out, step, when, acceleration[j])
-            total = (total[0] + done[0], total[1] + done[1])
-            for site in range(2):
-                life.grown[i, site] += step[site]
+        total = (work[j, :, 0].sum(), work[j, :, 1].sum())
+        step = (growth[j, 0] * total[0], growth[j, 1] * total[1])
+        if _will_cross(i, life, out, step):
+            grown = (life.grown[i, 0], life.grown[i, 1])
+            for period in range(periods):
+                step = (growth[j, 0] * work[j, period, 0], growth[j, 1] * work[j, period, 1])
+                when = life.clock[i] + acceleration[j] * period
+                _note_crossings(i, life, out, grown, step, when, acceleration[j])
+                grown = (grown[0] + step[0], grown[1] + step[1])
+            life.grown[i, 0], life.grown[i, 1] = grown
+        else:
+            life.grown[i, 0] += step[0]
+            life.grown[i, 1] += step[1]
         life.clock[i] += acceleration[j] * periods
         for site in range(2):
             rate = total[site] * life.share[i, site] / periods
@@ -178,14 +192,41 @@ def _note(left, life, out, work, acceleration, growth):
 
 
 @kernel
-def _note_crossings(i, life, out, step, when, acceleration):
+def _look(left, life, out, look, strobe, work):
+    """Enter in the history how things stand."""
+    periods = work.shape[1]
+    history = out.history
+    for j in range(left.size):
+        i = left[j]
+        history.time[i, look] = life.clock[i]
+        for site in range(2):
+            history.gaps[i, look, site] = life.gaps[i, site] + life.grown[i, site]
+            history.work[i, look, site] = work[j, :, site].mean()
+        if periods >= WINDOW:
+            seen = regime_of(strobe[j], work[j])
+            history.regime[i, look] = NO_IMPACT if out.ended[i] else seen
+
+
+@kernel
+def _will_cross(i, life, out, step):
+    """Tell whether beam i reaches any growth in a step: most looks reach none."""
+    for site in range(2):
+        for depth in range(life.growths.shape[1]):
+            missing = not out.reached[i, site, depth]
+            if missing and life.grown[i, site] + step[site] >= life.growths[i, depth]:
+                return True
+    return False
+
+
+@kernel
+def _note_crossings(i, life, out, grown, step, when, acceleration):
     """Note which growths beam i reaches in one period, and when; linear within it."""
     for depth in range(life.growths.shape[1]):
         goal = life.growths[i, depth]
         first_of_all = not (out.reached[i, 0, depth] or out.reached[i, 1, depth])
         earliest = np.inf
         for site in range(2):
-            before = life.grown[i, site]
+            before = grown[site]
             if out.reached[i, site, depth] or before + step[site] < goal:
                 continue
             part = (goal - before) / step[site]
@@ -194,7 +235,7 @@ def _note_crossings(i, life, out, step, when, acceleration):
             if first_of_all and part < earliest:
                 earliest = part
                 other = 1 - site
-                slower = life.gaps[i, other] + life.grown[i, other] + part * step[other]
+                slower = life.gaps[i, other] + grown[other] + part * step[other]
                 out.ratio[i, depth] = slower / (life.gaps[i, site] + goal)
 
 

@@ -354,7 +354,7 @@ def follow_other(
         each = -(-periods // (BATCHES * common)) * common
         places = _follow_batches(machines, rows, each, tangents, tolerance, out)
         mean, error = mean_and_error(out.growth[rows[places]])
-        places = places[np.abs(mean) <= SURE * error]
+        places = places[np.abs(mean) < SURE * error]
         rows, tangents = rows[places], tangents[places]
 
 

@@ -6,7 +6,8 @@ from incremental import incremental_lives
 
 from models.beam import MODEL
 from models.beam.lives import extrapolate
-from models.beam.parameters import OUTPUTS, Params, Settings
+from models.beam.looks import changes_of, confirmed_regimes, regime_of
+from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
 from uq.contract import Status
 
 NOMINAL = np.array(list(MODEL.nominal.values()))
@@ -159,26 +160,120 @@ def test_a_life_in_one_row_does_not_depend_on_the_others():
         assert np.array_equal(apart[name], together[name][some], equal_nan=True), name
 
 
+PACES = np.array([1.0, 2.0, 4.0, 8.0, 16.0])
+
+
 @pytest.mark.parametrize("order", [1.0, 2 / 3])
-def test_three_lives_with_one_power_law_of_error_are_extrapolated_to_its_limit(order):
-    times = (1.0 + 0.2 * np.array([1.0, 2.0, 4.0]) ** -order)[:, None]
+def test_lives_with_one_power_law_of_error_are_extrapolated_to_its_limit(order):
+    times = (1.0 + 0.2 * PACES**-order)[:, None]
     time, error = extrapolate(times)
     assert time == pytest.approx([1.0], abs=1e-9)
-    assert error == pytest.approx((times[2] - 1.0) / 3)
+    assert error == pytest.approx((times[-1] - 1.0) / 3)
 
 
-def test_lives_scattered_about_the_true_one_are_not_extrapolated_and_keep_their_error():
+def test_lives_scattered_about_the_true_one_are_averaged_and_keep_their_error():
     rng = np.random.default_rng(11)
-    times = 1.0 + 0.05 * rng.standard_normal((3, 4000)) / np.sqrt([[1.0], [2.0], [4.0]])
+    times = 1.0 + 0.05 * rng.standard_normal((5, 4000)) / np.sqrt(PACES[:, None])
     time, error = extrapolate(times)
-    assert np.mean(time == times[2]) > 0.6
+    assert np.median(np.abs(time - 1.0)) < 1.2 * np.median(np.abs(times[-1] - 1.0))
     assert np.mean(np.abs(time - 1.0) <= error) > 0.68
+    assert np.mean(np.abs(time - 1.0) <= 2 * error) > 0.95
 
 
 def test_lives_that_change_ever_more_are_far_from_their_limit():
-    time, error = extrapolate(np.array([[1.00], [0.99], [0.96]]))
-    assert time[0] == 0.96
+    _, error = extrapolate(np.array([[1.00], [1.00], [1.00], [0.99], [0.96]]))
     assert error[0] == pytest.approx(0.12)
+
+
+def test_a_life_far_from_all_faster_ones_is_left_as_it_is():
+    time, error = extrapolate(np.array([[9.0], [9.0], [9.0], [9.0], [1.0]]))
+    assert time[0] == 1.0
+    assert error[0] > 1.0
+
+
+def strobed(pattern, drift=5e-4, periods=48):
+    """Return strobe points and works of one beam whose pattern drifts as it wears."""
+    t = np.arange(periods)
+    x = np.resize(pattern, periods) * (1 + drift * t)
+    return np.stack([x, 0.3 - x], axis=1), np.ones((periods, 2)) * [1.0, 1.3]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "regime"),
+    [
+        ([1.0], "period-1-asymmetric"),
+        ([1.0, 0.8], "period-k"),
+        (np.linspace(0.5, 1.0, 16), "period-k"),
+        (np.linspace(0.5, 1.0, 17), "aperiodic"),
+        (np.random.default_rng(2).uniform(-1, 1, 48), "aperiodic"),
+    ],
+)
+def test_the_drift_of_wear_does_not_hide_the_regime(pattern, regime):
+    assert REGIMES[regime_of(*strobed(pattern))] == regime
+
+
+def test_equal_works_are_symmetric_and_no_work_is_no_impact():
+    strobe, work = strobed([1.0])
+    assert REGIMES[regime_of(strobe, np.ones_like(work))] == "period-1-symmetric"
+    assert REGIMES[regime_of(strobe, np.zeros_like(work))] == "no-impact"
+
+
+def test_only_regimes_that_last_are_counted_and_from_where_they_began():
+    looks = [[4, 2, 2, 2, 4, 2, 3, 4, 3, 4, 4, 4, 4, 1, 1, -1], [1, 1, 2, 2, 1, 1, 2, 2] + 8 * [-1]]
+    regimes = confirmed_regimes(np.array(looks, np.int8))
+    assert regimes[0].tolist() == [-1] + 8 * [2] + 6 * [4] + [-1]
+    assert (regimes[1] == -1).all()
+    changes = changes_of(regimes)
+    assert np.flatnonzero(changes[0]).tolist() == [9]
+    assert not changes[1].any()
+
+
+def test_the_end_of_wear_is_a_change_at_once_and_a_short_silence_is_none():
+    looks = [[2, 2, 2, 2, 0, -1], [2, 2, 2, 0, 2, 2], [0, 0, -1, -1, -1, -1]]
+    regimes = confirmed_regimes(np.array(looks, np.int8))
+    assert regimes[0].tolist() == [2, 2, 2, 2, 0, -1]
+    assert changes_of(regimes).sum(axis=1).tolist() == [1, 0, 0]
+
+
+def test_regimes_lost_on_the_way_are_counted():
+    # 9.5 and 9.9 keep their orbits to twice the gap; at 5.61 the orbit turns symmetric near 1.2
+    x = rows(3, forcing_frequency=[54.797, 57.1042, 32.3591])
+    outputs, _ = compute(x, depths=(0.4 * DEPTH,), accuracy=0.02)
+    assert outputs["regime_changes"].tolist() == [0.0, 0.0, 1.0]
+
+
+def test_the_end_of_wear_is_counted_but_not_where_there_never_was_any():
+    p = {"forcing_frequency": 3.0, "force_amplitude": 0.15, "mass_damping": 30.0}
+    worn, _ = compute(rows(contact_stiffness=1e3, **p), depths=(1e-5, 1e-3))
+    before, _ = compute(rows(contact_stiffness=1e3, **p), depths=(1e-5, 2e-4))
+    assert np.isposinf(worn["first_time_to_depth"][0, 1])
+    assert before["regime_changes"][0] == 0.0
+    assert worn["regime_changes"][0] >= 1.0
+    free, _ = compute(rows(force_amplitude=0.05))
+    assert free["regime_changes"][0] == 0.0
+
+
+@pytest.mark.parametrize("share", [0.4, 3.0])
+def test_unequal_wear_coefficients_wear_as_by_incremental_averaging(share):
+    x = rows(wear_coefficient_ratio=share)
+    outputs, _ = compute(x, depths=(0.25 * DEPTH,), accuracy=0.02)
+    p = Params(*map(float, x[0]))
+    known = incremental_lives(p, Settings(), (0.25,), increments=12, most=9.0)
+    lives = known.time[:2, 0] * known.unit
+    assert outputs["time_to_depth"][0, :, 0] == pytest.approx(lives, rel=5e-3)
+
+
+def test_wear_that_ends_does_so_by_incremental_averaging_too():
+    p = {"forcing_frequency": 3.0, "force_amplitude": 0.15, "mass_damping": 30.0}
+    x = rows(contact_stiffness=1e3, **p)
+    growths = np.array([0.04, 3.0, 4.0])
+    outputs, _ = compute(x, depths=tuple(growths * DEPTH), accuracy=0.02)
+    known = incremental_lives(Params(*map(float, x[0])), Settings(), growths, increments=80)
+    life, error = outputs["first_time_to_depth"][0], outputs["first_time_to_depth_error"][0]
+    assert np.isposinf(life[2]) and np.isposinf(known.time[2, 2])
+    allowed = 2 * (error + known.error[2] * known.unit)[:2]
+    assert (np.abs(life[:2] - known.time[2, :2] * known.unit) < allowed).all()
+    assert (error[:2] < 0.03 * life[:2]).all()
 
 
 @pytest.mark.slow

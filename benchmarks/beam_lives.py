@@ -1,0 +1,112 @@
+"""The beam's lives: what a row costs, by regime, and whether the errors stated cover.
+
+Rows of the shipped lifetime studies, to a depth of one initial gap: core-milliseconds per row,
+then their lives beside those at a tenth of the accuracy. The regimes met on the way are told from
+the drifting strobe points; here they are compared with those of the same states settled at gaps
+that no longer wear.
+"""
+
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+from models.beam import MODEL, lanes, response, wear
+from models.beam.batch import initial_gaps
+from models.beam.looks import changes_of, confirmed_regimes
+from models.beam.modal import beams
+from models.beam.parameters import REGIMES, Params, Settings
+from uq.sampling import row_block
+from uq.study import load_study
+
+STUDIES = Path(__file__).parent.parent / "studies"
+CASES = (("beam-lifetime-561", 0.02), ("beam-lifetime-561", 0.04), ("beam-lifetime", 0.01))
+CASES += (("beam-lifetime", 0.05),)
+DEPTHS = (2.5e-4,)
+ROWS, CHECKED, SETTLED = 256, 50, 40
+
+
+def rows_of(name, begin, end):
+    study = load_study(STUDIES / f"{name}.toml")
+    return row_block(study, begin, end)
+
+
+def lives(rows, accuracy):
+    settings = Settings(depths=DEPTHS, accuracy=accuracy)
+    began = time.process_time()
+    outputs, _ = MODEL.batch(rows.x, rows.seed, settings)
+    return outputs, (time.process_time() - began) / len(rows.x) * 1e3
+
+
+def costs(name, accuracy):
+    rows = rows_of(name, 0, ROWS)
+    outputs, each = lives(rows, accuracy)
+    print(f"{name}, accuracy {accuracy}: {each:.2f} core-ms per row")
+    for code, regime in enumerate(REGIMES):
+        mine = np.flatnonzero(outputs["regime"] == code)
+        if len(mine) >= lanes.LANES:
+            some = SimpleNamespace(x=rows.x[mine], seed=rows.seed[mine])
+            print(f"    {regime:20s} {len(mine):4d} rows {lives(some, accuracy)[1]:8.2f}")
+
+
+def errors(name, accuracy):
+    rows = rows_of(name, ROWS, ROWS + CHECKED)
+    known = lives(rows, accuracy / 10)[0]
+    found = lives(rows, accuracy)[0]
+    life = known["first_time_to_depth"][:, 0]
+    off = np.abs(found["first_time_to_depth"][:, 0] / life - 1)
+    stated = found["first_time_to_depth_error"][:, 0] / life
+    same = np.mean(found["regime_changes"] == known["regime_changes"])
+    print(
+        f"    error: median {np.median(off):.2%}, ninth decile {np.quantile(off, 0.9):.2%}; stated "
+        f"{np.median(stated):.2%}; beyond it {np.mean(off > stated):.0%}, beyond twice "
+        f"{np.mean(off > 2 * stated):.0%}; as many changes of regime {same:.0%}"
+    )
+
+
+def regimes(name, periods=16_384):
+    rows = rows_of(name, ROWS + CHECKED, ROWS + CHECKED + SETTLED)
+    p = Params._make(np.ascontiguousarray(rows.x.T))
+    settings = Settings(depths=DEPTHS)
+    looks = alike = counts = close = 0
+    for chosen, system in lanes.groups(beams(p, settings), settings):
+        q = Params._make(field[chosen] for field in p)
+        gaps, x0 = initial_gaps(q), q.initial_gap
+        state = lanes.start(system, q.initial_displacement / x0, q.initial_velocity / x0)
+        work = response.settle(lanes, system, state, gaps).work
+        told = []
+
+        def advance(system, state, gaps, growth, periods, told=told):
+            record = lanes.advance(system, state, gaps, growth, periods)
+            settled = response.settle(lanes, system, state.copy(), gaps.copy())
+            told.append((gaps.copy(), settled.regime))
+            return record
+
+        share = np.stack([np.ones_like(x0), q.wear_coefficient_ratio], axis=1)
+        growths = np.asarray(DEPTHS) / x0[:, None]
+        spy = SimpleNamespace(advance=advance)
+        life = wear.run(spy, system, state, gaps, work, share, growths, periods).history
+        truth = np.full_like(life.regime, -1)
+        for look, (at, regime) in enumerate(told):
+            here = np.abs(life.gaps[:, look, None] - at).max(axis=2)
+            rows_left = np.flatnonzero(life.regime[:, look] >= 0)
+            truth[rows_left, look] = regime[here[rows_left].argmin(axis=1)]
+        looks += (life.regime >= 0).sum()
+        alike += ((life.regime == truth) & (truth >= 0)).sum()
+        found, known = (changes_of(confirmed_regimes(r)).sum(axis=1) for r in (life.regime, truth))
+        counts += (found == known).sum()
+        close += (np.abs(found - known) <= 1).sum()
+    print(
+        f"{name}, regimes at frozen gaps: {alike / looks:.1%} of {looks} looks alike; as many "
+        f"changes in {counts} of {SETTLED} lives, one more or less in {close - counts}"
+    )
+
+
+if __name__ == "__main__":
+    lives(rows_of("beam-lifetime", 0, 32), 1.0)  # compiles
+    for name, accuracy in CASES:
+        costs(name, accuracy)
+        errors(name, accuracy)
+    for name in ("beam-lifetime-561", "beam-lifetime"):
+        regimes(name)
