@@ -177,6 +177,7 @@ def _in_units(
         ),
         "gap_ratio": np.where(first_reached, s.lives.ratio, np.nan),
         "period": s.response.period,
+        "floquet_multiplier": s.response.multiplier,
         "regime_changes": np.where(lost, np.nan, s.lives.changes),
         "fundamental_frequency": s.fundamental / (2 * np.pi),
     }

@@ -19,6 +19,9 @@ from models.beam.phases import Phase, phases, set_lines
 from models.beam.random_load import COUNT, SPEED, TURN, draw, turn_at
 from models.beam.tuning import Beam
 
+CLOCK = -3
+"""Column of the state that counts forcing periods."""
+
 TRACE_STEPS = 200
 
 

@@ -22,11 +22,15 @@ import numpy as np
 
 from models.beam.lane_lines import Lines, Load, draw_lines, redraw_lines, sum_lines
 from models.beam.lane_systems import System, groups, start
+from models.beam.lane_tangents import carry
 from models.beam.modal import Array, Record
 from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
 
-__all__ = ["advance", "groups", "start"]
+__all__ = ["advance", "groups", "monodromy", "start"]
+
+CLOCK = -1
+"""Column of the state that counts forcing periods."""
 
 _UNROLL = 4  # modes in the straight-line body of the inner loop
 _MODE = 6  # slots of a mode: y, r, t, d, alpha, beta
@@ -242,3 +246,31 @@ def advance(
         tuple(record),
     )
     return record
+
+
+def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
+    """Return the derivative of the state after some periods with respect to the state now.
+
+    It is that of the scheme itself, not of the beam that the scheme approximates.
+
+    Parameters
+    ----------
+    system : System
+    state : ndarray, shape (n, 2 m + 4)
+        Not changed.
+    gaps : ndarray, shape (n, 2)
+        In initial gaps, constant.
+    periods : int
+
+    Returns
+    -------
+    ndarray, shape (n, 2 m + 4, 2 m + 4)
+        Zero for the clock.
+    """
+    record = advance(system, state.copy(), gaps.copy(), np.zeros_like(gaps), periods, trace=True)
+    n, size = state.shape
+    tangents = np.tile(np.eye(size - 1), (n, 1, 1))
+    carry(system, state, gaps, record.trace, tangents)
+    out = np.zeros((n, size, size))
+    out[:, :CLOCK, :CLOCK] = tangents
+    return out

@@ -300,6 +300,11 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "regime": Output("1", "kind of response at the initial gaps", "category", categories=REGIMES),
     "period": Output("1", "period of the response in forcing periods, 0 if aperiodic"),
+    "floquet_multiplier": Output(
+        "1",
+        "largest modulus of the periodic response's Floquet multipliers, over its period",
+        may_be_undefined=True,
+    ),
     "regime_changes": Output(
         "1", "changes of regime until both sites have worn by the last depth, or for good"
     ),

@@ -7,6 +7,9 @@ from models.beam import exact, lanes
 from models.beam.modal import beams
 from models.beam.parameters import REGIMES, Params, Settings
 from models.beam.response import settle
+from models.numerics.multipliers import largest_multiplier
+
+DOUBLED = 7.05 * 57.1042 / 9.900  # omega = 7.05
 
 
 def nominal(**values):
@@ -100,21 +103,99 @@ def test_mirrored_gaps_give_the_mirrored_response():
     assert right_wide == pytest.approx(left_wide[::-1], rel=1e-3)
 
 
-def test_a_period_longer_than_one_is_told_with_its_length():
-    strobe = np.zeros((1, 32, 2))
-    strobe[0, :, 0] = np.tile([1.0, 2.0, 4.0, 3.0], 8)
-    from models.beam.response import _distances, _period
+def symmetric_orbit(frequency):
+    """Return system and state on the orbit that is stable at 54.797 Hz, wherever it has gone."""
+    state, gaps, s = None, np.ones((1, 2)), Settings(steps_per_period=128)
+    for at in np.linspace(54.797, frequency, 5):
+        ((_, system),) = lanes.groups(beams(nominal(forcing_frequency=at), s), s)
+        if state is None:
+            state = lanes.start(system, np.zeros(1), np.zeros(1))
+            settle(lanes, system, state, gaps)
+        for _ in range(8):
+            image = state.copy()
+            lanes.advance(system, image, gaps, np.zeros((1, 2)), 1)
+            flow = lanes.monodromy(system, state, gaps, 1)[0]
+            state = state + np.linalg.solve(np.eye(len(flow)) - flow, (image - state)[0])
+    return system, state
 
-    distance = _distances(strobe)
-    assert _period(np.full_like(distance, np.inf), distance, strobe)[0] == 4
+
+def test_an_orbit_of_two_periods_is_found_and_comes_back_after_two():
+    p = nominal(forcing_frequency=DOUBLED)
+    s = Settings()
+    ((_, system),) = lanes.groups(beams(p, s), s)
+    state, gaps = lanes.start(system, np.zeros(1), np.zeros(1)), np.ones((1, 2))
+    response = settle(lanes, system, state, gaps)
+    assert REGIMES[response.regime[0]] == "period-k"
+    assert response.period[0] == 2
+    before = state.copy()
+    record = lanes.advance(system, state, gaps, np.zeros((1, 2)), 2)
+    assert np.abs(np.delete(state - before, lanes.CLOCK, axis=1)).max() < 1e-7
+    assert record.work[0].mean(axis=0) == pytest.approx(response.work[0], rel=1e-7)
+    assert np.abs(record.work[0, 0] - record.work[0, 1]).max() > 1e-3 * response.work.max()
+    assert record.peak[0] == pytest.approx(response.peak[0], rel=1e-7)
 
 
-def test_a_response_that_still_drifts_is_not_taken_for_periodic():
-    from models.beam.response import _distances, _period
+@pytest.mark.parametrize("frequency", [32.3591, 54.797, 57.1042])
+def test_the_settled_state_is_on_the_orbit(frequency):
+    p = nominal(forcing_frequency=frequency)
+    s = Settings()
+    ((_, system),) = lanes.groups(beams(p, s), s)
+    state, gaps = lanes.start(system, np.zeros(1), np.zeros(1)), np.ones((1, 2))
+    response = settle(lanes, system, state, gaps)
+    before = state.copy()
+    record = lanes.advance(system, state, gaps, np.zeros((1, 2)), 1)
+    assert np.abs(np.delete(state - before, lanes.CLOCK, axis=1)).max() < 1e-8
+    assert record.work[0, 0] == pytest.approx(response.work[0], rel=1e-8)
 
-    drift = 1 + 1e-3 * np.arange(64)[None, :, None] * np.ones((1, 1, 2))
-    before, now = _distances(drift[:, :32]), _distances(drift[:, 32:])
-    assert _period(before, now, drift[:, 32:])[0] == 0
+
+def test_the_multiplier_of_the_robust_orbit_is_the_known_one():
+    response, _ = settled(nominal(forcing_frequency=54.797), steps_per_period=400)
+    assert response.multiplier[0] == pytest.approx(0.98859, abs=3e-5)
+
+
+@pytest.mark.parametrize("values", [{"force_amplitude": 0.05}, {"forcing_frequency": 43.26}])
+def test_without_impacts_or_a_period_there_is_no_multiplier(values):
+    response, _ = settled(nominal(**values))
+    assert np.isnan(response.multiplier[0])
+
+
+def test_a_symmetric_orbit_that_has_lost_its_stability_is_left():
+    system, state = symmetric_orbit(57.1042)
+    gaps = np.ones((1, 2))
+    record = lanes.advance(system, state.copy(), gaps, np.zeros((1, 2)), 1)
+    assert record.work[0, 0, 0] == pytest.approx(record.work[0, 0, 1], rel=1e-9)
+    assert largest_multiplier(lanes.monodromy(system, state, gaps, 1))[0] > 1.04
+    state[0, 0] += 1e-6
+    response = settle(lanes, system, state, gaps)
+    assert REGIMES[response.regime[0]] == "period-1-asymmetric"
+    assert response.multiplier[0] < 1
+
+
+def test_upon_an_unstable_orbit_nothing_periodic_is_reported():
+    system, state = symmetric_orbit(57.1042)
+    response = settle(lanes, system, state, np.ones((1, 2)))
+    assert REGIMES[response.regime[0]] in ("aperiodic", "period-1-asymmetric")
+
+
+def test_a_row_settles_alike_alone_and_among_others():
+    rng = np.random.default_rng(6)
+    n = 40
+    fields = {**Params._field_defaults, "forcing_frequency": 57.1042}
+    p = Params(*(np.full(n, float(v)) for v in fields.values()))
+    p = p._replace(force_amplitude=rng.uniform(5, 7, n))
+    s = Settings(steps_per_period=96)
+    ((_, system),) = lanes.groups(beams(p, s), s)
+
+    def settle_rows(rows):
+        state = lanes.start(system, np.zeros(n), np.zeros(n))[rows]
+        return [state, *settle(lanes, system.take(rows), state, np.ones((len(rows), 2)))]
+
+    together = settle_rows(np.arange(n))
+    assert len(np.unique(together[4])) > 1
+    for row in (0, 17, n - 1):
+        alone = settle_rows(np.array([row]))
+        for some, one in zip(together, alone, strict=True):
+            assert np.array_equal(some[row], one[0], equal_nan=True)
 
 
 @pytest.mark.slow
