@@ -112,6 +112,7 @@ def test_what_does_not_repeat_is_averaged_over_whole_common_periods():
     np.testing.assert_allclose(impacts, np.round(impacts), atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_long_average_has_steps_enough_and_an_exponent():
     o = at(2.5, formulation="as-printed", duration=20_000)
     assert o["regime"] == CHAOTIC
