@@ -15,6 +15,7 @@ LADDER = tuple(base << k for k in range(8) for base in (64, 96))
 COMPLIANCE = 0.01
 UNSTABLE = 0.03  # compliance from which on the corrections below may feed themselves
 RESOLVED = 16  # least steps in a turn of the random load's fastest line
+MOST_UNDER_RANDOM = 1536  # steps in a forcing period
 
 
 class System(NamedTuple):
@@ -168,7 +169,8 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     gives way by no more than `COMPLIANCE` of its penetration, residual flexibility left out; the
     error of a work-rate is then about 0.1 %. A turn of the fastest line of a random load takes
     `RESOLVED` steps at least. A row whose step stays too long, because contact is too stiff or the
-    load too fast for the longest of the ladder or for the steps that are set, is in no group.
+    load too fast for the longest of the ladder or for the steps that are set, is in no group; nor
+    is one under a random load, whose averages are long, that takes more than `MOST_UNDER_RANDOM`.
 
     Parameters
     ----------
@@ -217,7 +219,8 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
             b.forcing,
             int(count),
         )
-        sound = np.flatnonzero((np.abs(sigma) <= UNSTABLE) & (least[rows] <= count))
+        sound = (np.abs(sigma) <= UNSTABLE) & (least[rows] <= count)
+        sound = np.flatnonzero(sound & ((b.load["power"] == 0) | (count <= MOST_UNDER_RANDOM)))
         if len(sound):
             yield rows[sound], system.take(sound)
 

@@ -25,6 +25,7 @@ _LONGEST = 82  # over the accuracy: periods at each increment
 _MEMORY = 0.3  # weight of the newest node in the sites' shares of wear
 _GOOD = 0.05  # relative error of means that are interpolated
 _CUBIC = 3
+_STEEPEST = 300.0  # logarithm by which a fit may fall short of a rate
 _GRID = 129  # points of a quadrature
 _ITERATIONS = 30
 
@@ -81,6 +82,8 @@ def find_random_lives(
         narrow = (gaps[i] + grown[last[i], i]).min()
         silent = not rate[last[i], i].any() and system.reach[i] < narrow
         _note(i, out, gaps[i], grown[some, i], rate[some, i], doubt[some, i], growths[i], silent)
+        # A random load knows one regime until contact ends.
+        out.changes[i] = float(silent and bool(rate[0, i].any()))
     return out
 
 
@@ -122,9 +125,13 @@ def _note(
         if x[-1] == 0:
             continue
         wear = _Wear(x, rate[:, site], doubt[:, site])
-        simulated = max(simulated, wear.life(x[-1])[0])
+        whole, _ = wear.life(x[-1])
+        simulated = max(simulated, whole if np.isfinite(whole) else 0.0)
         for depth in np.flatnonzero(growths <= x[-1] * (1 + 1e-9)).tolist():
-            out.time[i, site, depth], out.error[i, site, depth] = wear.life(growths[depth])
+            life, uncertainty = wear.life(growths[depth])
+            if not np.isfinite(life):  # a fit of next to nothing
+                break
+            out.time[i, site, depth], out.error[i, site, depth] = life, uncertainty
             out.reached[i, site, depth] = True
             at[site, depth] = np.interp(growths[depth], x, np.arange(len(x)))
     out.time[i, :2][~out.reached[i, :2]] = np.inf if silent else simulated
@@ -165,10 +172,11 @@ class _Wear:
             return float(piece.sum()), float(np.sqrt((noise**2).sum() + change**2))
         grid = np.linspace(0.0, end, _GRID)
         basis = np.vander(grid / self.x[-1], len(self.coefficient), increasing=True)
-        inverse = np.exp(-basis @ self.coefficient)
-        slope = -np.trapezoid(basis * inverse[:, None], grid, axis=0)
-        life = np.trapezoid(inverse, grid)
-        return float(life), float(np.sqrt(slope @ self.covariance @ slope))
+        with np.errstate(over="ignore", invalid="ignore"):
+            inverse = np.exp(-basis @ self.coefficient)
+            slope = -np.trapezoid(basis * inverse[:, None], grid, axis=0)
+            life = np.trapezoid(inverse, grid)
+            return float(life), float(np.sqrt(slope @ self.covariance @ slope))
 
 
 def _fit(t: Array, rate: Array) -> tuple[Array, Array]:
@@ -179,11 +187,11 @@ def _fit(t: Array, rate: Array) -> tuple[Array, Array]:
     coefficient[0] = np.log(rate.mean())
     normal = np.linalg.inv(basis.T @ basis)
     for _ in range(_ITERATIONS):
-        residual = rate * np.exp(-basis @ coefficient) - 1
+        residual = rate * np.exp(np.minimum(-basis @ coefficient, _STEEPEST)) - 1
         # Steps are kept where the fit changes by no more than a factor e: fits of noise run away.
         change = normal @ (basis.T @ residual)
         coefficient += change / max(1.0, np.abs(basis @ change).max())
-    residual = rate * np.exp(-basis @ coefficient) - 1
+    residual = rate * np.exp(np.minimum(-basis @ coefficient, _STEEPEST)) - 1
     scatter = (residual**2).sum() / max(1, len(t) - degree - 1)
     return coefficient, scatter * normal
 

@@ -9,7 +9,7 @@ from scipy.stats import kstest
 from models.beam import MODEL, exact, lanes
 from models.beam.modal import beams, reach
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
-from models.beam.random_lives import _fit
+from models.beam.random_lives import _fit, _Wear
 from models.beam.random_load import COUNT, force, tip_deviation
 from models.beam.response import settle
 from uq import simulate
@@ -267,6 +267,7 @@ def test_a_random_load_too_weak_to_touch_does_no_work_and_wears_for_ever():
     assert REGIMES[outputs["regime"][0]] == "no-impact"
     assert not outputs["work_rate"].any()
     assert np.isposinf(outputs["first_time_to_depth"]).all()
+    assert outputs["regime_changes"][0] == 0
 
 
 @pytest.mark.slow
@@ -289,6 +290,7 @@ def test_a_seed_is_a_row_s_own_and_does_not_matter_without_random_load():
     settings = Settings(depths=(1e-5,), accuracy=0.3)
     outputs, _ = MODEL.batch(x, seed, settings)
     work = outputs["work_rate"]
+    assert outputs["regime_changes"][:2].tolist() == [0, 0]
     assert (work[0] != work[1]).any() and (work[2] == work[3]).all()
     again, _ = MODEL.batch(x[1:2], seed[1:2], settings)
     for name in OUTPUTS:
@@ -331,6 +333,20 @@ def test_a_noisy_rate_is_fitted_without_bias_and_with_its_error():
     off, error = np.array(found).T
     assert abs(np.exp(off).mean() - 1) < 0.15
     assert error.mean() == pytest.approx(off.std(), rel=0.25)
+
+
+def test_a_fit_of_next_to_nothing_is_no_overflow():
+    """A site that wears by fits and starts, over thirty powers of ten."""
+    rate = np.array([1e-300, 1e-3, 1e-250, 1.0, 1e-200, 1e3, 1e-300, 1e-300, 1e-280, 1e-300])
+    wear = _Wear(np.linspace(0.0, 1.0, 10), rate, rate)
+    assert np.isposinf(wear.life(1.0)[0]) or wear.life(1.0)[0] > 0
+
+
+def test_a_load_that_takes_too_many_steps_is_out_of_budget():
+    x = rows(forcing_frequency=1.0, random_force_level=1e-3, random_force_high=1000.0)
+    outputs, status = MODEL.batch(x, np.zeros(1, np.uint64), Settings())
+    assert status[0] == Status.OUT_OF_BUDGET
+    assert np.isnan(outputs["work_rate"]).all()
 
 
 def test_lines_are_many_where_the_beam_is_sharp():
