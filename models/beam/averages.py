@@ -1,7 +1,7 @@
 """Time means of a response that never settles, taken as long as it needs.
 
 The run is doubled until it is long enough; its first quarter is left out, the rest cut into
-batches that grow with it, so that they outlast what the beam remembers.
+batches that grow with it. It lasts `MEMORIES` times what the beam remembers at least.
 """
 
 from types import ModuleType
@@ -13,6 +13,8 @@ from models.beam.modal import Array
 from models.numerics.batch_means import mean_and_error
 
 SHORTEST = 1024  # periods
+LONGEST = 16_384  # periods
+MEMORIES = 20
 _PIECE = 32  # periods in one call, and in the shortest batch
 _BATCHES = 24  # cut from what is kept
 
@@ -34,9 +36,11 @@ class Mean(NamedTuple):
 
 
 def time_mean(
-    propagator: ModuleType, system: Any, state: Array, gaps: Array, accuracy: float, longest: int
+    propagator: ModuleType, system: Any, state: Array, gaps: Array, accuracy: float, least: int
 ) -> Mean:
     """Average the work of n beams until both sites' errors are small, or the budget ends.
+
+    A beam that has not met a stop it can reach is followed on: its work is not known to be zero.
 
     Parameters
     ----------
@@ -50,17 +54,22 @@ def time_mean(
         In initial gaps; not changed.
     accuracy : float
         Relative standard error that is good enough.
-    longest : int
-        Forcing periods that no run exceeds, if it is `SHORTEST` at least.
+    least : int
+        Forcing periods that each run lasts at least.
 
     Returns
     -------
     Mean
+        NaN for a beam whose memory is too long for `LONGEST` periods.
     """
     n = len(state)
+    wanted = np.maximum(least, MEMORIES * system.memory)
+    touches = system.reach >= gaps.min(axis=1)
     out = Mean(*np.zeros((3, n, 2)))
-    pieces = np.zeros((n, longest // _PIECE, 2))
-    left, done = np.arange(n), 0
+    pieces = np.zeros((n, LONGEST // _PIECE, 2))
+    left, done = np.flatnonzero(wanted <= LONGEST), 0
+    for field in out:
+        field[wanted > LONGEST] = np.nan
     total = SHORTEST // _PIECE
     while len(left):
         now, here, some = state[left], gaps[left], system.take(left)
@@ -75,6 +84,8 @@ def time_mean(
         out.work[left], out.error[left] = mean_and_error(batches)
         done, total = total, 2 * total
         good = (out.error[left] <= accuracy * out.work[left]).all(axis=1)
+        good &= out.work[left].any(axis=1) | ~touches[left]
+        good &= done * _PIECE >= wanted[left]
         lost = np.isnan(out.work[left]).any(axis=1)
-        left = left[~(good | lost)] if total * _PIECE <= longest else left[:0]
+        left = left[~(good | lost)] if total * _PIECE <= LONGEST else left[:0]
     return out

@@ -18,6 +18,7 @@ PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
 
 # They scale lifetimes and nothing else (eq 12): rows that differ only here share a simulation.
 _SCALES = [Params._fields.index(name) for name in ("wear_coefficient", "contact_area")]
+_BAND = [Params._fields.index(name) for name in ("random_force_low", "random_force_high")]
 
 
 class Simulated(NamedTuple):
@@ -52,7 +53,9 @@ def batch(
     seed = np.where(p.random_force_level > 0, seed, np.uint64(0))
     # The halves of a seed are floats without rounding.
     halves = np.stack([seed >> np.uint64(32), seed & np.uint64(0xFFFFFFFF)], axis=1)
-    dynamic = np.hstack([np.delete(x, _SCALES, axis=1), halves.astype(float)])
+    told = x.copy()
+    told[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load is none
+    dynamic = np.hstack([np.delete(told, _SCALES, axis=1), halves.astype(float)])
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
     some: Rows = Params._make(np.ascontiguousarray(x[first].T))
     simulated = simulate_rows(some, settings, seed[first])
@@ -106,8 +109,9 @@ def _simulate_group(
     share = np.stack([np.ones_like(x0), p.wear_coefficient_ratio], axis=1)
     growths = np.asarray(settings.depths) / x0[:, None]
     lives = Lives.nothing(*growths.shape)
+    known = np.isfinite(settled.work).all(axis=1)
     for is_random in (False, True):
-        rows = np.flatnonzero(system.is_random == is_random)
+        rows = np.flatnonzero(known & (system.is_random == is_random))
         if not len(rows):
             continue
         start = (propagator, system.take(rows), state[rows], gaps[rows], settled.work[rows])

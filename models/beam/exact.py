@@ -55,6 +55,11 @@ class System(NamedTuple):
         """Which beams have a random load, shape (n,)."""
         return self.beams.load["power"] > 0
 
+    @property
+    def memory(self) -> Array:
+        """Forcing periods in which the first mode's free motion falls to 1/e, shape (n,)."""
+        return self.forcing / (2 * np.pi * self.beams.decay[:, 0])
+
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return the systems of some rows."""
         chosen = tuple(self.phases[i] for i in rows)

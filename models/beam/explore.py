@@ -83,8 +83,9 @@ def wear_history(
     Raises
     ------
     ValueError
-        If a look would be too short to tell a regime.
+        If a look would be too short to tell a regime, or the load is random.
     """
+    _check_counts(periods=periods, looks=looks)
     if periods < looks * wear.WINDOW:
         raise ValueError(
             f"{looks} looks of {wear.WINDOW} periods need more than {periods} periods: the regime "
@@ -153,7 +154,7 @@ def work_rate_against_gap(
     Raises
     ------
     ValueError
-        If a gap is not positive, or `sweep` is not one of the three.
+        If a gap is not positive, `sweep` is not one of the three, or the load is random.
     """
     apart = _gaps(gaps)
     p = _rows(params, len(apart))
@@ -204,8 +205,9 @@ def phase_portrait(
     Raises
     ------
     ValueError
-        If a gap is not positive, or `sweep` is not one of the three.
+        If a gap is not positive, `sweep` is not one of the three, or the load is random.
     """
+    _check_counts(periods=periods)
     apart = _gaps(gaps)
     x0 = params.initial_gap
     p = _rows(params, len(apart))
@@ -270,9 +272,12 @@ def bifurcation_diagram(
     Raises
     ------
     ValueError
-        If `sweep` is not one of the three.
+        If a frequency is not positive, `sweep` is not one of the three, or the load is random.
     """
+    _check_counts(periods=periods)
     frequency = np.asarray(forcing_frequency, float)
+    if frequency.ndim != 1 or not (frequency > 0).all():
+        raise ValueError(f"forcing_frequency must be a list of positive numbers: {frequency}")
     p = _rows(params, len(frequency))._replace(forcing_frequency=frequency)
     gaps = initial_gaps(p)
     work, regime, period = _blank(len(frequency))
@@ -305,8 +310,16 @@ def bifurcation_diagram(
     )
 
 
+def _check_counts(**counts: int) -> None:
+    for name, count in counts.items():
+        if not isinstance(count, int) or count < 1:
+            raise ValueError(f"{name} must be a positive whole number, not {count!r}")
+
+
 def _rows(params: Params, n: int) -> Rows:
     """Return the parameters of n equal beams, each field of shape (n,)."""
+    if params.random_force_level > 0:
+        raise ValueError("these are pictures of the harmonic force alone: random_force_level > 0")
     return Params._make(np.full(n, float(value)) for value in params)
 
 

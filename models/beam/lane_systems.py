@@ -57,6 +57,11 @@ class System(NamedTuple):
         """Which beams have a random load, shape (n,)."""
         return self.load["power"] > 0
 
+    @property
+    def memory(self) -> Array:
+        """Forcing periods in which the first mode's free motion falls to 1/e, shape (n,)."""
+        return self.forcing / (2 * np.pi * self.oscillators[:, 1, 0])
+
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return the systems of some rows."""
         return System._make([*(a[rows] for a in self[:-1]), self.steps])
@@ -163,7 +168,9 @@ def _choose_steps(forcing, frequency, decay, gain, moving, least, steps):
 
 
 def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
-    """Prepare n beams, in groups that share a number of steps.
+    """Prepare n beams, in groups that share a number of steps and, by fours, of moving modes.
+
+    What a row is computed with depends on the row alone, and so do its bits.
 
     Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
     gives way by no more than `COMPLIANCE` of its penetration, residual flexibility left out; the
@@ -206,8 +213,6 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
             sigma,
             residual,
         )
-        last = 1 + np.flatnonzero(begin[:, 2].any(axis=0)).max(initial=0)
-        modes, begin = modes[:, :, :last], begin[:, :, :last]
         system = System(
             modes,
             begin,
@@ -220,9 +225,19 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
             int(count),
         )
         sound = (np.abs(sigma) <= UNSTABLE) & (least[rows] <= count)
-        sound = np.flatnonzero(sound & ((b.load["power"] == 0) | (count <= MOST_UNDER_RANDOM)))
-        if len(sound):
-            yield rows[sound], system.take(sound)
+        sound &= (b.load["power"] == 0) | (count <= MOST_UNDER_RANDOM)
+        width = np.minimum(m, _widths(begin[:, 2]))
+        for size in np.unique(width[sound]):
+            part = np.flatnonzero(sound & (width == size))
+            some = system.take(part)
+            cut = some._replace(modes=some.modes[:, :, :size], begin=some.begin[:, :, :size])
+            yield rows[part], cut
+
+
+def _widths(moving: Array) -> NDArray[np.int64]:
+    """Return how many modes to keep of each row: up to the last that moves, in whole fours."""
+    last = np.where(moving > 0, 1 + np.arange(moving.shape[1]), 1).max(axis=1)
+    return -(-last // 4) * 4
 
 
 @kernel

@@ -170,5 +170,7 @@ def _limit(times: Array) -> tuple[Array, NDArray[np.bool_]]:
     last = slowest - times[-2]
     ratio = (times[-2] - times[-3]) / last
     regular = (ratio > 1.4) & (ratio < 2.4)
-    limit = np.where(regular, slowest + last / (ratio - 1), np.tensordot(_FIT, times, 1))
+    # Summed one by one: a product of matrices would round by how many rows there are.
+    fitted = sum(weight * time for weight, time in zip(_FIT, times, strict=True))
+    limit = np.where(regular, slowest + last / (ratio - 1), fitted)
     return np.where(np.abs(limit - slowest) < slowest / 2, limit, slowest), regular

@@ -168,6 +168,8 @@ def settled_orbit(beam: Beam, state: Array, gaps: Array, period: int = 1) -> Orb
     ValueError
         If the beam does not settle on an orbit of this period.
     """
+    if period < 1:
+        raise ValueError(f"period must be positive: {period!r}")
     for _ in range(_ROUNDS):
         orbit = find_orbit(beam, state, gaps, period, stable_only=True, farthest=_CLOSE)
         if orbit.outcome == "converged" and orbit.period == period:

@@ -15,13 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from models.beam.averages import SHORTEST, time_mean
+from models.beam.averages import LONGEST, SHORTEST, time_mean
 from models.beam.lives import Lives
 from models.beam.modal import Array
 
 INCREMENTS = 12  # in which the faster gap grows to the last depth
 _OVERTIME = 3  # times as many for the slower one
 _LONGEST = 82  # over the accuracy: periods at each increment
+_ANY = 1e9  # error of a mean whose length is given
 _MEMORY = 0.3  # weight of the newest node in the sites' shares of wear
 _GOOD = 0.05  # relative error of means that are interpolated
 _CUBIC = 3
@@ -60,6 +61,7 @@ def find_random_lives(
     """
     n = len(state)
     periods = SHORTEST << max(0, round(np.log2(_LONGEST / accuracy / SHORTEST)))
+    periods = min(periods, LONGEST)
     nodes = 1 + _OVERTIME * INCREMENTS
     grown = np.zeros((nodes, n, 2))
     rate, doubt = np.full((2, nodes, n, 2), np.nan)
@@ -72,7 +74,7 @@ def find_random_lives(
         if not len(left):
             break
         now, here = state[left], gaps[left] + grown[node, left]
-        mean = time_mean(propagator, system.take(left), now, here, 0.0, periods)
+        mean = time_mean(propagator, system.take(left), now, here, _ANY, periods)
         state[left], last[left] = now, node
         rate[node, left], doubt[node, left] = mean.work * share[left], mean.error * share[left]
         running[left] += _MEMORY * (rate[node, left] - running[left])

@@ -25,7 +25,7 @@ LONGEST_PERIOD = 16
 TRANSIENT = 4  # segments left out of a time mean
 BUDGET = 32  # segments
 RANDOM_ACCURACY = 0.05  # relative error of a mean work-rate under a random load
-RANDOM_BUDGET = 16_384  # periods
+MEMORIES = 5  # times what the beam remembers: a budget within which it forgets its start
 _NEAR = 0.05  # k times the distance of strobe points k periods apart, relative to the response
 _SHRINKING = 0.9  # factor of that distance from one look to the next
 _NEARER = 0.5  # that distance over the one at which an orbit was looked for in vain
@@ -68,6 +68,12 @@ class Response(NamedTuple):
         unknown = np.full((2, n), np.nan)
         return Response._make([*np.full((3, n, 2), np.nan), regime, *unknown])
 
+    def forget(self, rows: NDArray[np.intp]) -> None:
+        """Know nothing of some beams."""
+        fields: tuple[Any, ...] = self
+        for mine, unknown in zip(fields, Response.nothing(len(rows)), strict=True):
+            mine[rows] = unknown
+
 
 def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Response:
     """Run n beams until they have settled.
@@ -86,6 +92,8 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
     Returns
     -------
     Response
+        NaN for a beam that no propagator can follow, or whose motion has neither come near an orbit
+        nor forgotten its start within the budget.
     """
     n = len(state)
     out = Response(
@@ -130,6 +138,9 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
             _note_orbit(out, rows, orbit, state)
         left = left[out.period[left] == 0]
     _note_aperiodic(out, left, batches)
+    forgetful = MEMORIES * system.memory[left] <= BUDGET * SEGMENT
+    out.forget(left[~forgetful])
+    out.forget(np.flatnonzero(np.isnan(out.work).any(axis=1)))
     return out
 
 
@@ -144,7 +155,7 @@ def _settle_random(
 ) -> None:
     """Average over a random load: nothing repeats, so only silence can be told from the rest."""
     now = state[rows]
-    mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, RANDOM_BUDGET)
+    mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, 0)
     state[rows] = now
     out.work[rows], out.error[rows], out.peak[rows] = mean
     silent = rows[never_touches[rows] & (mean.work == 0).all(axis=1)]

@@ -31,6 +31,8 @@ def settled_rows(
     """
     if sweep not in ("none", "up", "down"):
         raise ValueError(f"sweep must be 'none', 'up' or 'down', not {sweep!r}")
+    if sweep != "none" and settings.residual_flexibility:
+        raise ValueError("a sweep is by the exact propagator, without residual_flexibility")
     b = beams(p, settings)
     propagator = PROPAGATORS[settings.propagator] if sweep == "none" else exact
     u, v = p.initial_displacement / p.initial_gap, p.initial_velocity / p.initial_gap

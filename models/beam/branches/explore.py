@@ -82,6 +82,10 @@ def continue_orbit(
     ValueError
         If no such orbit is found at the start, or the load is random.
     """
+    if parameter not in _ABOUT:
+        raise ValueError(f"parameter must be 'forcing_frequency' or 'gap', not {parameter!r}")
+    if not np.isfinite(stop):
+        raise ValueError(f"stop must be a number: {stop!r}")
     if start is None:
         start = params.forcing_frequency if parameter == "forcing_frequency" else params.initial_gap
     forcing = start if parameter == "forcing_frequency" else params.forcing_frequency
@@ -150,6 +154,8 @@ def follow_wear(
     ValueError
         If no stable orbit of this period is found at the initial gaps, or the load is random.
     """
+    if not accuracy > 0:
+        raise ValueError(f"accuracy must be positive: {accuracy!r}")
     tuning = _tuning(params, settings or Settings())
     beam = tuning.at(tuning.forcing)
     x0 = params.initial_gap
@@ -181,7 +187,10 @@ def _tuning(params: Params, settings: Settings) -> Tuning:
 def _first_state(params: Params, tuning: Tuning, state: ArrayLike | None) -> Array:
     """Return the state given, or that of the parameters."""
     if state is not None:
-        return np.asarray(state, float)
+        given = np.asarray(state, float)
+        if given.shape != (tuning.size,):
+            raise ValueError(f"state must have {tuning.size} numbers, not shape {given.shape}")
+        return given
     first = np.zeros(tuning.size)
     first[0] = params.initial_displacement / params.initial_gap
     first[tuning.size // 2] = params.initial_velocity / params.initial_gap / tuning.forcing

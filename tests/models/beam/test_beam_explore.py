@@ -5,6 +5,8 @@ import pytest
 
 from models.beam.explore import (
     bifurcation_diagram,
+    continue_orbit,
+    follow_wear,
     phase_portrait,
     wear_history,
     work_rate_against_gap,
@@ -166,3 +168,42 @@ def test_a_sweep_has_one_of_three_names_and_gaps_are_positive():
         work_rate_against_gap(Params(), Settings(), [X0], "back")
     with pytest.raises(ValueError, match="gaps must be positive"):
         phase_portrait(Params(), Settings(), [0.0])
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda p, s: wear_history(p, s, looks=0), "looks must be a positive whole number, not 0"),
+        (lambda p, s: phase_portrait(p, s, [X0], periods=-1), "periods must be a positive whole"),
+        (lambda p, s: bifurcation_diagram(p, s, [-57.0]), "must be a list of positive numbers"),
+        (lambda p, s: bifurcation_diagram(p, s, 57.0), "must be a list of positive numbers"),
+        (lambda p, s: continue_orbit(p, s, "frequency", stop=58.0), "parameter must be 'forcing_"),
+        (lambda p, s: continue_orbit(p, s, stop=np.nan), "stop must be a number"),
+        (lambda p, s: continue_orbit(p, s, stop=58.0, period=0), "period must be positive: 0"),
+        (lambda p, s: continue_orbit(p, s, stop=58.0, state=[1.0]), "state must have 44 numbers"),
+        (lambda p, s: follow_wear(p, s, stop=2 * X0, accuracy=0.0), "accuracy must be positive"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_a_line(call, says):
+    with pytest.raises(ValueError, match=says):
+        call(Params(), Settings())
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda p: wear_history(p, Settings()),
+        lambda p: work_rate_against_gap(p, Settings(), [X0]),
+        lambda p: continue_orbit(p, stop=58.0),
+        lambda p: follow_wear(p, stop=2 * X0),
+    ],
+)
+def test_a_random_load_is_not_left_out_silently(call):
+    with pytest.raises(ValueError, match="random_force_level > 0"):
+        call(Params(random_force_level=1e-3))
+
+
+def test_a_sweep_with_residual_flexibility_is_refused():
+    settings = Settings(modes=4, residual_flexibility=True)
+    with pytest.raises(ValueError, match="without residual_flexibility"):
+        work_rate_against_gap(Params(), settings, [X0, 2 * X0], sweep="up")

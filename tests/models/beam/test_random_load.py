@@ -342,6 +342,23 @@ def test_a_fit_of_next_to_nothing_is_no_overflow():
     assert np.isposinf(wear.life(1.0)[0]) or wear.life(1.0)[0] > 0
 
 
+def test_contacts_that_are_rare_are_waited_for():
+    """One in some hundred periods: a thousand periods without one are no zero."""
+    x = rows(8, force_amplitude=0.0, random_force_level=9e-7)
+    outputs, status = MODEL.batch(x, np.arange(8, dtype=np.uint64), Settings(depths=(1e-5,)))
+    assert (status == Status.OK).sum() >= 6
+    done = status == Status.OK
+    assert (outputs["work_rate_heavy"][done] > 0).all()
+
+
+def test_what_is_averaged_has_forgotten_its_start():
+    """At 1600 Hz the first mode remembers for longer than the budget lasts."""
+    x = rows(2, forcing_frequency=[57.0, 1600.0], mass_damping=0.5, force_amplitude=0.0)
+    x[:, Params._fields.index("random_force_level")] = 1e-2
+    _, status = MODEL.batch(x, np.zeros(2, np.uint64), Settings(depths=(1e-5,), accuracy=0.3))
+    assert status.tolist() == [Status.OK, Status.OUT_OF_BUDGET]
+
+
 def test_a_load_that_takes_too_many_steps_is_out_of_budget():
     x = rows(forcing_frequency=1.0, random_force_level=1e-3, random_force_high=1000.0)
     outputs, status = MODEL.batch(x, np.zeros(1, np.uint64), Settings())

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from models.beam import exact, lanes
+from models.beam import MODEL, exact, lanes
 from models.beam.modal import beams
 from models.beam.parameters import REGIMES, Params, Settings
 from models.beam.response import settle
 from models.numerics.multipliers import largest_multiplier
+from uq.contract import Status
 
 DOUBLED = 7.05 * 57.1042 / 9.900  # omega = 7.05
 
@@ -203,3 +204,35 @@ def test_both_propagators_settle_on_the_same_response():
     p = nominal(forcing_frequency=54.797)
     fast, slow = (settled(p, propagator)[1] for propagator in (lanes, exact))
     assert fast == pytest.approx(slow, rel=1e-3)
+
+
+def test_bits_do_not_depend_on_company():
+    """Rows of different damping keep different numbers of modes."""
+    rng = np.random.default_rng(8)
+    n = 24
+    x = np.tile(list(MODEL.nominal.values()), (n, 1))
+    for name, low, high in (("stiffness_damping", 5e-7, 3e-4), ("forcing_frequency", 20.0, 90.0)):
+        x[:, Params._fields.index(name)] = rng.uniform(low, high, n)
+    settings = Settings(depths=(1e-5,), accuracy=0.3)
+    together, _ = MODEL.batch(x, np.zeros(n, np.uint64), settings)
+    for i in range(0, n, 2):
+        alone, _ = MODEL.batch(x[i : i + 1], np.zeros(1, np.uint64), settings)
+        for name, values in together.items():
+            np.testing.assert_array_equal(alone[name][0], values[i], err_msg=f"{name}, row {i}")
+
+
+def test_a_response_that_remembers_its_start_is_no_time_mean():
+    """At 1500 Hz and next to no damping, a thousand periods are less than one second."""
+    x = np.tile(list(MODEL.nominal.values()), (1, 1))
+    changes = {
+        "forcing_frequency": 1500.0,
+        "force_amplitude": 200.0,
+        "mass_damping": 0.2,
+        "initial_velocity": 0.1,
+    }
+    for name, value in changes.items():
+        x[:, Params._fields.index(name)] = value
+    outputs, status = MODEL.batch(x, np.zeros(1, np.uint64), Settings())
+    assert status[0] == Status.OUT_OF_BUDGET
+    assert np.isnan(outputs["work_rate"]).all()
+    assert np.isnan(outputs["first_time_to_depth"]).all()
