@@ -33,7 +33,7 @@ MODEL = Model(
     simulate=_simulate,
     coordinates=coordinates,
     dimensions={"depth": ("m", "growth of the gap by wear")},
-    block=512,
+    block=1024,
     references=(
         "J. Knudsen, A. R. Massih, Impact work-rate and wear of a loosely supported beam subject "
         "to harmonic excitation, ASME IMECE 2002",

@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam import wear
-from models.beam.looks import changes_of, confirmed_regimes
+from models.beam.looks import UNKNOWN, WINDOW, changes_of, confirmed_regimes
 from models.beam.modal import Array
 
 SHORTEST = 64  # N of the first run; each further one lasts twice as long
 LEAST = 5  # runs: fewer are too fast to notice some branch changes
+SMOOTH = 4  # runs that suffice where nothing changes and the limit is approached evenly
 LONGEST = 330  # over the accuracy: N of the last run at most, unless they are the least
 
 
@@ -92,6 +93,7 @@ def find_lives(
     times = np.empty((levels, n, 2, depths))
     left = np.arange(n)
     for level in range(levels):
+        periods = SHORTEST << level
         one = wear.run(
             propagator,
             system.take(left),
@@ -100,15 +102,22 @@ def find_lives(
             work[left],
             share[left],
             growths[left],
-            SHORTEST * 2**level,
+            periods,
+            min(wear.LOOKS, max(wear.LOOKS // 2, periods // WINDOW)),
         )
         times[level, left] = one.time
         before, out.reached[left, :2] = out.reached[left, :2], one.reached
         out.ratio[left] = one.ratio
-        if level + 1 < LEAST:
+        if level + 1 < SMOOTH:
             continue
-        out.changes[left] = changes_of(confirmed_regimes(one.history.regime)).sum(axis=1)
-        time, error = extrapolate(times[level + 1 - LEAST : level + 1, left])
+        regime = one.history.regime
+        out.changes[left] = changes_of(confirmed_regimes(regime)).sum(axis=1)
+        if level + 1 < LEAST:
+            time, error = extrapolate_smooth(times[:SMOOTH, left])
+            changed = ((regime != regime[:, :1]) & (regime != UNKNOWN)).any(axis=1)
+            error[changed] = np.inf
+        else:
+            time, error = extrapolate(times[level + 1 - LEAST : level + 1, left])
         # A life that one of the runs did not reach is known no better than by its own size.
         error = np.where(before & np.isfinite(error), np.minimum(error, time), time)
         out.time[left, :2] = np.where(one.reached, time, one.time)
@@ -126,6 +135,29 @@ def _take_the_earlier(out: Lives) -> None:
     earlier = sites.argmin(axis=1)[:, None]
     for field in (out.time, out.error, out.reached):
         field[:, 2] = np.take_along_axis(field[:, :2], earlier, axis=1)[:, 0]
+
+
+def extrapolate_smooth(times: Array) -> tuple[Array, Array]:
+    """Estimate the life at infinitely slow wear from lives at N, 2 N, 4 N and 8 N periods.
+
+    Parameters
+    ----------
+    times : ndarray, shape (4, ...)
+        Lives, the slowest wear last.
+
+    Returns
+    -------
+    time, error : ndarray, shape (...)
+        As `extrapolate` does; the error is infinite unless both differences of differences are
+        those of a regular series.
+    """
+    with np.errstate(invalid="ignore", divide="ignore"):
+        time, regular = _rest(times[1:])
+        before, was_regular = _rest(times[:-1])
+        error = np.maximum(np.abs(time - times[-1]) / 3, np.abs(time - before))
+        differences = np.abs(np.diff(times, axis=0)).max(axis=0)
+        even = regular & was_regular
+        return np.where(even, time, times[-1]), np.where(even, error, 4 * differences)
 
 
 def extrapolate(times: Array) -> tuple[Array, Array]:
@@ -167,10 +199,15 @@ def extrapolate(times: Array) -> tuple[Array, Array]:
 def _limit(times: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Return the limit of lives at N, 2 N, 4 N and 8 N, and whether they are regular."""
     slowest = times[-1]
-    last = slowest - times[-2]
-    ratio = (times[-2] - times[-3]) / last
-    regular = (ratio > 1.4) & (ratio < 2.4)
+    limit, regular = _rest(times[1:])
     # Summed one by one: a product of matrices would round by how many rows there are.
     fitted = sum(weight * time for weight, time in zip(_FIT, times, strict=True))
-    limit = np.where(regular, slowest + last / (ratio - 1), fitted)
+    limit = np.where(regular, limit, fitted)
     return np.where(np.abs(limit - slowest) < slowest / 2, limit, slowest), regular
+
+
+def _rest(times: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Add the rest of a geometric series to the last of three lives; tell whether it is one."""
+    last = times[2] - times[1]
+    ratio = (times[1] - times[0]) / last
+    return times[2] + last / (ratio - 1), (ratio > 1.4) & (ratio < 2.4)

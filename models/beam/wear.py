@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from models.beam.looks import WINDOW, History, regime_of
 from models.beam.modal import Array
 from models.beam.response import NO_IMPACT
-from models.numerics.jit import kernel
+from models.numerics.jit import kernel, lean
 
 LOOKS = 32  # changes of the acceleration in N periods
 OVERTIME = 4  # a run may last this many times N periods
@@ -170,7 +170,7 @@ def _note(left, life, out, work, acceleration, growth):
     periods = work.shape[1]
     for j in range(left.size):
         i = left[j]
-        total = (work[j, :, 0].sum(), work[j, :, 1].sum())
+        total = _total(work, j)
         step = (growth[j, 0] * total[0], growth[j, 1] * total[1])
         if _will_cross(i, life, out, step):
             grown = (life.grown[i, 0], life.grown[i, 1])
@@ -191,6 +191,15 @@ def _note(left, life, out, work, acceleration, growth):
         out.ended[i] = _has_ended(i, life)
 
 
+@lean
+def _total(work, j):
+    right = left = 0.0
+    for period in range(work.shape[1]):
+        right += work[j, period, 0]
+        left += work[j, period, 1]
+    return right, left
+
+
 @kernel
 def _look(left, life, out, look, strobe, work):
     """Enter in the history how things stand."""
@@ -199,15 +208,16 @@ def _look(left, life, out, look, strobe, work):
     for j in range(left.size):
         i = left[j]
         history.time[i, look] = life.clock[i]
+        total = _total(work, j)
         for site in range(2):
             history.gaps[i, look, site] = life.gaps[i, site] + life.grown[i, site]
-            history.work[i, look, site] = work[j, :, site].mean()
+            history.work[i, look, site] = total[site] / periods
         if periods >= WINDOW:
             seen = regime_of(strobe[j], work[j])
             history.regime[i, look] = NO_IMPACT if out.ended[i] else seen
 
 
-@kernel
+@lean
 def _will_cross(i, life, out, step):
     """Tell whether beam i reaches any growth in a step: most looks reach none."""
     for site in range(2):
@@ -218,7 +228,7 @@ def _will_cross(i, life, out, step):
     return False
 
 
-@kernel
+@lean
 def _note_crossings(i, life, out, grown, step, when, acceleration):
     """Note which growths beam i reaches in one period, and when; linear within it."""
     for depth in range(life.growths.shape[1]):
@@ -239,7 +249,7 @@ def _note_crossings(i, life, out, grown, step, when, acceleration):
                 out.ratio[i, depth] = slower / (life.gaps[i, site] + goal)
 
 
-@kernel
+@lean
 def _has_ended(i, life):
     """Tell where no contact is left, or so little that no greater depth is ever reached.
 
