@@ -35,6 +35,7 @@ notebook: $(NOTEBOOK)
 
 bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam
+	@$(BIN)/python -m benchmarks.beam_study
 	@$(BIN)/python -m benchmarks.beam_lives
 	@$(BIN)/python -m benchmarks.beam_mesh
 	@$(BIN)/python -m benchmarks.vibrator

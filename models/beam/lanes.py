@@ -128,9 +128,10 @@ def _step(w, head, groups, cosine, sine):
         x = free + head[_SIGMA * LANES + lane] * p
         x1 = head[_X1 * LANES + lane]
         before, after = x1 - head[_X2 * LANES + lane], x - x1
-        p1 = head[_P * LANES + lane]
+        # Of the contact's corrections below, some is left in p beyond it: it does not tell contact.
+        in_right, in_left = x1 > right, x1 < -left
         # Two divisions in one: of the turning point's parabola, and of the crossing's position.
-        turned = (before * after < 0.0) & (p1 != 0.0)
+        turned = (before * after < 0.0) & (in_right | in_left)
         side, gap = (1.0, right) if x > 0.0 else (-1.0, left)
         d0, d = side * x1 - gap, side * x - gap
         crossed = d0 * d < 0.0
@@ -140,8 +141,8 @@ def _step(w, head, groups, cosine, sine):
         # Work (eq 8) is the sum of d^2 over the extrema of the penetration d, signed outward.
         swing = before + after
         vertex = x1 - 0.125 * swing * swing * (inverse * travel)
-        d_right = vertex - right if turned & (p1 > 0.0) else 0.0
-        d_left = -vertex - left if turned & (p1 < 0.0) else 0.0
+        d_right = vertex - right if turned & in_right else 0.0
+        d_left = -vertex - left if turned & in_left else 0.0
         outward = 1.0 if before > 0.0 else -1.0
         head[_WORK_R * LANES + lane] += outward * d_right * d_right
         head[_WORK_L * LANES + lane] -= outward * d_left * d_left

@@ -93,7 +93,8 @@ def _step(grown: Array, rate: Array, growths: Array) -> Array:
     """Return what the gaps of n beams have grown to at the next node, NaN where there is none.
 
     The faster of the sites that have not finished goes to its next grid point; the grid is finer
-    where the gap is new.
+    where the gap is new. A site that has finished long ago may be very much faster still: its
+    growth, with the last depth, no more than doubles.
     """
     head_start = growths[:, :1] / 2
     whole = np.log1p(growths[:, -1:] / head_start)
@@ -104,7 +105,10 @@ def _step(grown: Array, rate: Array, growths: Array) -> Array:
     point = np.log1p(here / head_start) / whole * INCREMENTS
     goal = head_start * np.expm1((np.floor(point + 1e-6) + 1) / INCREMENTS * whole)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(top > 0, grown + (goal - here) * rate / top, np.nan)
+        step = (goal - here) * rate / top
+        most = grown.max(axis=1, keepdims=True) + growths[:, -1:]
+        step *= np.minimum(1.0, most / step.max(axis=1, keepdims=True))
+        return np.where(top > 0, grown + step, np.nan)
 
 
 def _note(

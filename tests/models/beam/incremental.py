@@ -106,6 +106,43 @@ def _crossings(gaps, times, noise, growths, stopped):
     return time, error
 
 
+def follow(params, settings, growths, increments=100, most=3.0, propagator=exact, **settling):
+    """Follow the gaps of one beam once.
+
+    Parameters are those of `incremental_lives`.
+
+    Returns
+    -------
+    time, error : ndarray, shape (3, D)
+        Lives, and the statistical error of the time means in them.
+    unit : float
+        [s] of T = 1.
+    gaps, rates, rate_errors : ndarray, shape (N, 2)
+        The path.
+    """
+    growths = np.asarray(growths, float)
+    row = type(params)(*(np.array([value], float) for value in params))
+    modal = beams(row, settings)
+    ((_, system),) = propagator.groups(modal, settings)
+    w0, forcing = modal.frequency[0, 0], modal.forcing[0]
+    share = np.array([1.0, params.wear_coefficient_ratio])
+    gaps, times, rates, noise = _path(
+        propagator,
+        system,
+        params,
+        forcing / w0,
+        share,
+        growths[-1],
+        growths[-1] / increments,
+        most * growths[-1],
+        **settling,
+    )
+    time, error = _crossings(gaps, times, noise, growths, not rates[-1].mean.any())
+    wear = params.wear_coefficient / params.contact_area
+    unit = 1 / (wear * params.contact_stiffness * params.initial_gap * w0)
+    return time, error, unit, gaps, *np.stack(rates, axis=1)
+
+
 def incremental_lives(
     params, settings, growths, increments=100, most=3.0, propagator=exact, **settling
 ):
@@ -132,30 +169,9 @@ def incremental_lives(
     -------
     IncrementalLives
     """
-    growths = np.asarray(growths, float)
-    row = type(params)(*(np.array([value], float) for value in params))
-    modal = beams(row, settings)
-    ((_, system),) = propagator.groups(modal, settings)
-    w0, forcing = modal.frequency[0, 0], modal.forcing[0]
-    share = np.array([1.0, params.wear_coefficient_ratio])
-    results = []
-    for n in (increments // 2, increments):
-        gaps, times, rates, noise = _path(
-            propagator,
-            system,
-            params,
-            forcing / w0,
-            share,
-            growths[-1],
-            growths[-1] / n,
-            most * growths[-1],
-            **settling,
-        )
-        results.append(_crossings(gaps, times, noise, growths, not rates[-1].mean.any()))
-    (coarse, _), (time, statistical) = results
+    how = {"most": most, "propagator": propagator, **settling}
+    coarse, *_ = follow(params, settings, growths, increments // 2, **how)
+    time, statistical, *path = follow(params, settings, growths, increments, **how)
     with np.errstate(invalid="ignore"):
         error = np.hypot(time - coarse, statistical)
-    wear = params.wear_coefficient / params.contact_area
-    unit = 1 / (wear * params.contact_stiffness * params.initial_gap * w0)
-    rates, rate_errors = np.stack(rates, axis=1)
-    return IncrementalLives(time, error, unit, gaps, rates, rate_errors)
+    return IncrementalLives(time, error, *path)

@@ -9,7 +9,7 @@ from scipy.stats import kstest
 from models.beam import MODEL, exact, lanes
 from models.beam.modal import beams, reach
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
-from models.beam.random_lives import _fit, _Wear
+from models.beam.random_lives import _fit, _step, _Wear
 from models.beam.random_load import COUNT, force, tip_deviation
 from models.beam.response import settle
 from uq import simulate
@@ -373,3 +373,20 @@ def test_lines_are_many_where_the_beam_is_sharp():
     assert len(edges) == COUNT + 1 and (np.diff(edges) >= 0).all()
     for f in b.frequency[0, :2] / (2 * np.pi):
         assert np.sum(np.abs(edges - f) < 0.5) >= 5
+
+
+def test_no_work_is_done_at_a_stop_out_of_reach():
+    """The tip turns within a contact, and hardly beyond it: neither is the other site's."""
+    p = nominal(16, random_force_level=2.0)
+    _, system = prepared(lanes, p)
+    state, gaps = started(lanes, system, p)
+    gaps[:, 1] = 1e6
+    work = lanes.advance(system, state, gaps, np.zeros((16, 2)), 512).work
+    assert (work[:, :, 1] == 0).all()
+    assert (work[:, :, 0].sum(axis=1) > 0).all()
+
+
+def test_a_site_much_faster_than_the_other_keeps_a_gap_of_known_size():
+    grown = _step(np.array([[2.0, 0.1]]), np.array([[1e12, 1.0]]), np.array([[0.5, 1.0]]))
+    assert grown[0, 0] == pytest.approx(2 * 2.0 + 1.0)
+    assert grown[0, 1] == pytest.approx(0.1 + 3e-12)

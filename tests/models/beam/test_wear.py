@@ -5,7 +5,7 @@ import pytest
 from incremental import incremental_lives
 
 from models.beam import MODEL
-from models.beam.lives import extrapolate
+from models.beam.lives import extrapolate, extrapolate_smooth
 from models.beam.looks import changes_of, confirmed_regimes, regime_of
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
 from uq.contract import Status
@@ -169,6 +169,13 @@ def test_lives_with_one_power_law_of_error_are_extrapolated_to_its_limit(order):
     time, error = extrapolate(times)
     assert time == pytest.approx([1.0], abs=1e-9)
     assert error == pytest.approx((times[-1] - 1.0) / 3)
+
+
+def test_four_lives_suffice_where_they_approach_their_limit_evenly():
+    times = np.stack([1.0 + 0.2 / PACES[:4], [1.0, 1.1, 1.0, 1.05], [1.0, 1.001, 1.0, 1.001]], 1)
+    time, error = extrapolate_smooth(times)
+    assert time == pytest.approx([1.0, 1.05, 1.001], abs=1e-9)
+    assert error == pytest.approx([0.2 / 8 / 3, 0.4, 0.004])
 
 
 def test_lives_scattered_about_the_true_one_are_averaged_and_keep_their_error():

@@ -1,0 +1,133 @@
+"""Whole lifetime studies of the beam: how long they take, how wrong they are, and what else would.
+
+For the paper's two cases: the wall time of the shipped lifetime study to a depth of one initial
+gap, by the command a user types, on two worker processes; the error of its lives, on rows solved
+again at the tightest settings; and the core-milliseconds of a row beside those of the paper's way,
+gaps that grow by increments with settled work-rates at each, by the exact propagator and by
+Newmark's method, each at its cheapest setting that is as good.
+"""
+
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks import newmark
+from models.beam import MODEL, exact
+from models.beam.parameters import REGIMES, Params, Settings
+from tests.models.beam.incremental import follow
+from uq.sampling import row_block
+from uq.study import load_study
+
+STUDIES = Path(__file__).parent.parent / "studies"
+DEPTH = 2.5e-4  # [m], one initial gap
+TIGHT = Settings(depths=(DEPTH,), accuracy=0.002)
+CHECKED, RIVALLED, BLOCK = 50, 20, 512
+# Study, its rows and settings, and the median error of its lives that is good enough.
+CASES = (
+    ("beam-lifetime-561", 1000, {"accuracy": 0.04}, 0.02),
+    ("beam-lifetime", 10_000, {"accuracy": 0.1, "steps_per_period": 64}, 0.01),
+)
+# Increments, tolerance of settled work, blocks of 64 periods where it never settles: cheap to dear.
+WAYS = ((4, 1e-2, 8), (6, 1e-3, 16), (10, 1e-3, 32), (20, 1e-4, 64), (40, 1e-5, 128))
+NEWMARK_STEPS = (500, 500, 1000, 1000, 2000)
+
+
+def text_of(name, rows, settings):
+    """Return the shipped study with other settings."""
+    text = (STUDIES / f"{name}.toml").read_text().split("[settings]")[0]
+    lines = [f"{key} = {value}" for key, value in {"depths": [DEPTH], **settings}.items()]
+    return re.sub(r"samples = \d+", f"samples = {rows}", text) + "\n".join(["[settings]", *lines])
+
+
+def wall_time(study, folder):
+    """Return what the whole command takes [s]."""
+    command = [sys.executable, "-m", "uq", "run", study, "-o", folder / "out.nc"]
+    began = time.perf_counter()
+    subprocess.run([*command, "--workers", "2", "--quiet", "--fresh"], check=True)
+    return time.perf_counter() - began
+
+
+def by_rows(rows, settings, block=BLOCK):
+    """Return the lives, the regimes and the core-seconds of a row."""
+    lives, regimes = [], []
+    began = time.process_time()
+    for first in range(0, len(rows.x), block):
+        part = slice(first, first + block)
+        outputs, _ = MODEL.batch(rows.x[part], rows.seed[part], settings)
+        lives.append(outputs["first_time_to_depth"][:, 0])
+        regimes.append(outputs["regime"])
+    seconds = (time.process_time() - began) / len(rows.x)
+    return np.concatenate(lives), np.concatenate(regimes), seconds
+
+
+def by_increments(rows, way, propagator, steps):
+    """Return the lives [s], and the core-seconds of a row."""
+    increments, tolerance, blocks = way
+    settings = Settings(propagator="exact") if steps == 0 else Settings(steps_per_period=steps)
+    lives = np.empty(len(rows.x))
+    began = time.process_time()
+    for i, x in enumerate(rows.x):
+        p = Params(*x)
+        growths = [DEPTH / p.initial_gap]
+        how = {"propagator": propagator, "tolerance": tolerance, "blocks": blocks, "most": 1.0}
+        time_to, _, unit, *_ = follow(p, settings, growths, increments, **how)
+        lives[i] = time_to[2, 0] * unit
+    return lives, (time.process_time() - began) / len(rows.x)
+
+
+def rival(name, rows, known, goal, own, propagator, every_steps):
+    """Print the cheapest way of a rival that is as good, and how many times dearer it is."""
+    by_increments(rows._replace(x=rows.x[:1]), WAYS[0], propagator, every_steps[0])  # compiles
+    for way, steps in zip(WAYS, every_steps, strict=True):
+        lives, seconds = by_increments(rows, way, propagator, steps)
+        off = np.median(np.abs(lives / known - 1))
+        if off <= goal:
+            break
+    said = f"{way[0]} increments" + (f", {steps} steps" if steps else "")
+    verdict = "" if off <= goal else "  (not as good)"
+    print(
+        f"    {name:18s} {said:28s} {off:7.2%} {seconds * 1e3:10.1f} ms "
+        f"{seconds / own:7.0f}{verdict}",
+        flush=True,
+    )
+
+
+def report(name, count, settings, goal):
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{name}.toml"
+        path.write_text(text_of(name, count, settings))
+        study = load_study(path)
+        rows = row_block(study, 0, count)
+        by_rows(rows._replace(x=rows.x[:64], seed=rows.seed[:64]), study.settings)  # compiles
+        print(f"{name}, {settings}: {count} rows in {wall_time(path, Path(folder)):.1f} s")
+    some = rows._replace(x=rows.x[:CHECKED], seed=rows.seed[:CHECKED])
+    known, _, _ = by_rows(some, TIGHT)
+    every, regimes, own = by_rows(rows, study.settings)
+    off = np.abs(every[:CHECKED] / known - 1)
+    print(
+        f"  error of {CHECKED} lives: median {np.median(off):.2%}, mean {off.mean():.2%}, "
+        f"ninth decile {np.quantile(off, 0.9):.2%}"
+    )
+    print(f"  core-milliseconds per row: {own * 1e3:.2f}; of each regime alone:")
+    for code, regime in enumerate(REGIMES):
+        mine = np.flatnonzero(regimes == code)
+        if len(mine):
+            part = rows._replace(x=rows.x[mine], seed=rows.seed[mine])
+            each = by_rows(part, study.settings)[2] * 1e3
+            print(f"    {regime:20s} {len(mine):5d} rows {each:8.2f}")
+    some = rows._replace(x=rows.x[:RIVALLED], seed=rows.seed[:RIVALLED])
+    known, off = known[:RIVALLED], off[:RIVALLED]
+    print(f"  a life of the first {RIVALLED} rows, to a median error of {goal:.0%}:")
+    print(f"    {'accelerated wear':47s} {np.median(off):7.2%} {own * 1e3:10.1f} ms")
+    rival("exact, increments", some, known, goal, own, exact, (0,) * len(WAYS))
+    rival("Newmark, increments", some, known, goal, own, newmark, NEWMARK_STEPS)
+
+
+if __name__ == "__main__":
+    for case in CASES:
+        report(*case)
