@@ -14,6 +14,7 @@ from models.beam import response, wear
 from models.beam.batch import initial_gaps
 from models.beam.branches.explore import continue_orbit, follow_wear
 from models.beam.looks import CONFIRMED, changes_of, confirmed_regimes
+from models.beam.lyapunov import lyapunov_exponent
 from models.beam.modal import Array, beams
 from models.beam.parameters import REGIMES, SITES, Params, Rows, Settings
 from models.beam.sweeps import Sweep, one_system, settled_rows, upcrossing_rates
@@ -22,6 +23,7 @@ __all__ = [
     "bifurcation_diagram",
     "continue_orbit",
     "follow_wear",
+    "lyapunov_exponent",
     "phase_portrait",
     "wear_history",
     "work_rate_against_gap",

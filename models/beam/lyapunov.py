@@ -2,10 +2,13 @@
 
 import numpy as np
 
-from models.beam import lanes
+from models.beam import lanes, response
+from models.beam.batch import initial_gaps
 from models.beam.lane_systems import System
 from models.beam.lane_tangents import carry
 from models.beam.modal import Array
+from models.beam.parameters import Params, Rows, Settings
+from models.beam.sweeps import one_system
 from models.numerics.batch_means import mean_and_error
 from models.numerics.exponents import grown
 
@@ -15,6 +18,45 @@ _STRETCH = 4  # periods between two looks at a tangent's size
 
 
 def lyapunov_exponent(
+    params: Params, settings: Settings, periods: int = 1024
+) -> tuple[float, float]:
+    """Return the largest Lyapunov exponent of one beam's settled response at its initial gaps.
+
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    settings : Settings
+        With the fast propagator.
+    periods : int
+        As in `exponents`.
+
+    Returns
+    -------
+    exponent, error : float
+        [s-1], and the standard error of the time mean.
+
+    Raises
+    ------
+    ValueError
+        If the load is random, the propagator exact, or contact too stiff for the fast one.
+    """
+    if params.random_force_level > 0:
+        raise ValueError("what a random load does has no Lyapunov exponent")
+    p: Rows = Params._make(np.full(1, float(value)) for value in params)
+    propagator, system = one_system(p, settings)
+    if propagator is not lanes:
+        raise ValueError("the fast propagator is needed, and contact that its steps can follow")
+    state = lanes.start(
+        system, p.initial_displacement / p.initial_gap, p.initial_velocity / p.initial_gap
+    )
+    gaps = initial_gaps(p)
+    response.settle(lanes, system, state, gaps)
+    exponent, error = exponents(system, state, gaps, periods)
+    return float(exponent[0]), float(error[0])
+
+
+def exponents(
     system: System, state: Array, gaps: Array, periods: int = 1024
 ) -> tuple[Array, Array]:
     """Return the largest Lyapunov exponent of n responses at constant gaps.

@@ -51,9 +51,12 @@ def settled_rows(
         before, now = order[0], state[order[:1]]
         m = system.modal.shape[1]
         for row in order:
-            # The state holds velocities per radian of the force.
-            now[:, m : 2 * m] *= b.forcing[before] / b.forcing[row]
             one = np.array([row])
+            if np.isfinite(now).all():
+                # The state holds velocities per radian of the force.
+                now[:, m : 2 * m] *= b.forcing[before] / b.forcing[row]
+            else:  # the neighbour was lost
+                now = state[one]
             yield one, *look(system.take(one), now, gaps[one])
             before = row
 

@@ -5,7 +5,7 @@ import pytest
 
 from models.beam import exact, lanes
 from models.beam.lane_tangents import carry
-from models.beam.lyapunov import lyapunov_exponent
+from models.beam.lyapunov import exponents, lyapunov_exponent
 from models.beam.modal import beams
 from models.beam.parameters import Params, Settings
 from models.beam.response import settle
@@ -110,16 +110,30 @@ def test_the_exponent_of_a_stable_orbit_is_that_of_its_largest_multiplier():
     state, gaps = lanes.start(system, np.zeros(1), np.zeros(1)), np.ones((1, 2))
     response = settle(lanes, system, state, gaps)
     expected = np.log(response.multiplier[0]) * p.forcing_frequency[0]
-    exponent, error = lyapunov_exponent(system, state, gaps, 2048)
+    exponent, error = exponents(system, state, gaps, 2048)
     assert exponent[0] == pytest.approx(expected, rel=0.03)
     assert exponent[0] + error[0] < 0
+    plain = Params(forcing_frequency=float(p.forcing_frequency[0]))
+    assert lyapunov_exponent(plain, Settings())[0] == pytest.approx(expected, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("params", "settings", "said"),
+    [
+        (Params(random_force_level=1e-3), Settings(), "random load"),
+        (Params(), Settings(propagator="exact"), "fast propagator"),
+    ],
+)
+def test_what_has_no_exponent_is_said(params, settings, said):
+    with pytest.raises(ValueError, match=said):
+        lyapunov_exponent(params, settings)
 
 
 @pytest.mark.slow
 def test_the_exponent_of_chaos_is_the_rate_at_which_exact_neighbours_part():
     p = nominal(forcing_frequency=7.5 * FUNDAMENTAL)
     system, state, gaps = rattling(lanes, p, 500)
-    exponent, error = lyapunov_exponent(system, state, gaps, 4096)
+    exponent, error = exponents(system, state, gaps, 4096)
     assert exponent[0] > 5 * error[0]
 
     system, one, gaps = rattling(exact, p, 500)
