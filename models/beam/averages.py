@@ -13,7 +13,7 @@ from models.beam.modal import Array
 from models.numerics.batch_means import mean_and_error
 
 SHORTEST = 1024  # periods
-LONGEST = 16_384  # periods
+LONGEST = 16_384  # periods; a propagator may take fewer
 MEMORIES = 20
 _PIECE = 32  # periods in one call, and in the shortest batch
 _BATCHES = 24  # cut from what is kept
@@ -60,16 +60,17 @@ def time_mean(
     Returns
     -------
     Mean
-        NaN for a beam whose memory is too long for `LONGEST` periods.
+        NaN for a beam whose memory is too long for the longest run.
     """
     n = len(state)
     wanted = np.maximum(least, MEMORIES * system.memory)
     touches = system.reach >= gaps.min(axis=1)
     out = Mean(*np.zeros((3, n, 2)))
     pieces = np.zeros((n, LONGEST // _PIECE, 2))
-    left, done = np.flatnonzero(wanted <= LONGEST), 0
+    longest = system.longest
+    left, done = np.flatnonzero(wanted <= longest), 0
     for field in out:
-        field[wanted > LONGEST] = np.nan
+        field[wanted > longest] = np.nan
     total = SHORTEST // _PIECE
     while len(left):
         now, here, some = state[left], gaps[left], system.take(left)
@@ -87,5 +88,5 @@ def time_mean(
         good &= out.work[left].any(axis=1) | ~touches[left]
         good &= done * _PIECE >= wanted[left]
         lost = np.isnan(out.work[left]).any(axis=1)
-        left = left[~(good | lost)] if total * _PIECE <= LONGEST else left[:0]
+        left = left[~(good | lost)] if total * _PIECE <= longest else left[:0]
     return out

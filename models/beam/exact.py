@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.averages import LONGEST
 from models.beam.events import run
 from models.beam.flow import passage
 from models.beam.modal import Array, Beams, Record, reach, steady_response
@@ -59,6 +60,11 @@ class System(NamedTuple):
     def memory(self) -> Array:
         """Forcing periods in which the first mode's free motion falls to 1/e, shape (n,)."""
         return self.forcing / (2 * np.pi * self.beams.decay[:, 0])
+
+    @property
+    def longest(self) -> int:
+        """Forcing periods in a time mean, at most."""
+        return LONGEST
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return the systems of some rows."""

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.averages import LONGEST
 from models.beam.modal import Array, Beams, reach, steady_response
 from models.beam.parameters import Settings
 from models.beam.random_load import COUNT, add_modes, draw
@@ -15,7 +16,8 @@ LADDER = tuple(base << k for k in range(8) for base in (64, 96))
 COMPLIANCE = 0.01
 UNSTABLE = 0.03  # compliance from which on the corrections below may feed themselves
 RESOLVED = 16  # least steps in a turn of the random load's fastest line
-MOST_UNDER_RANDOM = 1536  # steps in a forcing period
+MOST_UNDER_RANDOM = 1024  # steps in a forcing period
+_MOST = 2**20  # steps in a time mean
 
 
 class System(NamedTuple):
@@ -61,6 +63,11 @@ class System(NamedTuple):
     def memory(self) -> Array:
         """Forcing periods in which the first mode's free motion falls to 1/e, shape (n,)."""
         return self.forcing / (2 * np.pi * self.oscillators[:, 1, 0])
+
+    @property
+    def longest(self) -> int:
+        """Forcing periods in a time mean, at most."""
+        return min(LONGEST, _MOST // self.steps)
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return the systems of some rows."""

@@ -32,6 +32,8 @@ __all__ = ["advance", "groups", "monodromy", "start"]
 CLOCK = -1
 """Column of the state that counts forcing periods."""
 
+_NOTHING = 1e-150  # of the gap
+_NOWHERE = 1e6  # displacement, over the gap and what the tip reaches without contact
 _UNROLL = 4  # modes in the straight-line body of the inner loop
 _MODE = 6  # slots of a mode: y, r, t, d, alpha, beta
 # slots of a lane beside its modes
@@ -158,6 +160,14 @@ def _step(w, head, groups, cosine, sine):
 
 
 @kernel
+def _forget(w):
+    """Let motion that has died out be zero: numbers next to zero are slow."""
+    for k in range(0, w.size, _MODE * LANES):
+        for slot in range(2 * LANES):
+            w[k + slot] = 0.0 if abs(w[k + slot]) <= _NOTHING else w[k + slot]
+
+
+@kernel
 def _advance(
     system_modes, sigma, response, load, state, gaps, growth, cosine, sine, w, head, lines, record
 ):
@@ -188,6 +198,7 @@ def _advance(
                 if trace.size:
                     for lane in range(rows):
                         trace[first + lane, period * steps + s] = head[_X1 * LANES + lane]
+            _forget(w)
             for lane in range(rows):
                 row = first + lane
                 work[row, period, 0] = head[_WORK_R * LANES + lane]
@@ -226,6 +237,7 @@ def advance(
     Returns
     -------
     Record
+        NaN, as is then the state, of a beam that is thrown out of all bounds.
     """
     n, _, m = system.modes.shape
     record = Record.empty(n, periods, system.steps if trace else 0)
@@ -246,6 +258,10 @@ def advance(
         Lines.room(bool(system.is_random.any()), system.steps, system.oscillators.shape[2]),
         tuple(record),
     )
+    # Steps too long for a beam that long contacts make ring feed it: that is no motion of the beam.
+    lost = np.flatnonzero(~(np.abs(state[:, 2 * m + 1]) <= _NOWHERE * (1 + system.reach)))
+    for field in (state, *record):
+        field[lost] = np.nan
     return record
 
 

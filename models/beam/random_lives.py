@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from models.beam.averages import LONGEST, SHORTEST, time_mean
+from models.beam.averages import SHORTEST, time_mean
 from models.beam.lives import Lives
 from models.beam.modal import Array
 
@@ -61,7 +61,7 @@ def find_random_lives(
     """
     n = len(state)
     periods = SHORTEST << max(0, round(np.log2(_LONGEST / accuracy / SHORTEST)))
-    periods = min(periods, LONGEST)
+    periods = min(periods, system.longest)
     nodes = 1 + _OVERTIME * INCREMENTS
     grown = np.zeros((nodes, n, 2))
     rate, doubt = np.full((2, nodes, n, 2), np.nan)
