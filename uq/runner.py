@@ -4,6 +4,7 @@ The first rows always run here. They compile the kernel once, before any worker 
 show what a row costs, and they are the first chunks of the result.
 """
 
+import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -112,7 +113,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     InputError
         When `path` holds something else.
     """
-    if not path.is_file():
+    if not os.path.isfile(path):  # nor can it be seen
         return None
     remedy = "choose another output, or overwrite it with --fresh"
     try:
