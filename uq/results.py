@@ -30,6 +30,9 @@ SCHEMA_VERSION = 1
 CHECKSUM = "checksum"
 """Attribute of the file; see `uq.store.seal`."""
 
+UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, KeyError)
+"""What a damaged file makes netCDF4 and xarray raise."""
+
 _IN_MEMORY_BYTES = 200_000_000
 
 Columns = Mapping[str, NDArray[Any]]
@@ -158,7 +161,7 @@ def open_result(path: str | Path) -> xr.Dataset:
         if ds.nbytes < _IN_MEMORY_BYTES:
             with ds:
                 ds.load()
-    except (OSError, ValueError, RuntimeError):
+    except UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file") from None
     check(ds, path)
     ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
