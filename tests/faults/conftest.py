@@ -71,6 +71,24 @@ def call(start):
 
 
 @pytest.fixture
+def under_way(start):
+    """Return a function that starts a slow run, and returns it when it has kept some more rows."""
+
+    def begin(study, *options, chunks=1):
+        journal = ROWS / "journal"
+        before = _lines(journal)
+        run = start("run", study, *MODEL, "--chunk-rows", "7", *options, UQ_TEST_SECONDS="0.02")
+        until(lambda: _lines(journal) > before + chunks)  # one line for the run itself
+        return run
+
+    return begin
+
+
+def _lines(journal):
+    return journal.read_bytes().count(b"\n") if journal.exists() else 0
+
+
+@pytest.fixture
 def study(write_study):
     """Return the path of a study some of whose rows fail."""
     return write_study(

@@ -14,11 +14,9 @@ import uq
 
 
 @pytest.fixture
-def kept(study, undisturbed, start):
+def kept(study, undisturbed, under_way):
     """Leave a run that was killed when several chunk files were there."""
-    run = start("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_SECONDS="0.002")
-    until(lambda: len(list(ROWS.glob("*.rows"))) >= 3)
-    run.kill()
+    under_way(study, chunks=3).kill()
     return sorted(ROWS.glob("*.rows"))
 
 

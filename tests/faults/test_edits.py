@@ -4,12 +4,6 @@ import pytest
 from conftest import MODEL, OUT, ROWS, until
 
 
-def interrupt(study, start, *options):
-    run = start("run", study, *MODEL, "--chunk-rows", "7", *options, UQ_TEST_SECONDS="0.002")
-    until(lambda: list(ROWS.glob("*.rows")))
-    run.kill()
-
-
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
@@ -18,8 +12,8 @@ def interrupt(study, start, *options):
         ("x2 =", "# x2 =", '[uncertain.x2] distribution = "uniform", now nothing'),
     ],
 )
-def test_another_study_is_refused_with_what_changed(study, start, call, old, new, sentence):
-    interrupt(study, start)
+def test_another_study_is_refused_with_what_changed(study, under_way, call, old, new, sentence):
+    under_way(study).kill()
     before = {path.name for path in ROWS.iterdir()} - {"lock"}
     study.write_text(study.read_text().replace(old, new, 1))
     code, said = call("run", study, *MODEL)
@@ -32,8 +26,8 @@ def test_another_study_is_refused_with_what_changed(study, start, call, old, new
     assert call("run", study, *MODEL, "--fresh")[0] == 0
 
 
-def test_comments_and_analysis_may_change(study, undisturbed, start, call):
-    interrupt(study, start)
+def test_comments_and_analysis_may_change(study, undisturbed, under_way, call):
+    under_way(study).kill()
     study.write_text(study.read_text() + "# a comment\nquantiles = [0.5]\n")
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
@@ -44,13 +38,13 @@ def test_comments_and_analysis_may_change(study, undisturbed, start, call):
     assert call("verify", OUT, *MODEL[:2])[0] == 0
 
 
-def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, start, call):
+def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, under_way, call):
     few = study.read_text().replace("samples = 1500", "samples = 900")
     many = study.read_text()
     study.write_text(few)
-    interrupt(study, start)
+    under_way(study).kill()
     study.write_text(many)
-    interrupt(study, start)  # it went on, with more
+    under_way(study).kill()  # it went on, with more
     study.write_text(few)
     code, said = call("run", study, *MODEL)
     assert code == 2
@@ -75,11 +69,11 @@ def test_an_extension_may_be_killed(study, undisturbed, start, call):
     assert OUT.read_bytes() == undisturbed
 
 
-def test_a_design_that_cannot_be_extended_says_so(write_study, start, call):
+def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call):
     study = write_study(
         model="patient", uncertain=("x1", "x2"), method="latin-hypercube", samples=800
     )
-    interrupt(study, start)
+    under_way(study).kill()
     study.write_text(study.read_text().replace("samples = 800", "samples = 900"))
     code, said = call("run", study, *MODEL)
     assert code == 2

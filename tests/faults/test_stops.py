@@ -12,13 +12,6 @@ from conftest import MODEL, OUT, ROWS, until
 RANDOM = random.Random(2026)
 
 
-def stopped(study, start, *options):
-    """Start a run, and return it when some rows are kept."""
-    run = start("run", study, *MODEL, "--chunk-rows", "7", *options, UQ_TEST_SECONDS="0.002")
-    until(lambda: list(ROWS.glob("*.rows")))
-    return run
-
-
 @pytest.mark.parametrize("kills", [4, pytest.param(30, marks=pytest.mark.slow)])
 def test_kills_at_random_moments(study, undisturbed, start, call, kills):
     done = [0]
@@ -89,9 +82,8 @@ def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     assert OUT.read_bytes() == undisturbed
 
 
-def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, start, call):
-    run = stopped(study, start)
-    run.process.join(0.3)
+def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_way, call):
+    run = under_way(study)
     standing = json.loads(call("status", OUT, "--json")[1])
     assert standing["state"] == "running"
     assert standing["process"]["pid"] == run.process.pid
@@ -109,8 +101,8 @@ def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, start, 
     assert OUT.read_bytes() == undisturbed
 
 
-def test_a_lock_of_another_host_is_respected(study, start, call):
-    stopped(study, start).kill()
+def test_a_lock_of_another_host_is_respected(study, under_way, call):
+    under_way(study).kill()
     (ROWS / "lock").write_text("1\nelsewhere\n")
     code, said = call("run", study, *MODEL)
     assert code == 2

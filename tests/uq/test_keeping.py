@@ -81,9 +81,7 @@ def test_failed_rows_are_run_again_with_changed_settings(uq, result):
     assert uq("verify", "out.nc").code == 0
     assert uq("rerun", "out.nc", "--failed", "--setting", "fail_above=2.0", "--quiet").code == 0
     last = api.open_result("out.nc")
-    settings = {"no": "no"} | {
-        f"changed-{i}": last["rerun"].attrs[f"changed_{i}"] for i in (1, 2)
-    }
+    settings = {"no": "no"} | {f"changed-{i}": last["rerun"].attrs[f"changed_{i}"] for i in (1, 2)}
     labels = np.array(last["rerun"].attrs["flag_meanings"].split())[last["rerun"].values]
     assert np.array_equal(
         [settings[label] for label in labels],
