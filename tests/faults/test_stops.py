@@ -18,7 +18,7 @@ def test_kills_at_random_moments(study, undisturbed, start, call, kills):
     while len(done) <= kills:
         run = start("run", study, *MODEL, "--chunk-rows", "3", UQ_TEST_SECONDS="0.003")
         until(ROWS.exists)
-        run.process.join(RANDOM.uniform(0.0, 0.25))
+        run.process.join(RANDOM.uniform(0.0, 0.6))
         assert run.process.is_alive(), "ended before it was killed often enough"
         run.kill()
         assert not OUT.exists()

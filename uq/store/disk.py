@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from uq.study import Study
 
 _WRITING_SHARE = 1 / 20  # of the time, unless single chunks take longer
+_FIRST_COST = 0.01  # of writing [s], before it is known: what is over in a moment is written once
 _PENDING_BYTES = 8_000_000  # in memory at most
 
 
@@ -61,7 +62,7 @@ class DiskStore(Tally):
         self._pending_failures: Failures = {}
         self._made = provenance()
         self._written = time.monotonic()
-        self._cost = 0.0
+        self._cost = _FIRST_COST
 
     @property
     def missing(self) -> list[Block]:
