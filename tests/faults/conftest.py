@@ -9,7 +9,7 @@ from pathlib import Path
 import command
 import pytest
 
-PATIENCE = 60.0
+PATIENCE = 180.0
 """How long a busy machine may take for what should take a moment [s]."""
 
 OUT = Path("results/small.nc")

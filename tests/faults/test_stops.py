@@ -114,7 +114,9 @@ def test_a_lock_of_another_host_is_respected(study, under_way, call):
 
 
 @pytest.mark.parametrize("chunk_rows", [1, 7, 1000])
-@pytest.mark.parametrize("workers", [0, 2, pytest.param(4, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "workers", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in (1, 2, 4))]
+)
 def test_kills_with_workers_and_any_chunks(study, undisturbed, start, call, workers, chunk_rows):
     options = (*MODEL[:2], "--workers", workers, "--quiet", "--chunk-rows", chunk_rows)
     run = start("run", study, *options, UQ_TEST_SECONDS="0.002")
