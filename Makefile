@@ -7,7 +7,7 @@ TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow notebook bench clean
+.PHONY: run test slow faults notebook bench clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -29,6 +29,10 @@ test: $(TEST)
 
 slow: $(TEST)
 	@$(BIN)/python -m pytest -m slow
+
+# Kills, full disks, damaged files, done to real runs; a shorter selection is in "make test".
+faults: $(TEST)
+	@$(BIN)/python -m pytest tests/faults
 
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks

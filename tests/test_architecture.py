@@ -22,6 +22,7 @@ LAYERS = {
         "time_units",
     },
     "study": {
+        "changes",
         "checks",
         "conditioning",
         "designs",
@@ -36,7 +37,18 @@ LAYERS = {
         "values",
     },
     "rows": {"attractors", "evaluate", "grid", "results", "sampling", "store", "work"},
-    "running": {"attraction", "cluster", "job", "runner", "simulation", "task", "worker"},
+    "running": {
+        "attraction",
+        "cluster",
+        "further",
+        "job",
+        "runner",
+        "simulation",
+        "standing",
+        "task",
+        "verification",
+        "worker",
+    },
     "analysis": {
         "elements",
         "given_data",

@@ -5,6 +5,7 @@ computes them changes no bit of the result.
 """
 
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import asdict
 from math import ceil
@@ -15,7 +16,7 @@ from uq.errors import InputError, RunError
 from uq.evaluate import Chunk, KernelError, evaluate
 from uq.interrupts import in_background
 from uq.sampling import Rows
-from uq.store import Store, row_bytes
+from uq.store import DiskStore, MemoryStore, row_bytes
 from uq.task import evaluate_rows
 from uq.work import Work
 
@@ -43,11 +44,14 @@ class Progress(NamedTuple):
     ----------
     done, total, failed : int
         Rows.
+    found : int
+        Rows among those done that were there from the start.
     """
 
     done: int
     total: int
     failed: int
+    found: int = 0
 
 
 Report = Callable[[Progress], object]
@@ -63,19 +67,28 @@ class Job:
         Rows per chunk, if the caller has a wish.
     report : callable
         Called with a `Progress` whenever rows have arrived.
+    store : MemoryStore or DiskStore
+        Where they are kept; what it lacks is computed.
 
     Attributes
     ----------
-    store : Store
+    store : MemoryStore or DiskStore
         The rows that have arrived.
     """
 
-    def __init__(self, work: Work, chunk_rows: int | None, report: Report) -> None:
+    def __init__(
+        self,
+        work: Work,
+        chunk_rows: int | None,
+        report: Report,
+        store: MemoryStore | DiskStore,
+    ) -> None:
         self.work = work
         self.report = report
-        self.store = Store(work)
+        self.store = store
         self._wish = chunk_rows
-        self._next = 0
+        self._todo = deque(store.missing)
+        self._untaken = store.total - store.done
         self._row_seconds = 0.0
 
     @property
@@ -97,12 +110,13 @@ class Job:
         """Run the first rows here, more and more of them, until a chunk takes a while.
 
         The first call may compile, so only later ones tell the cost of a row. No more than about
-        `share` of all rows is done here.
+        `share` of all rows that are to be computed is done here.
         """
         size = self._whole(self._wish or _FIRST_ROWS)
+        least_left = (1 - share) * self._untaken
         self._here(size)
         spent = 0.0
-        while spent < CHUNK_SECONDS and self.store.done < share * self.store.total:
+        while spent < CHUNK_SECONDS and self._untaken > least_left:
             size = min(_GROWTH * size, self._chunk_rows())
             spent += self._here(size)
 
@@ -117,9 +131,9 @@ class Job:
         flying: dict[Future, tuple[int, Rows]] = {}
         while not self.complete:
             # No more chunks in flight than keep the workers busy.
-            while self._next < self.store.total and len(flying) < max(_IN_FLIGHT, 2 * crew.threads):
+            while self._untaken and len(flying) < max(_IN_FLIGHT, 2 * crew.threads):
                 # Towards the end smaller ones, so that all workers finish together.
-                share = ceil((self.store.total - self._next) / max(1, crew.threads))
+                share = ceil(self._untaken / max(1, crew.threads))
                 start, some = self._take(min(self._chunk_rows(), self._whole(share)))
                 future = crew.client.submit(
                     evaluate_rows,
@@ -133,11 +147,12 @@ class Job:
                 )
                 flying[future] = start, some
                 future.add_done_callback(arrived.put)
-            if not crew.threads and self._next < self.store.total:
+            if not crew.threads and self._untaken:
                 self._here(self._chunk_rows())
             try:
                 future = arrived.get(timeout=_POLL_SECONDS)
             except Empty:
+                self.store.keep_up()
                 crew.watch()
                 continue
             start, some = flying.pop(future)
@@ -147,7 +162,7 @@ class Job:
 
     def _here(self, size: int) -> float:
         """Run the next rows in this process; return the seconds it took."""
-        if self.complete:
+        if not self._untaken:
             return 0.0
         start, some = self._take(size)
         began = time.perf_counter()
@@ -159,8 +174,11 @@ class Job:
         return seconds
 
     def _take(self, size: int) -> tuple[int, Rows]:
-        start, stop = self._next, min(self._next + size, self.store.total)
-        self._next = stop
+        start, end = self._todo.popleft()
+        stop = min(start + size, end)
+        if stop < end:
+            self._todo.appendleft((stop, end))
+        self._untaken -= stop - start
         return start, self.work.block(start, stop)
 
     def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
@@ -168,7 +186,13 @@ class Job:
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
             raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")
-        self.report(Progress(self.store.done, self.store.total, self.store.failed))
+        self.store.keep_up()
+        self.tell()
+
+    def tell(self) -> None:
+        """Report how far the run is."""
+        store = self.store
+        self.report(Progress(store.done, store.total, store.failed, store.found))
 
     def _chunk_rows(self) -> int:
         if self._wish:

@@ -1,4 +1,4 @@
-"""Ctrl-C ends a run at once, whatever it is doing, and leaves nothing behind."""
+"""Ctrl-C ends a run at once, whatever it is doing, and leaves nothing behind but finished rows."""
 
 import contextlib
 import os
@@ -56,7 +56,11 @@ def started(write_study, folder):
     for process in psutil.process_iter(["cmdline"]):
         assert str(temporary) not in " ".join(process.info["cmdline"] or [])
     mark.unlink(missing_ok=True)
-    assert sorted(entry.name for entry in folder.iterdir()) == ["small.toml", "temporary"]
+    assert {entry.name for entry in folder.iterdir()} - {"results"} == {"small.toml", "temporary"}
+    if (folder / "results").exists():  # then rows were done, and nothing but them is kept
+        kept = folder / "results" / "small.nc.rows"
+        assert list((folder / "results").iterdir()) == [kept]
+        assert {entry.suffix or entry.name for entry in kept.iterdir()} == {"journal", ".rows"}
 
 
 def wait_until(condition):
@@ -87,6 +91,7 @@ def check_ended(process, sentence):
     assert (process.returncode, out) == (130, "")
     assert err.count("\n") == 1
     assert err.startswith(sentence)
+    assert Path("results").exists() == err.endswith("; the same command goes on from there\n")
 
 
 @pytest.mark.parametrize("send", [to_process, to_group])
