@@ -14,6 +14,7 @@ LAYERS = {
     "contract": {"contract"},
     "ground": {
         "columns",
+        "environment",
         "errors",
         "interrupts",
         "literals",
@@ -36,7 +37,18 @@ LAYERS = {
         "values",
     },
     "rows": {"attractors", "evaluate", "grid", "results", "sampling", "store", "work"},
-    "running": {"attraction", "cluster", "job", "runner", "simulation", "task", "worker"},
+    "running": {
+        "attraction",
+        "child",
+        "cluster",
+        "flight",
+        "isolation",
+        "job",
+        "runner",
+        "simulation",
+        "task",
+        "worker",
+    },
     "analysis": {
         "elements",
         "given_data",

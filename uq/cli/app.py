@@ -114,6 +114,9 @@ def run(
     chunk_rows: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Rows per task; default: 0.5 s of work.")
     ] = None,
+    row_limit: Annotated[
+        float | None, typer.Option(metavar="S", help="Stop a row after so many seconds.")
+    ] = None,
     model: ModelReference = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Overwrite whatever OUT.nc is.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")] = False,
@@ -121,7 +124,12 @@ def run(
     """Run a study, write its result and show the summary."""
     from uq.cli import studies
 
-    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler, "chunk_rows": chunk_rows}
+    options: dict[str, Any] = {
+        "workers": workers,
+        "scheduler": scheduler,
+        "chunk_rows": chunk_rows,
+        "row_limit": row_limit,
+    }
     return studies.run(study, output, model, samples, fresh, quiet, options)
 
 
