@@ -167,6 +167,7 @@ class Isolated:
                     stdin=subprocess.PIPE,
                     stdout=subprocess.DEVNULL,
                     pass_fds=(there.fileno(),),
+                    start_new_session=True,  # Ctrl-C is for this process, which ends that one
                     env=inherited(),
                 )
             self._connection = connection
