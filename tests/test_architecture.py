@@ -23,6 +23,7 @@ LAYERS = {
         "time_units",
     },
     "study": {
+        "changes",
         "checks",
         "conditioning",
         "designs",
@@ -42,11 +43,14 @@ LAYERS = {
         "child",
         "cluster",
         "flight",
+        "further",
         "isolation",
         "job",
         "runner",
         "simulation",
+        "standing",
         "task",
+        "verification",
         "worker",
     },
     "analysis": {

@@ -5,6 +5,7 @@ computes them changes no bit of the result.
 """
 
 import time
+from collections import deque
 from collections.abc import Callable
 from math import ceil
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,7 +14,7 @@ from uq.evaluate import Chunk, KernelError
 from uq.flight import Flight
 from uq.isolation import Evaluate, task_of
 from uq.sampling import Rows
-from uq.store import Store, row_bytes
+from uq.store import DiskStore, MemoryStore, row_bytes
 from uq.work import Work
 
 if TYPE_CHECKING:
@@ -39,11 +40,14 @@ class Progress(NamedTuple):
     ----------
     done, total, failed : int
         Rows.
+    found : int
+        Rows among those done that were there from the start.
     """
 
     done: int
     total: int
     failed: int
+    found: int = 0
 
 
 Report = Callable[[Progress], object]
@@ -59,6 +63,8 @@ class Job:
         Rows per chunk, if the caller has a wish.
     report : callable
         Called with a `Progress` whenever rows have arrived.
+    store : MemoryStore or DiskStore
+        Where they are kept; what it lacks is computed.
     evaluate : callable
         Computes rows on this computer.
     row_limit : float or None
@@ -66,7 +72,7 @@ class Job:
 
     Attributes
     ----------
-    store : Store
+    store : MemoryStore or DiskStore
         The rows that have arrived.
     """
 
@@ -75,16 +81,18 @@ class Job:
         work: Work,
         chunk_rows: int | None,
         report: Report,
+        store: MemoryStore | DiskStore,
         evaluate: Evaluate,
         row_limit: float | None = None,
     ) -> None:
         self.work = work
         self.report = report
-        self.store = Store(work)
+        self.store = store
         self._wish = chunk_rows
         self._evaluate = evaluate
         self._row_limit = row_limit
-        self._next = 0
+        self._todo = deque(store.missing)
+        self._untaken = store.total - store.done
         self._row_seconds = 0.0
 
     @property
@@ -106,12 +114,13 @@ class Job:
         """Run the first rows here, more and more of them, until a chunk takes a while.
 
         The first call may compile, so only later ones tell the cost of a row. No more than about
-        `share` of all rows is done here.
+        `share` of all rows that are to be computed is done here.
         """
         size = self._whole(self._wish or _FIRST_ROWS)
+        least_left = (1 - share) * self._untaken
         self._here(size)
         spent = 0.0
-        while spent < CHUNK_SECONDS and self.store.done < share * self.store.total:
+        while spent < CHUNK_SECONDS and self._untaken > least_left:
             size = min(_GROWTH * size, self._chunk_rows())
             spent += self._here(size)
 
@@ -126,19 +135,20 @@ class Job:
         while not self.complete:
             threads = crew.threads
             # No more chunks in flight than keep the workers busy.
-            while self._next < self.store.total and len(flight) < max(_IN_FLIGHT, 2 * threads):
+            while self._untaken and len(flight) < max(_IN_FLIGHT, 2 * threads):
                 # Towards the end smaller ones, so that all workers finish together.
-                share = ceil((self.store.total - self._next) / max(1, threads))
+                share = ceil(self._untaken / max(1, threads))
                 flight.send(*self._take(min(self._chunk_rows(), self._whole(share))))
-            if crew.local and not threads and self._next < self.store.total:
+            if crew.local and not threads and self._untaken:
                 self._here(self._chunk_rows())
             for start, some, chunk, seconds in flight.landed():
                 self._row_seconds = seconds / len(some.x)
                 self._keep(start, some, chunk)
+            self.store.keep_up()
 
     def _here(self, size: int) -> float:
         """Run the next rows on this computer; return the seconds it took."""
-        if self.complete:
+        if not self._untaken:
             return 0.0
         start, some = self._take(size)
         began = time.perf_counter()
@@ -149,8 +159,11 @@ class Job:
         return seconds
 
     def _take(self, size: int) -> tuple[int, Rows]:
-        start, stop = self._next, min(self._next + size, self.store.total)
-        self._next = stop
+        start, end = self._todo.popleft()
+        stop = min(start + size, end)
+        if stop < end:
+            self._todo.appendleft((stop, end))
+        self._untaken -= stop - start
         return start, self.work.block(start, stop)
 
     def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
@@ -158,7 +171,13 @@ class Job:
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
             raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")
-        self.report(Progress(self.store.done, self.store.total, self.store.failed))
+        self.store.keep_up()
+        self.tell()
+
+    def tell(self) -> None:
+        """Report how far the run is."""
+        store = self.store
+        self.report(Progress(store.done, store.total, store.failed, store.found))
 
     def _chunk_rows(self) -> int:
         most = _CHUNK_BYTES // row_bytes(self.work)

@@ -6,12 +6,17 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-_LIBRARIES = ("numpy", "numba", "scipy", "SALib")
+_LIBRARIES = ("vibrolife", "numpy", "numba", "scipy", "SALib")
 _COMPUTING = ("vibrolife", "numpy", "numba", "scipy", "distributed")
 
 
 def provenance() -> dict[str, str]:
     """Return the processor and the versions that made a result."""
+    return dict(_here())
+
+
+@cache
+def _here() -> dict[str, str]:
     here = {"cpu": _cpu(), "python": platform.python_version()}
     return here | {name: importlib.metadata.version(name) for name in _LIBRARIES}
 

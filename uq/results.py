@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from uq.study import Study
 
 SCHEMA_VERSION = 1
+CHECKSUM = "checksum"
+"""Attribute of the file; see `uq.store.seal`."""
+
+_IN_MEMORY_BYTES = 200_000_000
 
 Columns = Mapping[str, NDArray[Any]]
 
@@ -37,6 +41,7 @@ def build(
     columns: Columns,
     status: NDArray[np.int8],
     failures: Mapping[str, str],
+    numbers: NDArray[np.int64] | None = None,
 ) -> xr.Dataset:
     """Put the rows of a study and what the model made of them into one Dataset.
 
@@ -51,6 +56,8 @@ def build(
     status : ndarray of int8, shape (n,)
     failures : dict of str to str
         Status label -> what happened to the first row with that status.
+    numbers : ndarray of int64, shape (n,), optional
+        Of the rows; by default they are the first.
 
     Returns
     -------
@@ -65,7 +72,7 @@ def build(
             inputs[name] = _input(model, name, study.fixed.get(name, model.nominal[name]))
     ds = xr.Dataset(
         inputs | _outputs(model, columns, status, failures),
-        _places(study, rows) | _coordinates(model, study.settings),
+        _places(study, rows, numbers) | _coordinates(model, study.settings),
         _attributes(study),
     )
     for variable in ds.variables.values():
@@ -123,7 +130,10 @@ def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
 
 
 def open_result(path: str | Path) -> xr.Dataset:
-    """Read a result into memory and check its schema.
+    """Open a result and check its schema.
+
+    One that takes less than 200 MB is read into memory, and its file closed; what is larger is
+    read when it is used.
 
     Parameters
     ----------
@@ -144,10 +154,14 @@ def open_result(path: str | Path) -> xr.Dataset:
     if path.is_dir():
         raise InputError(f"{path}: is a folder, not a result")
     try:
-        ds = xr.load_dataset(path, engine="netcdf4", decode_timedelta=False)
+        ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False)
+        if ds.nbytes < _IN_MEMORY_BYTES:
+            with ds:
+                ds.load()
     except (OSError, ValueError, RuntimeError):
         raise InputError(f"{path}: not a readable netCDF file") from None
     check(ds, path)
+    ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
     return ds
 
 
@@ -189,7 +203,8 @@ def relabel(ds: xr.Dataset, study: "Study") -> xr.Dataset:
 
     Comments, sources and [analysis] of a study may change without a row being computed again.
     """
-    ds = ds.assign_attrs(_attributes(study) | {name: ds.attrs[name] for name in provenance()})
+    made = {name: ds.attrs[name] for name in provenance() if name in ds.attrs}
+    ds = ds.assign_attrs(_attributes(study) | made)
     for name, law in study.uncertain.items():
         ds[name].attrs["source"] = law.source or study.model.parameter(name).source
     return ds
@@ -246,11 +261,12 @@ def _coordinates(model: Model, settings: Any) -> dict[str, Any]:
     return coordinates
 
 
-def _places(study: "Study", rows: "Rows") -> dict[str, Any]:
+def _places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> dict[str, Any]:
     sample = ("sample",)
+    numbers = np.arange(len(rows.x)) if numbers is None else numbers
     block = {"long_name": "block of the design"} | _flags(_block_labels(study), np.int16)
     return {
-        "sample": (sample, np.arange(len(rows.x)), {"long_name": "row"}),
+        "sample": (sample, numbers, {"long_name": "row"}),
         "replicate": (sample, rows.replicate, {"long_name": "independent scramble of the design"}),
         "group": (sample, rows.group, {"long_name": "base point of the design"}),
         "block": (sample, rows.block, block),

@@ -5,14 +5,17 @@ it, they show what a row costs, and they are the first chunks of the result. A p
 computes them, so that a row may crash it, unless the user wants all in one process.
 """
 
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from uq import results, store
+from uq.changes import refusal_to_extend, what_changed
 from uq.errors import InputError
 from uq.evaluate import Chunk, evaluate
 from uq.interrupts import in_background
@@ -35,8 +38,12 @@ def run(
     row_limit: float | None = None,
     fresh: bool = False,
     progress: Report | None = None,
+    say: Callable[[str], object] = lambda _: None,
 ) -> xr.Dataset:
     """Run a study and write its result, or return the result that is already there.
+
+    Rows are kept on disk as they arrive: a run that was stopped goes on where it was, and a result
+    with fewer samples is extended, where the design allows it.
 
     Parameters
     ----------
@@ -57,11 +64,13 @@ def run(
         Overwrite whatever `output` holds.
     progress : callable, optional
         Called with a `Progress` as rows arrive.
+    say : callable, optional
+        Called with a line for the user: what was found on disk.
 
     Returns
     -------
     xarray.Dataset
-        In memory; see `uq.results`.
+        See `uq.results`; in memory if it takes less than 200 MB, else read when it is used.
 
     Raises
     ------
@@ -77,10 +86,23 @@ def run(
     path = output_path(study, output)
     if not fresh and (found := finished(study, path)) is not None:
         return found
-    store.check_target(path, store.row_bytes(study) * rows(study))
-    ds = compute(study, workers, scheduler, chunk_rows, progress, row_limit)
-    store.write(ds, path)
-    return ds
+    with kept(study, path, fresh, say=say) as there:
+        return carry_out(work_of(study), workers, scheduler, chunk_rows, progress, row_limit, there)
+
+
+@contextmanager
+def kept(
+    study: Study,
+    path: Path,
+    fresh: bool = False,
+    again: Mapping[str, Any] | None = None,
+    say: Callable[[str], object] = lambda _: None,
+) -> Iterator[store.DiskStore]:
+    """Keep the rows of a run on disk, if there is room for them; see `uq.store.keep`."""
+    needed = 2 * store.row_bytes(study) * rows(study)  # the rows, and the result made from them
+    store.check_target(path, needed - store.size_kept(path))
+    with store.keep(study, path, fresh, again, say) as there:
+        yield there
 
 
 def output_path(study: Study, output: str | Path | None = None) -> Path:
@@ -92,6 +114,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     """Return the result of this very study, if `path` holds it.
 
     Its [analysis], comments and sources may have changed since: then the file gets the new text.
+    None also where it holds fewer samples, and more can be appended.
 
     Raises
     ------
@@ -106,15 +129,19 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     except InputError as error:
         raise InputError(f"{error}; {remedy}") from None
     if ds.attrs["study_identity"] != study.identity:
-        raise InputError(f"{path}: holds the result of another study; {remedy}")
-    if ds.attrs["samples"] != study.design.samples:
-        raise InputError(
-            f"{path}: holds this study with samples = {ds.attrs['samples']}, "
-            f"not {study.design.samples}; {remedy}"
-        )
+        change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
+        raise InputError(f"{path}: holds the result of another study ({change}); {remedy}")
+    there, wanted = ds.attrs["samples"], study.design.samples
+    if there != wanted:
+        problem = remedy if there > wanted else refusal_to_extend(study)
+        if problem:
+            sizes = f"samples = {there}, not {wanted}"
+            raise InputError(f"{path}: holds this study with {sizes}; {problem}")
+        return None
     if ds.attrs["study"] != study.text:
-        ds = results.relabel(ds, study)
-        store.write(ds, path)
+        store.write_result(results.relabel(ds, study), path)
+        ds = results.open_result(path)
+    store.drop_leftovers(path)
     return ds
 
 
@@ -137,8 +164,9 @@ def carry_out(
     chunk_rows: int | None = None,
     progress: Report | None = None,
     row_limit: float | None = None,
+    kept: store.DiskStore | None = None,
 ) -> xr.Dataset:
-    """Compute the rows of some work; other parameters as in `run`."""
+    """Compute the rows of some work, in memory or to be kept; other parameters as in `run`."""
     if workers is not None and scheduler is not None:
         raise InputError("workers and scheduler exclude each other")
     if workers is not None and workers < 0:
@@ -152,28 +180,35 @@ def carry_out(
             "a time limit for rows needs another process that can be stopped: "
             "workers = 0 has none (leave it out, or take 1)"
         )
+    where = kept or store.MemoryStore(work)
     place = nullcontext(_in_process(work)) if workers == 0 else isolated(work, row_limit)
     with place as evaluate_here:
-        job = Job(work, chunk_rows, progress or (lambda _: None), evaluate_here, row_limit)
-        if scheduler is not None:
-            from uq import cluster
+        job = Job(work, chunk_rows, progress or (lambda _: None), where, evaluate_here, row_limit)
+        if where.found:
+            job.tell()
+        _finish(job, workers, scheduler)
+    return where.dataset()
 
-            with cluster.remote(scheduler) as crew:  # before anything is computed
-                job.pilot(share=1 / 8)
-                job.finish_on(crew)
-            return job.store.dataset()
-        if not workers:
-            job.pilot(share=1)
-        if workers == 0 or (workers is None and job.seconds_left < SHORT_SECONDS):
-            job.finish_here()
-        elif not job.complete:
-            from uq import cluster
 
-            with cluster.local(min(workers or cluster.CORES, job.groups)) as crew:
-                if workers:
-                    job.pilot(share=1 / 8)  # while they start
-                job.finish_on(crew)
-        return job.store.dataset()
+def _finish(job: Job, workers: int | None, scheduler: str | None) -> None:
+    if scheduler is not None:
+        from uq import cluster
+
+        with cluster.remote(scheduler) as crew:  # before anything is computed
+            job.pilot(share=1 / 8)
+            job.finish_on(crew)
+        return
+    if not workers:
+        job.pilot(share=1)
+    if workers == 0 or (workers is None and job.seconds_left < SHORT_SECONDS):
+        job.finish_here()
+    elif not job.complete:
+        from uq import cluster
+
+        with cluster.local(min(workers or cluster.CORES, job.groups)) as crew:
+            if workers:
+                job.pilot(share=1 / 8)  # while they start
+            job.finish_on(crew)
 
 
 def _in_process(work: Work) -> Evaluate:

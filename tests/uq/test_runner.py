@@ -17,7 +17,7 @@ from uq.errors import InputError
 from uq.evaluate import KernelError, evaluate
 from uq.job import Progress
 from uq.sampling import row_block
-from uq.store import Store
+from uq.store import MemoryStore
 from uq.study import load_study
 from uq.work import work_of
 
@@ -62,7 +62,7 @@ def test_chunks_may_arrive_in_any_order(write_study):
         more='[settings]\nfail_above = 0.7\nfail_how = "raise"',
     )
     study = load_study(path)
-    store = Store(work_of(study))
+    store = MemoryStore(work_of(study))
     for start in (60, 0, 80, 20, 40):
         some = row_block(study, start, start + 20)
         chunk = evaluate(study.model, study.settings, some.x, some.seed, start)
@@ -138,11 +138,11 @@ def test_run_writes_what_it_returns_and_shows_it_the_second_time(write_study, fo
 def test_the_result_of_something_else_is_kept(write_study, folder):
     path = write_study()
     ds = runner.run(path, "out.nc")
-    for change, words in {
-        "seed": "holds the result of another study",
-        "samples": "holds this study with samples = 64, not 128",
-    }.items():
-        other = write_study(**{change: 128})
+    for change, value, words in [
+        ("seed", 128, r"holds the result of another study \(\[design\] seed = 5, now 128\)"),
+        ("samples", 32, "holds this study with samples = 64, not 32"),
+    ]:
+        other = write_study(**{change: value})
         with pytest.raises(InputError, match=f"^out.nc: {words}.*--fresh"):
             runner.run(other, "out.nc")
     Path("text.nc").write_text("my notes")
@@ -150,7 +150,7 @@ def test_the_result_of_something_else_is_kept(write_study, folder):
         runner.run(path, "text.nc")
     assert Path("text.nc").read_text() == "my notes"
     assert uq.open_result("out.nc").identical(ds)
-    assert runner.run(other, "out.nc", fresh=True).attrs["samples"] == 128
+    assert runner.run(other, "out.nc", fresh=True).attrs["samples"] == 32
 
 
 def test_the_output_is_checked_before_anything_is_computed(write_study, folder):

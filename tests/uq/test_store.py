@@ -11,6 +11,7 @@ import xarray as xr
 from uq import store
 from uq.errors import InputError, RunError
 from uq.interrupts import undo_all
+from uq.store import files
 
 DS = xr.Dataset({"a": ("sample", np.arange(100_000.0))})
 
@@ -56,7 +57,7 @@ def test_a_write_that_is_cut_short_can_be_undone(folder, monkeypatch):
         undo_all()
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(store.os, "replace", cut)
+    monkeypatch.setattr(files.os, "replace", cut)
     with pytest.raises(KeyboardInterrupt):
         store.write(DS, Path("a/out.nc"))
     assert len(seen) == 2

@@ -23,6 +23,18 @@ ModelReference = Annotated[
     str | None,
     typer.Option("--model", metavar="PKG.MOD:ATTR", help="Use a model that is not installed."),
 ]
+Workers = Annotated[
+    int | None,
+    typer.Option(min=0, metavar="N", help="Worker processes; 0: compute in this process."),
+]
+Scheduler = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Use a running dask cluster.")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
+]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
 
 
 @app.command()
@@ -49,10 +61,7 @@ def simulate(
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),
     ] = None,
-    setting: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
-    ] = None,
+    setting: Settings = None,
     json: Json = False,
     output: Annotated[
         Path | None,
@@ -101,13 +110,8 @@ def run(
         Path | None,
         typer.Option("-o", "--output", metavar="OUT.nc", help="Default results/<name>.nc."),
     ] = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(min=0, metavar="N", help="Worker processes; 0: compute in this process."),
-    ] = None,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Use a running dask cluster.")
-    ] = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
     samples: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Instead of the study's own.")
     ] = None,
@@ -119,9 +123,9 @@ def run(
     ] = None,
     model: ModelReference = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Overwrite whatever OUT.nc is.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")] = False,
+    quiet: Quiet = False,
 ) -> int:
-    """Run a study, write its result and show the summary."""
+    """Run a study, or go on where it stopped; write its result and show the summary."""
     from uq.cli import studies
 
     options: dict[str, Any] = {
@@ -131,6 +135,57 @@ def run(
         "row_limit": row_limit,
     }
     return studies.run(study, output, model, samples, fresh, quiet, options)
+
+
+@app.command()
+def status(result: ResultFile, json: Json = False) -> None:
+    """Show where a run stands, also while it runs."""
+    from uq.cli import keeping
+    from uq.cli.printing import print_json
+    from uq.standing import standing
+
+    print_json(standing(result)) if json else keeping.show_status(standing(result))
+
+
+@app.command()
+def extend(
+    result: ResultFile,
+    samples: Annotated[int, typer.Option(min=1, metavar="N", help="As many in all.")],
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    model: ModelReference = None,
+    quiet: Quiet = False,
+) -> int:
+    """Give a result more samples; nothing is computed again."""
+    from uq.cli import keeping
+
+    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    return keeping.extend(result, samples, model, quiet, options)
+
+
+@app.command()
+def rerun(
+    result: ResultFile,
+    failed: Annotated[bool, typer.Option("--failed", help="The rows that failed.")] = False,
+    setting: Settings = None,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    model: ModelReference = None,
+    quiet: Quiet = False,
+) -> int:
+    """Compute the failed rows of a result again, with other settings if so wished."""
+    from uq.cli import keeping
+
+    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    return keeping.rerun(result, failed, setting or [], model, quiet, options)
+
+
+@app.command()
+def verify(result: ResultFile, model: ModelReference = None) -> int:
+    """Check the checksum of a result, and compute a few of its rows again."""
+    from uq.cli import keeping
+
+    return keeping.verify(result, model)
 
 
 @app.command()

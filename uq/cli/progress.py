@@ -53,7 +53,7 @@ def _moving() -> Iterator[Report]:
 
 def sentence(progress: Progress, seconds: float) -> str:
     """Say how far a run is after some seconds."""
-    rate = progress.done / seconds if seconds > 0 else 0.0
+    rate = (progress.done - progress.found) / seconds if seconds > 0 else 0.0
     left = (progress.total - progress.done) / rate if rate else 0.0
     return (
         f"{progress.done} of {progress.total} rows, {rate:.3g} rows/s, "

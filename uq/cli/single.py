@@ -30,7 +30,7 @@ def simulate(
     """Run a model once and show what came of it; return the exit code."""
     model = find_model(reference)
     given = dict(_number(text) for text in parameters)
-    chosen = dict(_literal(text) for text in settings)
+    chosen = dict(literal(text) for text in settings)
     for path in (output, plot):
         if path is not None:
             store.check_target(path, 0)
@@ -141,7 +141,8 @@ def _number(text: str) -> tuple[str, float]:
         raise InputError(f"--set {text}: write it as NAME=VALUE with a number") from None
 
 
-def _literal(text: str) -> tuple[str, Any]:
+def literal(text: str) -> tuple[str, Any]:
+    """Return name and value of a setting: a TOML literal, else a bare word."""
     name, equals, value = text.partition("=")
     if not equals:
         raise InputError(f"--setting {text}: write it as NAME=VALUE")

@@ -3,10 +3,13 @@
 import shlex
 import sys
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from uq import results, runner
 from uq.cli import progress, say_when_interrupted, tables
@@ -15,6 +18,7 @@ from uq.contract import Status
 from uq.designs import DESIGNS
 from uq.job import Progress
 from uq.sampling import group_size, rows
+from uq.store import folder_of
 from uq.study import Study, load_study
 
 
@@ -67,22 +71,43 @@ def run(
     if samples is not None:
         study = study.with_samples(samples)
     target = runner.output_path(study, output)
-    ds = None if fresh else runner.finished(study, target)
-    if ds is not None:
+    if not fresh and (ds := runner.finished(study, target)) is not None:
         note = f"{target} is complete already; nothing was computed (--fresh computes it again)"
     else:
-        began = time.monotonic()
-        with progress.shown(quiet) as show:
+        ds, note = carried_out(
+            target, quiet, partial(runner.run, study, target, fresh=fresh, **options)
+        )
+    return end(study, ds, target, quiet, note)
 
-            def report(so_far: Progress) -> None:
-                say_when_interrupted(
-                    f"interrupted after {so_far.done} of {so_far.total} rows; nothing was written"
-                )
-                show(so_far)
 
-            say_when_interrupted("interrupted; nothing was written")
-            ds = runner.run(study, target, fresh=True, progress=report, **options)
-        note = f"{target}: {ds.sizes['sample']} rows in {time.monotonic() - began:.1f} s"
+def carried_out(
+    target: Path, quiet: bool, action: Callable[..., xr.Dataset]
+) -> tuple[xr.Dataset, str]:
+    """Show how a run goes on; return its result and a line on what was done."""
+    began = time.monotonic()
+    computed = 0
+    with progress.shown(quiet) as show:
+
+        def report(so_far: Progress) -> None:
+            nonlocal computed
+            computed = so_far.done - so_far.found
+            say_when_interrupted(
+                f"interrupted after {so_far.done} of {so_far.total} rows, kept in "
+                f"{folder_of(target)}; the same command goes on from there"
+            )
+            show(so_far)
+
+        def say(line: str) -> None:
+            if not quiet:
+                print(line, file=sys.stderr)
+
+        say_when_interrupted("interrupted; nothing was written")
+        ds = action(progress=report, say=say)
+    return ds, f"{target}: {computed} rows in {time.monotonic() - began:.1f} s"
+
+
+def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str) -> int:
+    """Show the summary of a result; return the exit code."""
     say_when_interrupted(f"interrupted; the result is complete in {target}")
     if not quiet:
         from uq.statistics import summarise

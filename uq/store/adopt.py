@@ -1,0 +1,116 @@
+"""The rows of a complete result, taken over into chunk files: how a run goes further."""
+
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq import results
+from uq.columns import columns_of
+from uq.contract import Status
+from uq.evaluate import Chunk
+from uq.provenance import provenance
+from uq.sampling import Rows, row_block
+from uq.store.chunk_file import Block
+from uq.store.tally import Failures
+
+if TYPE_CHECKING:
+    from uq.study import Study
+
+_ROWS = 100_000  # at a time
+
+
+class Adopted(NamedTuple):
+    """Some rows of a result.
+
+    Attributes
+    ----------
+    blocks : list of Block
+    rows : Rows
+    chunk : Chunk
+    made : dict of str to str
+        Processor and versions that computed them.
+    settings : dict
+        Settings that were others than the study's.
+    """
+
+    blocks: list[Block]
+    rows: Rows
+    chunk: Chunk
+    made: dict[str, str]
+    settings: dict[str, Any]
+
+
+def adopted(study: "Study", path: Path, all_rows: bool) -> Iterator[Adopted]:
+    """Yield the rows of a result.
+
+    Parameters
+    ----------
+    study : Study
+        The result's own, perhaps with more samples.
+    path : Path
+    all_rows : bool
+        Whether also those that failed.
+
+    Yields
+    ------
+    Adopted
+    """
+    ds = results.open_result(path)
+    made = {name: str(ds.attrs[name]) for name in provenance() if name in ds.attrs}
+    for first in range(0, ds.sizes["sample"], _ROWS):
+        some = ds.isel(sample=slice(first, first + _ROWS)).load()
+        wanted = np.ones(some.sizes["sample"], np.bool_) if all_rows else ~results.failed(some)
+        for settings, variant in variants(some):
+            numbers = first + np.flatnonzero(wanted & variant)
+            if numbers.size:
+                part = some.isel(sample=numbers - first)
+                rows, chunk = _inputs(study, part, first), _outputs(study, part, numbers)
+                yield Adopted(_blocks(numbers), rows, chunk, made, settings)
+
+
+def variants(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], NDArray[np.bool_]]]:
+    """Yield the settings that rows were computed with, other than the study's, and which rows."""
+    if "rerun" not in ds:
+        yield {}, np.ones(ds.sizes["sample"], np.bool_)
+        return
+    codes = ds["rerun"].values
+    for code in np.unique(codes):
+        text = ds["rerun"].attrs.get(f"changed_{code}", "{}")
+        yield tomllib.loads(f"settings = {text}")["settings"], codes == code
+
+
+def _inputs(study: "Study", part: xr.Dataset, first: int) -> Rows:
+    numbers = part["sample"].values
+    drawn = row_block(study, first, int(numbers[-1]) + 1)
+    kept = Rows(*(field[numbers - first] for field in drawn))
+    for i, name in enumerate(study.model.parameter_names):
+        kept.x[:, i] = part[name].values
+    return kept
+
+
+def _outputs(study: "Study", part: xr.Dataset, numbers: NDArray[np.int64]) -> Chunk:
+    columns = {
+        name: part[name].values.astype(column.dtype)
+        for name, column in columns_of(study.model, study.settings).items()
+    }
+    status = part["status"].values
+    failures: Failures = {}
+    for code in np.unique(status[status != Status.OK]):
+        kind, row = Status(code), int(numbers[np.argmax(status == code)])
+        example = str(part["status"].attrs.get(f"example_{kind.name.lower()}", ""))
+        told = example.startswith(f"row {row}: ")
+        failures[kind.label] = row, example.partition(": ")[2] if told else kind.meaning
+    return Chunk(columns, status, failures)
+
+
+def _blocks(numbers: NDArray[np.int64]) -> list[Block]:
+    """Return ascending numbers as blocks of adjacent ones."""
+    ends = np.flatnonzero(np.diff(numbers) > 1)
+    firsts = numbers[np.concatenate([[0], ends + 1])]
+    lasts = numbers[np.concatenate([ends, [-1]])]
+    return [(int(a), int(b) + 1) for a, b in zip(firsts, lasts, strict=True)]

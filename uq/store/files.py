@@ -1,0 +1,137 @@
+"""Files that appear whole or not at all."""
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import xarray as xr
+
+from uq.errors import InputError, RunError
+from uq.interrupts import undone
+from uq.store.seal import seal
+
+
+def check_target(path: Path, size: int) -> None:
+    """Refuse, before anything is computed, a path that cannot be written.
+
+    Parameters
+    ----------
+    path : Path
+    size : int
+        Expected size of what will be written [bytes].
+
+    Raises
+    ------
+    InputError
+    """
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder; give the name of a file in it")
+    folder = nearest_folder(path)
+    if not folder.is_dir():
+        raise InputError(f"{path}: {folder} is a file, not a folder")
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise InputError(f"{path}: cannot write in {folder}: {error.strerror}") from None
+    free = shutil.disk_usage(folder).free
+    if free < size:
+        raise InputError(
+            f"{path}: the result takes about {size / 1e6:.0f} MB, "
+            f"and {folder} has {free / 1e6:.0f} MB left"
+        )
+
+
+def write(ds: xr.Dataset, path: Path) -> None:
+    """Write a Dataset as netCDF4 under a temporary name, then rename it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    path : Path
+        Missing folders are made.
+
+    Raises
+    ------
+    RunError
+        When it cannot be written; then nothing is left behind.
+    """
+    with whole(path) as temporary:
+        ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
+
+
+def write_result(ds: xr.Dataset, path: Path) -> None:
+    """Write a result, with its checksum, as `write` does."""
+    with whole(path) as temporary:
+        ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
+        seal(temporary)
+
+
+@contextmanager
+def whole(path: Path, folder: Path | None = None) -> Iterator[Path]:
+    """Yield a temporary name; the file written under it becomes `path` when the block ends.
+
+    Parameters
+    ----------
+    path : Path
+        Missing folders are made.
+    folder : Path, optional
+        Where the temporary name is, on the same disk; by default beside `path`.
+
+    Yields
+    ------
+    Path
+
+    Raises
+    ------
+    RunError
+        When the file cannot be written; then nothing is left behind.
+    """
+    made = [parent for parent in path.absolute().parents if not parent.exists()]
+    temporary = (folder or path.parent) / f".{path.name}.{os.getpid()}.part"
+
+    def clear() -> None:
+        temporary.unlink(missing_ok=True)
+        remove_empty(made)
+
+    with undone(clear):
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            yield temporary
+            flush(temporary)
+            os.replace(temporary, path)
+            flush(path.parent)
+        except (OSError, RuntimeError) as error:
+            raise RunError(f"{path}: could not be written: {reason(error, path)}") from None
+
+
+def remove_empty(folders: list[Path]) -> None:
+    """Remove those of some folders, the innermost first, that exist and hold nothing."""
+    for folder in folders:
+        if folder.exists() and not any(folder.iterdir()):
+            folder.rmdir()
+
+
+def flush(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def nearest_folder(path: Path) -> Path:
+    """Return the innermost folder above `path` that exists."""
+    return next(parent for parent in path.absolute().parents if parent.exists())
+
+
+def reason(error: Exception, path: Path) -> str:
+    """Say why a write failed: HDF5 reports a full disk as "HDF error"."""
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    free = shutil.disk_usage(nearest_folder(path)).free
+    return f"{error} ({free / 1e6:.0f} MB left on the disk)"

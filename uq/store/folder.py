@@ -1,0 +1,115 @@
+"""The folder beside a result in which its rows are kept until it is complete."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from uq.errors import InputError, RunError
+from uq.interrupts import undone
+from uq.store.files import reason, remove_empty
+from uq.store.journal import read
+from uq.store.records import RowsRecord, RunRecord, understood
+
+JOURNAL, LOCK = "journal", "lock"
+
+
+class Holder(NamedTuple):
+    """The process that writes into a folder."""
+
+    host: str
+    pid: int
+
+
+def folder_of(path: Path) -> Path:
+    """Return the folder in which the rows of a result are kept."""
+    return path.with_name(f"{path.name}.rows")
+
+
+def history(folder: Path) -> list[RunRecord | RowsRecord]:
+    """Return what the journal of a folder says; nothing if no run ever began there."""
+    try:
+        records = understood(read(folder / JOURNAL))
+    except OSError as error:
+        raise InputError(f"{folder / JOURNAL}: cannot be read: {error.strerror}") from None
+    return records if any(isinstance(record, RunRecord) for record in records) else []
+
+
+def holder(folder: Path) -> Holder | None:
+    """Return who holds the lock of a folder, whether that process is alive or not."""
+    try:
+        pid, host = (folder / LOCK).read_text("utf-8", "replace").splitlines()[:2]
+        return Holder(host, int(pid))
+    except (OSError, ValueError):
+        return None
+
+
+def is_alive(held: Holder) -> bool | None:
+    """Return whether a process runs, None if it cannot be asked from this host."""
+    if held.host != os.uname().nodename:
+        return None
+    try:
+        os.kill(held.pid, 0)
+    except ProcessLookupError:
+        return False
+    except (PermissionError, OverflowError):
+        pass
+    return True
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Make a folder if need be, and be the only one to write into it.
+
+    A lock whose process is gone is taken over. A folder that holds nothing at the end is removed,
+    with those above it that were made for its sake.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Raises
+    ------
+    InputError
+        When another process holds the lock.
+    RunError
+        When the folder cannot be made.
+    """
+    from filelock import SoftFileLock, Timeout
+
+    made = [folder, *(parent for parent in folder.absolute().parents if not parent.exists())]
+    lock = SoftFileLock(folder / LOCK)
+
+    def release() -> None:
+        lock.release(force=True)
+        with suppress(OSError):
+            remove_empty(made)
+
+    with undone(release):
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            lock.acquire(blocking=False)
+        except Timeout:
+            raise InputError(_held(folder)) from None
+        except OSError as error:
+            raise RunError(f"{folder}: could not be made: {reason(error, folder)}") from None
+        yield
+
+
+def _held(folder: Path) -> str:
+    held = holder(folder)
+    if held is None:
+        return f"{folder}: in use by another process; try again in a moment"
+    line = f"{folder}: in use by process {held.pid} on {held.host}"
+    if is_alive(held) is None:
+        line += f"; if that has ended, remove {folder / LOCK}"
+    return line
+
+
+def clear(folder: Path) -> None:
+    """Remove all that is kept in a folder; the journal first, for without it nothing counts."""
+    (folder / JOURNAL).unlink(missing_ok=True)
+    for file in folder.iterdir():
+        if file.name != LOCK and file.is_file():
+            file.unlink()

@@ -1,0 +1,65 @@
+"""Rows that are kept in memory, for what is not to be written as it arrives."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from uq.columns import blank_rows, columns_of
+from uq.sampling import Rows
+from uq.store.tally import Tally, ended
+from uq.work import Work
+
+if TYPE_CHECKING:
+    from uq.evaluate import Chunk
+
+
+class MemoryStore(Tally):
+    """The rows of one run, as they arrive.
+
+    Parameters
+    ----------
+    work : Work
+    """
+
+    def __init__(self, work: Work) -> None:
+        super().__init__(work)
+        total, d = self.total, len(work.model.parameter_names)
+        self._rows = Rows(
+            x=np.empty((total, d)),
+            seed=np.empty(total, dtype=np.uint64),
+            replicate=np.empty(total, dtype=np.int32),
+            group=np.empty(total, dtype=np.int64),
+            block=np.empty(total, dtype=np.int16),
+        )
+        self._columns = blank_rows(columns_of(work.model, work.settings), total)
+        self._status = np.zeros(total, dtype=np.int8)
+
+    @property
+    def missing(self) -> list[tuple[int, int]]:
+        """Blocks of rows that are not there at the start."""
+        return [(0, self.total)]
+
+    def add(self, start: int, rows: Rows, chunk: "Chunk") -> None:
+        """Keep the rows from `start` on.
+
+        Parameters
+        ----------
+        start : int
+        rows : Rows
+        chunk : Chunk
+        """
+        stop = start + len(chunk.status)
+        for field, part in rows._asdict().items():
+            getattr(self._rows, field)[start:stop] = part
+        for name, whole in self._columns.items():
+            whole[start:stop] = chunk.columns[name]
+        self._status[start:stop] = chunk.status
+        self.count(stop - start, self.failed_in(chunk), ended(chunk.status), chunk.failures)
+
+    def keep_up(self) -> None:
+        """Nothing: what is here is kept nowhere else."""
+
+    def dataset(self) -> xr.Dataset:
+        """Return the result of a run whose rows have all arrived."""
+        return self.work.finish(self._rows, self._columns, self._status, self.examples)
