@@ -185,12 +185,24 @@ class Job:
             most = max(1, min(most, int(_LIMIT_SHARE * self._row_limit / self._row_seconds)))
         if self._wish:
             return self._whole(min(self._wish, most) if self._row_limit else self._wish)
-        if not self._row_seconds:
-            return self._whole(most)
-        block = min(self.work.model.block, ceil(_BLOCK_SECONDS / self._row_seconds))
-        blocks = CHUNK_SECONDS / (self._row_seconds * block)
-        return self._whole(min(most, block * max(1, round(blocks))))
+        return min(self._whole(most), chunk_rows(self.work, self._row_seconds))
 
     def _whole(self, size: float) -> int:
         """Round up to whole groups of the design."""
         return self.work.group * ceil(size / self.work.group)
+
+
+def chunk_rows(work: Work, row_seconds: float) -> int:
+    """Return how many rows make a good chunk, whole groups of the design.
+
+    Parameters
+    ----------
+    work : Work
+    row_seconds : float
+        What a row costs [s], 0 if unknown.
+    """
+    size: float = _CHUNK_BYTES // row_bytes(work)
+    if row_seconds:
+        block = min(work.model.block, ceil(_BLOCK_SECONDS / row_seconds))
+        size = min(size, block * max(1, round(CHUNK_SECONDS / (row_seconds * block))))
+    return work.group * ceil(size / work.group)

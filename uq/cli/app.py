@@ -104,6 +104,22 @@ def schema() -> None:
 
 
 @app.command()
+def plan(
+    study: StudyFile,
+    workers: Workers = None,
+    samples: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Instead of the study's own.")
+    ] = None,
+    model: ModelReference = None,
+    json: Json = False,
+) -> None:
+    """Run a few rows of a study, and say what all of them will take."""
+    from uq.cli.plan import plan as show_plan
+
+    show_plan(study, model, samples, workers, json)
+
+
+@app.command()
 def run(
     study: StudyFile,
     output: Annotated[
