@@ -222,7 +222,8 @@ class _Processes:
         for process, log in list(self._running.items()):
             if process.poll() is None:
                 continue
-            if not self._connected:
+            killed = process.returncode < 0  # by somebody: the next may live
+            if not self._connected and not killed:
                 said = log.read_text(errors="replace").strip()
                 last = said.splitlines()[-1] if said else f"exit code {process.returncode}"
                 raise RunError(f"a worker process could not start: {last}")

@@ -26,8 +26,10 @@ PILOT_SECONDS = 8.0
 
 _FIRST_ROWS = 16
 _CHUNKS_AT_LEAST = 2  # per process
-_WORKERS_START_SECONDS = 3.0  # dask, until the first chunk is back
-_FILE_SECONDS = 1.0  # to put the result together, and to read it again
+# What a run does beside its rows takes this many times the start of a process: a busy computer is
+# slow in both.
+_RUN_STARTS = 4.0
+_WORKERS_STARTS = 4.0
 
 
 class Cost(NamedTuple):
@@ -83,13 +85,16 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
         crew = [Isolated(task_of(work)) for _ in range(processes)]
         for process in crew:
             stack.enter_context(undone(process.close))
+        began = time.perf_counter()
+        crew[0].start()
+        start_seconds = time.perf_counter() - began
         some, chunks, row_seconds = _sample(work, crew, _warm_up(work, crew))
     size = row_bytes(study) * work.total
     alone = row_seconds * work.total
     if workers is None and alone < runner.SHORT_SECONDS:
         processes = 1
-    seconds = alone / processes + _FILE_SECONDS
-    seconds += _WORKERS_START_SECONDS if workers or processes > 1 else 0.0
+    starts = _RUN_STARTS + (_WORKERS_STARTS if workers or processes > 1 else 0.0)
+    seconds = alone / processes + starts * start_seconds
     chunk = joined(chunks)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
     cost = Cost(work.total, processes, len(rows.x), row_seconds, seconds, size, 2 * size)

@@ -1,12 +1,14 @@
 """A model whose rows take their time and, on request, take their process with them."""
 
 import ctypes
+import math
 import os
 import signal
 import time
 from dataclasses import dataclass
 from typing import Annotated, NamedTuple
 
+import numba
 import numpy as np
 
 from models.numerics.jit import kernel
@@ -53,6 +55,13 @@ def _compiled(x, seed, settings):
     return {"y": y}, np.zeros(len(x), np.int8)
 
 
+def _compiling(x, seed, settings):
+    lines = [f"    z += math.sin(z * {i}.5) + math.exp(-z / {i + 1})" for i in range(300)]
+    names = {}
+    exec("\n".join(["def f(z):", *lines, "    return z"]), {"math": math}, names)
+    return {"y": x[:, 0] + 0.0 * numba.njit(names["f"])(1.0)}, np.zeros(len(x), np.int8)
+
+
 def _model(name, batch):
     return Model(
         name=name,
@@ -66,4 +75,5 @@ def _model(name, batch):
 
 
 FAULTY = _model("faulty", _do)
+COMPILING = _model("compiling", _compiling)
 COMPILED = _model("compiled", _compiled)
