@@ -7,7 +7,7 @@ TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow notebook bench clean
+.PHONY: run test slow faults notebook bench clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -29,6 +29,9 @@ test: $(TEST)
 
 slow: $(TEST)
 	@$(BIN)/python -m pytest -m slow
+
+faults: $(TEST)
+	@$(BIN)/python -m pytest tests/faults -m "slow or not slow"
 
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks

@@ -37,7 +37,16 @@ LAYERS = {
         "template",
         "values",
     },
-    "rows": {"attractors", "evaluate", "grid", "results", "sampling", "store", "work"},
+    "rows": {
+        "attractors",
+        "evaluate",
+        "grid",
+        "results",
+        "sampling",
+        "soundness",
+        "store",
+        "work",
+    },
     "running": {
         "attraction",
         "child",

@@ -16,6 +16,7 @@ from pathlib import Path
 import dask
 from dask.system import CPU_COUNT
 from distributed import Client, LocalCluster
+from distributed.security import Security
 from distributed.utils import silence_logging_cmgr
 
 from uq.environment import command, inherited
@@ -141,6 +142,7 @@ def remote(address: str) -> Iterator[Workers]:
     """
     with ExitStack() as stack:
         stack.enter_context(_quiet())
+        _check_certificates(address)
         try:
             client = stack.enter_context(
                 Client(address, set_as_default=False, timeout=_REMOTE_SECONDS)
@@ -154,6 +156,21 @@ def remote(address: str) -> Iterator[Workers]:
         finally:
             if client.status == "running":
                 client.run(end_children, on_error="ignore")
+
+
+def _check_certificates(address: str) -> None:
+    """Refuse an encrypted connection that nobody gave certificates for."""
+    try:
+        context = Security().get_connection_args("client")["ssl_context"]
+    except OSError as error:
+        raise InputError(
+            f"--scheduler {address}: the certificates cannot be used: {error}"
+        ) from None
+    if address.startswith("tls:") and context is None:
+        raise InputError(
+            f"--scheduler {address}: cannot connect without certificates: set "
+            "DASK_DISTRIBUTED__COMM__TLS__CA_FILE, ..__TLS__CLIENT__CERT and ..__TLS__CLIENT__KEY"
+        )
 
 
 def _check_versions(client: Client, where: str) -> None:

@@ -21,6 +21,7 @@ from uq.contract import Model, Status
 from uq.designs import DESIGNS, block_names
 from uq.errors import InputError
 from uq.provenance import provenance
+from uq.soundness import unsound
 
 if TYPE_CHECKING:
     from uq.sampling import Rows
@@ -31,6 +32,7 @@ CHECKSUM = "checksum"
 """Attribute of the file; see `uq.store.seal`."""
 
 _IN_MEMORY_BYTES = 200_000_000
+_INFLATED_BYTES, _INFLATION = 100_000_000, 100  # a file that claims more was not made by us
 
 Columns = Mapping[str, NDArray[Any]]
 
@@ -155,10 +157,16 @@ def open_result(path: str | Path) -> xr.Dataset:
         raise InputError(f"{path}: is a folder, not a result")
     try:
         ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False)
+        if ds.nbytes > _INFLATED_BYTES + _INFLATION * path.stat().st_size:
+            ds.close()
+            raise InputError(
+                f"{path}: not a sound result: its {path.stat().st_size / 1e6:.3g} MB claim to be "
+                f"{ds.nbytes / 1e9:.3g} GB"
+            )
         if ds.nbytes < _IN_MEMORY_BYTES:
             with ds:
                 ds.load()
-    except (OSError, ValueError, RuntimeError):
+    except (OSError, ValueError, RuntimeError, LookupError, TypeError):
         raise InputError(f"{path}: not a readable netCDF file") from None
     check(ds, path)
     ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
@@ -186,6 +194,8 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
             f"{path}: written with schema version {version}; this version of vibrolife reads "
             f"{SCHEMA_VERSION}: run the study again, or read it with xarray"
         )
+    if fault := unsound(ds):
+        raise InputError(f"{path}: not a sound result: {fault}")
 
 
 def failed(ds: xr.Dataset) -> NDArray[np.bool_]:

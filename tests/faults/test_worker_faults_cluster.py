@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 
+import dask
 import psutil
 import pytest
 
@@ -108,6 +109,9 @@ def patiently(address, *arguments, **options):
             time.sleep(0.5)
 
 
+pytestmark = pytest.mark.slow
+
+
 def test_workers_come_and_go(start, study):
     there = start()
     seen = []
@@ -146,6 +150,38 @@ def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch):
 
     with pytest.raises(RunError, match="the cluster has had no workers for 2 s"):
         patiently(there.address, study, chunk_rows=2, progress=kill)
+
+
+def self_signed(stem):
+    """Return the files of a new certificate and its key."""
+    certificate, key = stem.with_suffix(".pem"), stem.with_suffix(".key")
+    command = "openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=127.0.0.1".split()
+    command += ["-keyout", key, "-out", certificate]
+    subprocess.run(command, check=True, capture_output=True)
+    return certificate, key
+
+
+def tls(authority, certificate, key):
+    """Return what a user's dask configuration says."""
+    files = {"ca-file": authority, "client.cert": certificate, "client.key": key}
+    return {f"distributed.comm.tls.{name}": str(path) for name, path in files.items()}
+
+
+def test_certificates_are_used_and_demanded(start, study, folder):
+    certificate, key = self_signed(folder / "ours")
+    files = ("--tls-ca-file", certificate, "--tls-cert", certificate, "--tls-key", key)
+    there = start(protocol="tls", options=files)
+    with dask.config.set(tls(certificate, certificate, key)):
+        ds = patiently(there.address, study, chunk_rows=10)
+    assert ds.identical(runner.compute(study, workers=0))
+    with pytest.raises(InputError, match=f"^--scheduler {there.address}: .* certificates: set"):
+        runner.compute(study, scheduler=there.address)
+    # Somebody with another certificate is a stranger.
+    with (
+        dask.config.set(tls(certificate, *self_signed(folder / "theirs"))),
+        pytest.raises(InputError),
+    ):
+        runner.compute(study, scheduler=there.address)
 
 
 def test_workers_left_alone_keep_no_process(start, study):
