@@ -30,6 +30,7 @@ test: $(TEST)
 slow: $(TEST)
 	@$(BIN)/python -m pytest -m slow
 
+# Kills, full disks, damaged files, done to real runs; a shorter selection is in "make test".
 faults: $(TEST)
 	@$(BIN)/python -m pytest tests/faults -m "slow or not slow"
 

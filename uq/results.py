@@ -31,6 +31,9 @@ SCHEMA_VERSION = 1
 CHECKSUM = "checksum"
 """Attribute of the file; see `uq.store.seal`."""
 
+UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, TypeError)
+"""What a damaged file makes netCDF4 and xarray raise."""
+
 _IN_MEMORY_BYTES = 200_000_000
 _INFLATED_BYTES, _INFLATION = 100_000_000, 100  # a file that claims more was not made by us
 
@@ -166,7 +169,7 @@ def open_result(path: str | Path) -> xr.Dataset:
         if ds.nbytes < _IN_MEMORY_BYTES:
             with ds:
                 ds.load()
-    except (OSError, ValueError, RuntimeError, LookupError, TypeError):
+    except UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file") from None
     check(ds, path)
     ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it

@@ -5,6 +5,7 @@ it, they show what a row costs, and they are the first chunks of the result. A p
 computes them, so that a row may crash it, unless the user wants all in one process.
 """
 
+import os
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
@@ -121,7 +122,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     InputError
         When `path` holds something else.
     """
-    if not path.is_file():
+    if not os.path.isfile(path):  # nor can it be seen
         return None
     remedy = "choose another output, or overwrite it with --fresh"
     try:

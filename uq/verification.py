@@ -58,7 +58,7 @@ def checksum_holds(path: Path) -> bool | None:
     results.open_result(path)
     try:
         return is_intact(path)
-    except (OSError, RuntimeError):
+    except results.UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file") from None
 
 

@@ -56,19 +56,11 @@ def started(write_study, folder):
     for process in psutil.process_iter(["cmdline"]):
         assert str(temporary) not in " ".join(process.info["cmdline"] or [])
     mark.unlink(missing_ok=True)
-    assert sorted(entry.name for entry in folder.rglob("*") if not is_kept(entry)) == [
-        "small.toml",
-        "temporary",
-    ]
-
-
-def is_kept(entry):
-    """Return whether something belongs to rows that were done: nothing else may be left."""
-    rows = Path("results") / "small.nc.rows"
-    kept = {"results", "small.nc.rows", "journal"}
-    return (
-        entry.name in kept if entry.suffix != ".rows" else entry.parent.name == rows.name
-    ) or entry.name == rows.name
+    assert {entry.name for entry in folder.iterdir()} - {"results"} == {"small.toml", "temporary"}
+    if (folder / "results").exists():  # then rows were done, and nothing but them is kept
+        kept = folder / "results" / "small.nc.rows"
+        assert list((folder / "results").iterdir()) == [kept]
+        assert {entry.suffix or entry.name for entry in kept.iterdir()} == {"journal", ".rows"}
 
 
 def wait_until(condition):
@@ -99,6 +91,7 @@ def check_ended(process, sentence):
     assert (process.returncode, out) == (130, "")
     assert err.count("\n") == 1
     assert err.startswith(sentence)
+    assert Path("results").exists() == err.endswith("; the same command goes on from there\n")
 
 
 @pytest.mark.parametrize("send", [to_process, to_group])

@@ -98,8 +98,10 @@ class DiskStore(Tally):
         rows : Rows
         chunk : Chunk
         """
-        self._pending.append(Piece(start, pack(self.row_type, rows, chunk.columns, chunk.status)))
+        data = pack(self.row_type, rows, chunk.columns, chunk.status)
+        # Rows last: should a signal end the process in between, they are not kept without these.
         self._pending_failures = joined_failures(self._pending_failures, chunk.failures)
+        self._pending.append(Piece(start, data))
         self.count(len(chunk.status), self.failed_in(chunk), ended(chunk.status), chunk.failures)
 
     def keep_up(self) -> None:

@@ -27,7 +27,7 @@ def check_target(path: Path, size: int) -> None:
     ------
     InputError
     """
-    if path.is_dir():
+    if os.path.isdir(path):
         raise InputError(f"{path}: is a folder; give the name of a file in it")
     folder = nearest_folder(path)
     if not folder.is_dir():
@@ -126,7 +126,7 @@ def flush(path: Path) -> None:
 
 def nearest_folder(path: Path) -> Path:
     """Return the innermost folder above `path` that exists."""
-    return next(parent for parent in path.absolute().parents if parent.exists())
+    return next(parent for parent in path.absolute().parents if os.path.exists(parent))
 
 
 def reason(error: Exception, path: Path) -> str:

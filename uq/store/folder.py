@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from uq.errors import InputError, RunError
 from uq.interrupts import undone
-from uq.store.files import reason, remove_empty
+from uq.store.files import flush, reason, remove_empty
 from uq.store.journal import read
 from uq.store.records import RowsRecord, RunRecord, understood
 
@@ -89,6 +89,7 @@ def locked(folder: Path) -> Iterator[None]:
     with undone(release):
         try:
             folder.mkdir(parents=True, exist_ok=True)
+            flush(folder.parent)
             lock.acquire(blocking=False)
         except Timeout:
             raise InputError(_held(folder)) from None

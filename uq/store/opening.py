@@ -91,7 +91,7 @@ def drop_leftovers(path: Path) -> None:
 def size_kept(path: Path) -> int:
     """Return how many bytes the rows kept for a result take."""
     folder = folder_of(path)
-    return sum(file.stat().st_size for file in folder.iterdir()) if folder.is_dir() else 0
+    return sum(file.stat().st_size for file in folder.iterdir()) if os.path.isdir(folder) else 0
 
 
 def _usable(

@@ -24,7 +24,7 @@ def is_intact(path: Path) -> bool | None:
 
     Raises
     ------
-    OSError, RuntimeError
+    OSError, ValueError, RuntimeError, AttributeError, KeyError
         When it cannot be read at all.
     """
     import netCDF4

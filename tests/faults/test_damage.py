@@ -1,0 +1,161 @@
+"""What is damaged on disk is found and computed again; what cannot be written is said."""
+
+import contextlib
+import json
+import os
+import subprocess
+import tempfile
+from pathlib import Path
+
+import pytest
+from conftest import MODEL, OUT, ROWS, until
+
+import uq
+
+
+@pytest.fixture
+def kept(study, undisturbed, under_way):
+    """Leave a run that was killed when several chunk files were there."""
+    under_way(study, chunks=3).kill()
+    return sorted(ROWS.glob("*.rows"))
+
+
+def truncated(content):
+    return content[:-1]
+
+
+def emptied(content):
+    return b""
+
+
+def one_bit_flipped(content):
+    middle = len(content) // 2
+    return content[:middle] + bytes([content[middle] ^ 4]) + content[middle + 1 :]
+
+
+@pytest.mark.parametrize("damage", [truncated, emptied, one_bit_flipped])
+def test_a_damaged_chunk_file_is_computed_again(study, undisturbed, kept, call, damage):
+    kept[1].write_bytes(damage(kept[1].read_bytes()))
+    first, _, stop = kept[1].stem.partition("-")[2].partition("-")
+    code, said = call("run", study, *MODEL[:-1])
+    assert code == 0
+    assert said.startswith(
+        f"{ROWS}: {int(stop) - int(first)} rows are damaged and will be computed again\n"
+    )
+    assert OUT.read_bytes() == undisturbed
+
+
+def test_a_missing_chunk_file_is_computed_again(study, undisturbed, kept, call):
+    kept[1].unlink()
+    assert call("run", study, *MODEL)[0] == 0
+    assert OUT.read_bytes() == undisturbed
+
+
+@pytest.mark.parametrize("bytes_cut", [1, 30])
+def test_a_journal_that_was_cut_loses_its_last_record_only(
+    study, undisturbed, kept, call, bytes_cut
+):
+    journal = ROWS / "journal"
+    content = journal.read_bytes()
+    journal.write_bytes(content[:-bytes_cut])
+    records = [json.loads(line[9:]) for line in content.splitlines()]
+    last = len(records) - (bytes_cut > 1)
+    blocks = [block for record in records[1:last] for block in record["blocks"]]
+    rows = sum(stop - start for start, stop in blocks)
+    code, said = call("run", study, *MODEL[:-1])
+    assert code == 0
+    assert said.startswith(f"{OUT}: {rows} of 1500 rows were done already\n")
+    assert OUT.read_bytes() == undisturbed
+
+
+def test_a_record_that_was_changed_does_not_count(study, undisturbed, kept, call):
+    journal = ROWS / "journal"
+    lines = journal.read_bytes().split(b"\n")
+    lines[2] = one_bit_flipped(lines[2])
+    journal.write_bytes(b"\n".join(lines))
+    assert call("run", study, *MODEL)[0] == 0
+    assert OUT.read_bytes() == undisturbed
+
+
+def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call):
+    code, said = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE="9000")
+    assert code == 1
+    assert said.count("\n") == 1
+    assert said.startswith(f"{ROWS}: could not be written: File too large; ")
+    assert said.endswith(" of 1500 rows are kept, and the same command goes on from there\n")
+    assert not OUT.exists()
+    assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
+    almost = str(len(undisturbed) - 5000)  # more than all chunk files take together
+    code, said = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE=almost)
+    assert code == 1
+    assert said.count("\n") == 1
+    assert said.startswith(f"{OUT}: could not be written: ")  # in the merge this time
+    assert said.endswith("; the rows are kept, and the same command goes on from there\n")
+    assert not OUT.exists()
+    assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
+    code, said = call("run", study, *MODEL[:-1])
+    assert code == 0
+    assert said.startswith(f"{OUT}: 1500 of 1500 rows were done already\n")
+    assert OUT.read_bytes() == undisturbed
+
+
+@pytest.fixture
+def disk(folder):
+    """Return a disk of one megabyte; where none can be made, a file size limit has to do."""
+    place = folder / "disk"
+    place.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=1m", "none", str(place)]
+    if os.geteuid() != 0 or subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("only root can make a disk")
+    yield place
+    subprocess.run(["umount", str(place)], check=True)
+
+
+def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call, disk):
+    out, rows, filler = (disk / name for name in ("out.nc", "out.nc.rows", "filler"))
+    filler.write_bytes(bytes(900_000))
+    code, said = call("run", study, *MODEL, "-o", out)
+    assert (code, list(disk.iterdir())) == (2, [filler])  # nothing was computed
+    assert said.startswith(f"{out}: the result takes about 0 MB, and {disk} has 0 MB left")
+    filler.unlink()
+    run = start("run", study, *MODEL, "-o", out, "--chunk-rows", "40", UQ_TEST_SECONDS="0.002")
+    until(lambda: list(rows.glob("*.rows")))
+    with contextlib.suppress(OSError), filler.open("wb", buffering=0) as file:
+        while True:  # meanwhile somebody else needs the disk
+            file.write(bytes(1000))
+    code, said = run.wait()
+    assert code == 1
+    assert said.count("\n") == 1
+    assert said.startswith(f"{rows}: could not be written: No space left on device; ")
+    assert said.endswith(" of 1500 rows are kept, and the same command goes on from there\n")
+    assert not out.exists()
+    assert {path.suffix for path in rows.iterdir()} == {"", ".rows"}
+    filler.unlink()
+    assert call("run", study, *MODEL, "-o", out)[0] == 0
+    assert out.read_bytes() == undisturbed
+
+
+def test_a_read_only_folder_is_refused(study, call):
+    as_nobody = {"UQ_TEST_USER": "65534"} if os.geteuid() == 0 else {}
+    with tempfile.TemporaryDirectory() as name:
+        closed = Path(name)
+        (closed / study.name).write_bytes(study.read_bytes())
+        closed.chmod(0o555)
+        for output in (closed / "out.nc", closed / "new" / "out.nc"):
+            code, said = call("run", closed / study.name, *MODEL, "-o", output, **as_nobody)
+            assert code == 2
+            assert said == f"{output}: cannot write in {closed}: Permission denied\n"
+        assert [path.name for path in closed.iterdir()] == [study.name]
+        closed.chmod(0o700)
+
+
+def test_paths_with_blanks_and_accents(study, undisturbed, start, call, folder):
+    place = folder / "étude nº 1" / "mes résultats" / "durée de vie.nc"
+    run = start("run", study, *MODEL, "-o", place, "--chunk-rows", "9", UQ_TEST_SECONDS="0.002")
+    rows = place.with_name("durée de vie.nc.rows")
+    until(lambda: list(rows.glob("*.rows")))
+    run.kill()
+    assert call("run", study, *MODEL, "-o", place)[0] == 0
+    assert place.read_bytes() == undisturbed
+    assert call("verify", place, *MODEL[:2])[0] == 0
+    assert uq.open_result(place).sizes["sample"] == 1500

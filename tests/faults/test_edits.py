@@ -1,0 +1,80 @@
+"""A study that is edited between runs: other rows are refused, more rows are appended."""
+
+import pytest
+from conftest import MODEL, OUT, ROWS, until
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("seed = 5", "seed = 6", "[design] seed = 5, now 6"),
+        ("upper = 0.9}", "upper = 0.8}", "[uncertain.x1] upper = 0.9, now 0.8"),
+        ("x2 =", "# x2 =", '[uncertain.x2] distribution = "uniform", now nothing'),
+    ],
+)
+def test_another_study_is_refused_with_what_changed(study, under_way, call, old, new, sentence):
+    under_way(study).kill()
+    before = {path.name for path in ROWS.iterdir()} - {"lock"}
+    study.write_text(study.read_text().replace(old, new, 1))
+    code, said = call("run", study, *MODEL)
+    assert code == 2
+    assert said == (
+        f"{ROWS}: holds rows of another study ({sentence}); choose another output, or start anew "
+        "with --fresh\n"
+    )
+    assert before == {path.name for path in ROWS.iterdir()}
+    assert call("run", study, *MODEL, "--fresh")[0] == 0
+
+
+def test_comments_and_analysis_may_change(study, undisturbed, under_way, call):
+    under_way(study).kill()
+    study.write_text(study.read_text() + "# a comment\nquantiles = [0.5]\n")
+    code, said = call("run", study, *MODEL[:-1])
+    assert code == 0
+    assert "rows were done already" in said
+    assert OUT.read_bytes() != undisturbed  # it holds the new text
+    study.write_text(study.read_text().removesuffix("# a comment\nquantiles = [0.5]\n"))
+    assert "complete already" in call("run", study, *MODEL[:-1])[1]
+    assert call("verify", OUT, *MODEL[:2])[0] == 0
+
+
+def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, under_way, call):
+    few = study.read_text().replace("samples = 1500", "samples = 900")
+    many = study.read_text()
+    study.write_text(few)
+    under_way(study).kill()
+    study.write_text(many)
+    under_way(study).kill()  # it went on, with more
+    study.write_text(few)
+    code, said = call("run", study, *MODEL)
+    assert code == 2
+    assert said.startswith(
+        f"{ROWS}: holds rows of this study with more (samples = 1500, now 900); "
+    )
+    study.write_text(many)
+    assert call("run", study, *MODEL)[0] == 0
+    assert OUT.read_bytes() == undisturbed
+
+
+def test_an_extension_may_be_killed(study, undisturbed, start, call):
+    assert call("run", study, *MODEL, "--samples", "600")[0] == 0
+    before = OUT.read_bytes()
+    extend = ("extend", OUT, "--samples", "1500", *MODEL)
+    run = start(*extend, UQ_TEST_SECONDS="0.01")
+    until(lambda: len(list(ROWS.glob("*.rows"))) > 1)
+    run.kill()
+    assert OUT.read_bytes() == before
+    assert "stays" in call("status", OUT)[1]
+    assert call(*extend)[0] == 0
+    assert OUT.read_bytes() == undisturbed
+
+
+def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call):
+    study = write_study(
+        model="patient", uncertain=("x1", "x2"), method="latin-hypercube", samples=800
+    )
+    under_way(study).kill()
+    study.write_text(study.read_text().replace("samples = 800", "samples = 900"))
+    code, said = call("run", study, *MODEL)
+    assert code == 2
+    assert "a 'latin-hypercube' design cannot be extended: all its rows change" in said

@@ -1,0 +1,125 @@
+"""A run that is stopped, by whatever, goes on and gives the bits of one that is not."""
+
+import json
+import random
+import re
+import shutil
+import signal
+
+import pytest
+from conftest import MODEL, OUT, ROWS, until
+
+RANDOM = random.Random(2026)
+
+
+@pytest.mark.parametrize("kills", [4, pytest.param(30, marks=pytest.mark.slow)])
+def test_kills_at_random_moments(study, undisturbed, start, call, kills):
+    done = [0]
+    while len(done) <= kills:
+        run = start("run", study, *MODEL, "--chunk-rows", "3", UQ_TEST_SECONDS="0.003")
+        until(ROWS.exists)
+        run.process.join(RANDOM.uniform(0.0, 0.25))
+        assert run.process.is_alive(), "ended before it was killed often enough"
+        run.kill()
+        assert not OUT.exists()
+        if (ROWS / "journal").exists() and (ROWS / "journal").read_bytes():
+            standing = json.loads(call("status", OUT, "--json")[1])
+            assert standing["state"] == "interrupted"
+            done.append(standing["done"])
+        else:
+            done.append(0)
+        assert done[-1] >= done[-2]  # nothing that was kept is lost
+    assert call("run", study, *MODEL)[0] == 0
+    assert OUT.read_bytes() == undisturbed
+    assert [path.name for path in OUT.parent.iterdir()] == [OUT.name]
+
+
+@pytest.mark.parametrize("kills", [3, pytest.param(10, marks=pytest.mark.slow)])
+def test_kills_during_the_merge(write_study, start, call, kills):
+    study = write_study(model="linear", uncertain=("x1", "x2", "x3"), samples=200_000)
+    options = ("--workers", "0", "--quiet", "--chunk-rows", "2000")
+    assert call("run", study, *options, "-o", "undisturbed.nc")[0] == 0
+    caught = 0
+    while caught < kills:
+        run = start("run", study, *options)
+        until(lambda run=run: list(ROWS.glob(".*.part")) or not run.process.is_alive())
+        run.process.join(RANDOM.uniform(0.0, 0.05))
+        run.kill()
+        caught += not OUT.exists() and bool(list(ROWS.glob(".*.part")))
+        if OUT.exists():  # too late: once more
+            OUT.unlink()
+    shutil.copytree(ROWS, "copy")
+    code, said = call("run", study, *options[:2])
+    assert code == 0
+    assert f"{OUT}: 200000 of 200000 rows were done already" in said
+    assert OUT.read_bytes() == (OUT.parents[1] / "undisturbed.nc").read_bytes()
+    # Killed just before the rows are removed: they are of no use any more.
+    shutil.copytree("copy", ROWS)
+    assert "complete already" in call("run", study)[1]
+    assert [path.name for path in OUT.parent.iterdir()] == [OUT.name]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
+    study, undisturbed, start, call, number
+):
+    run = start("run", study, *MODEL[:-1], "--chunk-rows", "7", UQ_TEST_SECONDS="0.002")
+    until(lambda: list(ROWS.glob("*.rows")))
+    run.process.join(0.3)
+    run.send(number)
+    code, said = run.wait()
+    assert code == 128 + number
+    told = re.fullmatch(
+        rf"interrupted after (\d+) of 1500 rows, kept in {ROWS}; the same command goes on from "
+        r"there\n",
+        said,
+    )
+    assert told
+    assert json.loads(call("status", OUT, "--json")[1])["done"] == int(told[1])
+    code, said = call("run", study, *MODEL[:-1])
+    assert code == 0
+    assert said.startswith(f"{OUT}: {told[1]} of 1500 rows were done already\n")
+    assert OUT.read_bytes() == undisturbed
+
+
+def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_way, call):
+    run = under_way(study)
+    standing = json.loads(call("status", OUT, "--json")[1])
+    assert standing["state"] == "running"
+    assert standing["process"]["pid"] == run.process.pid
+    assert 0 < standing["done"] < standing["rows"] == 1500
+    assert standing["done"] + standing["left"] == 1500
+    assert sum(standing["status"].values()) == standing["done"]
+    assert standing["rate"] > 0
+    code, said = call("run", study, *MODEL)
+    assert code == 2
+    host = standing["process"]["host"]
+    assert said == f"{ROWS}: in use by process {run.process.pid} on {host}\n"
+    run.kill()
+    assert (ROWS / "lock").exists()  # stale, and recognised as such
+    assert call("run", study, *MODEL)[0] == 0
+    assert OUT.read_bytes() == undisturbed
+
+
+def test_a_lock_of_another_host_is_respected(study, under_way, call):
+    under_way(study).kill()
+    (ROWS / "lock").write_text("1\nelsewhere\n")
+    code, said = call("run", study, *MODEL)
+    assert code == 2
+    assert said == (
+        f"{ROWS}: in use by process 1 on elsewhere; if that has ended, remove {ROWS / 'lock'}\n"
+    )
+    (ROWS / "lock").unlink()
+    assert call("run", study, *MODEL)[0] == 0
+
+
+@pytest.mark.parametrize("chunk_rows", [1, 7, 1000])
+@pytest.mark.parametrize("workers", [0, 2, pytest.param(4, marks=pytest.mark.slow)])
+def test_kills_with_workers_and_any_chunks(study, undisturbed, start, call, workers, chunk_rows):
+    options = (*MODEL[:2], "--workers", workers, "--quiet", "--chunk-rows", chunk_rows)
+    run = start("run", study, *options, UQ_TEST_SECONDS="0.002")
+    until(lambda: list(ROWS.glob("*.rows")) or not run.process.is_alive())
+    run.process.join(0.5)
+    run.kill()
+    assert call("run", study, *options)[0] == 0
+    assert OUT.read_bytes() == undisturbed

@@ -1,0 +1,195 @@
+"""A result can be extended, its failed rows run again, and all of it be verified."""
+
+import json
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+
+import uq as api
+from uq.contract import Status
+
+RAISING = '[settings]\nfail_above = 0.5\nfail_how = "raise"\n[analysis]\nmax_failed = 1.0'
+
+
+@pytest.fixture
+def result(uq, write_study):
+    """Make a result some of whose rows failed."""
+    path = write_study(model="linear", samples=200, uncertain=("x1", "x2"), more=RAISING)
+    assert uq("run", path, "-o", "out.nc", "--quiet").code == 0
+    return path
+
+
+@pytest.mark.parametrize(
+    "design",
+    [
+        {"method": "monte-carlo", "samples": 50, "replicates": 2},
+        {"method": "sobol", "samples": 32},
+        {"method": "halton", "samples": 30},
+        {"method": "saltelli", "samples": 16, "replicates": 2},
+    ],
+    ids=lambda design: design["method"],
+)
+def test_extended_is_the_same_as_asked_for_at_once(uq, write_study, design):
+    path = write_study(model="linear", more=RAISING, **design)
+    more = 2 * design["samples"]
+    uq("run", path, "-o", "out.nc", "--quiet")
+    assert uq("extend", "out.nc", "--samples", more, "--quiet") == (0, "", "")
+    uq("run", path, "-o", "once.nc", "--samples", more, "--quiet")
+    assert Path("out.nc").read_bytes() == Path("once.nc").read_bytes()
+
+
+def test_what_cannot_be_extended_says_why(uq, write_study):
+    uq("run", write_study(method="latin-hypercube"), "-o", "out.nc", "--quiet")
+    before = Path("out.nc").read_bytes()
+    ended = uq("extend", "out.nc", "--samples", 128)
+    assert ended.code == 2
+    assert ended.err == (
+        "out.nc: a 'latin-hypercube' design cannot be extended: all its rows change with their "
+        "number; run it anew, into another output or with --fresh\n"
+    )
+    assert uq("extend", "out.nc", "--samples", 32).err == "--samples 32: out.nc has 64 already\n"
+    assert uq("extend", "none.nc", "--samples", 32).err == "none.nc: no such file\n"
+    assert Path("out.nc").read_bytes() == before
+
+
+def test_a_grown_study_extends_its_result(uq, write_study):
+    uq("run", write_study(samples=40), "-o", "out.nc", "--quiet")
+    path = write_study(samples=100)
+    ended = uq("run", path, "-o", "out.nc")
+    assert ended.err == "out.nc: 40 of 100 rows were done already\n"
+    assert "out.nc: 60 rows in" in ended.out
+    uq("run", path, "-o", "once.nc", "--quiet")
+    assert Path("out.nc").read_bytes() == Path("once.nc").read_bytes()
+
+
+def test_failed_rows_are_run_again_with_changed_settings(uq, result):
+    before = api.open_result("out.nc")
+    failed = before["status"].values == Status.RAISED
+    assert 0 < failed.sum() < 200
+    ended = uq("rerun", "out.nc", "--failed", "--setting", "fail_above=0.7")
+    assert ended.code == 0
+    after = api.open_result("out.nc")
+    assert np.array_equal(after["rerun"].values, failed)
+    assert after["rerun"].attrs["changed_1"] == "{fail_above = 0.7}"
+    still = after["x1"].values > 0.7
+    assert np.array_equal(after["status"].values == Status.RAISED, still)
+    assert np.array_equal(after["y"].values[~failed], before["y"].values[~failed])
+    expected = after["x1"] + 2 * after["x2"] + 3 * 0.5 + 4 * 0.5
+    assert np.allclose(after["y"].values[~still], expected.values[~still], rtol=1e-14)
+    assert uq("verify", "out.nc").code == 0
+    assert uq("rerun", "out.nc", "--failed", "--setting", "fail_above=2.0", "--quiet").code == 0
+    last = api.open_result("out.nc")
+    settings = {"no": "no"} | {f"changed-{i}": last["rerun"].attrs[f"changed_{i}"] for i in (1, 2)}
+    labels = np.array(last["rerun"].attrs["flag_meanings"].split())[last["rerun"].values]
+    assert np.array_equal(
+        [settings[label] for label in labels],
+        np.where(still, "{fail_above = 2.0}", np.where(failed, "{fail_above = 0.7}", "no")),
+    )
+    assert (last["status"] == Status.OK).all()
+    assert uq("verify", "out.nc").code == 0
+    assert "no row failed" in uq("rerun", "out.nc", "--failed").err
+    assert uq("extend", "out.nc", "--samples", 300, "--quiet").code == 0
+    assert np.array_equal(api.open_result("out.nc")["rerun"].values[:200], last["rerun"].values)
+
+
+def test_failed_rows_run_again_as_they_were_change_no_bit(uq, result):
+    before = Path("out.nc").read_bytes()
+    assert uq("rerun", "out.nc", "--failed", "--quiet").code == 0
+    assert Path("out.nc").read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ((), "uq rerun: say which rows: --failed\n"),
+        (("--failed", "--setting", "fail_abov=1"), "--setting fail_abov = 1: no such setting of"),
+        (("--failed", "--setting", "fail_how=no"), "--setting fail_how = 'no': must be one of"),
+    ],
+)
+def test_a_rerun_that_makes_no_sense_is_refused(uq, result, arguments, words):
+    ended = uq("rerun", "out.nc", *arguments)
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err.startswith(words)
+    assert ended.err.count("\n") == 1
+    assert not Path("out.nc.rows").exists()
+
+
+def test_status_of_a_complete_result(uq, result):
+    shown = uq("status", "out.nc")
+    assert shown.code == 0
+    assert "out.nc: complete" in shown.out
+    told = json.loads(uq("status", "out.nc", "--json").out)
+    failed = told["failed"]
+    assert 0 < failed < 200
+    assert told == {
+        "output": "out.nc",
+        "state": "complete",
+        "rows": 200,
+        "done": 200,
+        "failed": failed,
+        "left": 0,
+        "status": {"ok": 200 - failed, "raised": failed},
+        "rate": None,
+        "seconds_left": None,
+        "process": None,
+        "complete_rows": 200,
+    }
+    assert uq("status", "none.nc") == (2, "", "none.nc: no such file\n")
+
+
+def test_verify_finds_a_flipped_bit_wherever_it_is(uq, result):
+    sound = uq("verify", "out.nc")
+    assert sound.code == 0
+    assert "checksum  right" in sound.out
+    assert "16 of 16 computed again are equal to the bit" in sound.out
+    content = Path("out.nc").read_bytes()
+    values = api.open_result("out.nc")["y"].values.tobytes()
+    for wanted in (values, b"uniform"):  # an output, and the text of the study
+        place = content.index(wanted) + len(wanted) // 2
+        Path("out.nc").write_bytes(
+            content[:place] + bytes([content[place] ^ 1]) + content[place + 1 :]
+        )
+        flipped = uq("verify", "out.nc")
+        assert flipped.code != 0
+        assert "checksum  WRONG" in flipped.out or "not a readable" in flipped.err
+
+
+def test_verify_finds_rows_that_would_come_out_otherwise_and_names_versions(uq, write_study):
+    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    with netCDF4.Dataset("out.nc", "a") as file:
+        file["y"][3] += 1e-12
+        file.setncattr("numpy", "0.9")
+    ended = uq("verify", "out.nc")
+    assert ended.code == 1
+    assert "checksum  WRONG" in ended.out
+    assert "numpy  0.9 made it, " in ended.out
+    assert "computed again, differs in row 3: y" in ended.out
+    assert "11 of 12 computed again are equal to the bit" in ended.out
+
+
+def test_a_result_of_another_version_of_the_model_is_not_taken_for_this_one(uq, write_study):
+    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    with netCDF4.Dataset("out.nc", "a") as file:
+        file.setncattr("model_version", "0")
+        file.setncattr("study_identity", "0" * 64)
+    for verb in (("verify", "out.nc"), ("extend", "out.nc", "--samples", 20)):
+        ended = uq(*verb)
+        assert ended.code == 2
+        assert ended.err == (
+            "out.nc: was computed with another model (version 0 of model 'ishigami', now 1)\n"
+        )
+
+
+def test_rows_of_other_versions_are_named_in_the_result(uq, write_study):
+    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    with netCDF4.Dataset("out.nc", "a") as file:
+        file.setncattr("numpy", "0.9")
+    ended = uq("extend", "out.nc", "--samples", 20)
+    assert ended.code == 0
+    assert ended.err == (
+        "out.nc: 12 of 20 rows were done already\n"
+        f"out.nc: some rows were computed with numpy 0.9 (here {np.__version__})\n"
+    )
+    assert api.open_result("out.nc").attrs["numpy"] == f"0.9; {np.__version__}"
