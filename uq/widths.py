@@ -86,12 +86,15 @@ def _mean(element: Element, rows: int, factor: float | None) -> float | None:
 def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> float | None:
     if factor is None or len(values) < _ENOUGH_ROWS:
         return None
-    half = factor * np.sqrt(p * (1 - p) / rows)
-    # A pilot knows nothing of what is rarer than one of its rows.
-    if p - half < 1 / (len(values) + 1) or p + half > len(values) / (len(values) + 1):
+    m = len(values)
+    spread = np.sqrt(p * (1 - p))
+    half = factor * spread / np.sqrt(rows)
+    # Neighbours in the pilot are too few to tell a slope; what is rarer than a row it cannot know.
+    reach = min(max(half, 2 * spread / np.sqrt(m)), p - 1 / (m + 1), m / (m + 1) - p)
+    if reach < half:
         return None
-    low, high = np.quantile(values, [p - half, p + half], method="weibull")
-    return float(high - low) if np.isfinite(high - low) else None
+    low, high = np.quantile(values, [p - reach, p + reach], method="weibull")
+    return float((high - low) * half / reach) if np.isfinite(high - low) else None
 
 
 def _share(element: Element, threshold: float, rows: int, factor: float | None) -> float | None:
