@@ -25,11 +25,12 @@ PILOT_SECONDS = 8.0
 """Time for the pilot, once the model is compiled."""
 
 _FIRST_ROWS = 16
+_FILE_BYTES = 30_000  # names, units, the study
 _CHUNKS_AT_LEAST = 2  # per process
 # What a run does beside its rows takes this many times the start of a process: a busy computer is
 # slow in both.
-_RUN_STARTS = 4.0
-_WORKERS_STARTS = 4.0
+_RUN_STARTS = 6.0
+_WORKERS_STARTS = 10.0
 
 
 class Cost(NamedTuple):
@@ -89,7 +90,7 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
         crew[0].start()
         start_seconds = time.perf_counter() - began
         some, chunks, row_seconds = _sample(work, crew, _warm_up(work, crew))
-    size = row_bytes(study) * work.total
+    size = _FILE_BYTES + row_bytes(study) * work.total
     alone = row_seconds * work.total
     if workers is None and alone < runner.SHORT_SECONDS:
         processes = 1

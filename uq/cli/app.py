@@ -113,7 +113,7 @@ def plan(
     model: ModelReference = None,
     json: Json = False,
 ) -> None:
-    """Run a few rows of a study, and say what all of them will take."""
+    """Say what a study will take, from a few of its rows."""
     from uq.cli.plan import plan as show_plan
 
     show_plan(study, model, samples, workers, json)
@@ -141,7 +141,7 @@ def run(
     fresh: Annotated[bool, typer.Option("--fresh", help="Overwrite whatever OUT.nc is.")] = False,
     quiet: Quiet = False,
 ) -> int:
-    """Run a study, or go on where it stopped; write its result and show the summary."""
+    """Run a study, or go on where it stopped; show the summary."""
     from uq.cli import studies
 
     options: dict[str, Any] = {
