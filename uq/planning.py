@@ -90,7 +90,9 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
         crew[0].start()
         start_seconds = time.perf_counter() - began
         some, chunks, row_seconds = _sample(work, crew, _warm_up(work, crew))
-    size = _FILE_BYTES + row_bytes(study) * work.total
+    kept = row_bytes(study) * work.total
+    constants = len(study.model.parameter_names) - len(study.uncertain)
+    size = _FILE_BYTES + kept - 8 * constants * work.total  # a constant is one number in the result
     alone = row_seconds * work.total
     if workers is None and alone < runner.SHORT_SECONDS:
         processes = 1
@@ -98,7 +100,7 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
     seconds = alone / processes + starts * start_seconds
     chunk = joined(chunks)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
-    cost = Cost(work.total, processes, len(rows.x), row_seconds, seconds, size, 2 * size)
+    cost = Cost(work.total, processes, len(rows.x), row_seconds, seconds, size, kept + size)
     failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
     return cost, results.build(study, rows, chunk.columns, chunk.status, failures)
 
