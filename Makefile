@@ -32,7 +32,7 @@ slow: $(TEST)
 
 # Kills, full disks, damaged files, done to real runs; a shorter selection is in "make test".
 faults: $(TEST)
-	@$(BIN)/python -m pytest tests/faults
+	@$(BIN)/python -m pytest tests/faults -m "slow or not slow"
 
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks

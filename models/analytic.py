@@ -5,6 +5,8 @@ be held against a closed form. Each is written element by element: a row's resul
 on the rows beside it, to the bit.
 """
 
+import os
+import time
 from dataclasses import dataclass
 from math import pi
 from typing import Annotated, Any, NamedTuple
@@ -140,12 +142,14 @@ class LinearSettings:
     fail_above: Annotated[float, Setting("rows whose x1 lies above this fail")] = 2.0
     fail_how: Annotated[
         str,
-        Setting("how those rows fail", choices=("nan", "inf", "raise", "shape")),
+        Setting("how those rows fail", choices=("nan", "inf", "raise", "shape", "exit", "hang")),
     ] = "nan"
 
 
 def linear(x: Array, seed: NDArray[np.uint64], settings: LinearSettings) -> Result:
     """Evaluate y = x1 + 2 x2 + 3 x3 + 4 x4, and fail where it is asked to.
+
+    A row that fails by ``exit`` ends the process at once; by ``hang`` it never returns.
 
     With independent inputs uniform on [0, 1], the mean is 5, the variance 30/12, and
     S_i = ST_i = i^2/30.
@@ -178,6 +182,11 @@ def linear(x: Array, seed: NDArray[np.uint64], settings: LinearSettings) -> Resu
                 raise ValueError(f"x1 is above fail_above = {settings.fail_above}")
             case "shape":
                 y = np.append(y, 0.0)
+            case "exit":
+                os._exit(1)
+            case "hang":
+                while True:
+                    time.sleep(1.0)
             case word:
                 y[failing] = float(word)
     return {"y": y}, _ok(len(x))

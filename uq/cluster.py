@@ -4,27 +4,26 @@ The local workers are plain child processes that import ``uq.worker``, so that t
 needs no ``__main__`` guard; dask's scheduler runs in a thread of this process.
 """
 
-import importlib.metadata
 import logging
-import os
 import shutil
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import Any
 
 import dask
 from dask.system import CPU_COUNT
 from distributed import Client, LocalCluster
+from distributed.security import Security
 from distributed.utils import silence_logging_cmgr
 
+from uq.environment import command, inherited
 from uq.errors import InputError, RunError
 from uq.interrupts import undone
-from uq.threads import SINGLE_THREADED
+from uq.provenance import differences, versions
+from uq.task import end_children
 
 CORES = CPU_COUNT
 """Cores this process may use: affinity and container limits included."""
@@ -32,7 +31,8 @@ CORES = CPU_COUNT
 _PACKAGE = "vibrolife"
 _START_SECONDS = 60
 _REMOTE_SECONDS = 10
-_STARTS_AT_MOST = 100
+_WORKERLESS_SECONDS = 120.0
+_DEATHS_AT_MOST = 50  # of local workers, between two chunks that arrive
 
 
 class Workers:
@@ -41,26 +41,42 @@ class Workers:
     Attributes
     ----------
     client : distributed.Client
+    local : bool
+        Whether this process started them.
     """
 
-    def __init__(self, client: Client, watch: Callable[[], None]) -> None:
+    def __init__(self, client: Client, watch: Callable[[int, bool], None], local: bool) -> None:
         self.client = client
+        self.local = local
         self._watch = watch
+
+    @property
+    def connected(self) -> bool:
+        """Whether the scheduler can be reached."""
+        return bool(self.client.status == "running")
 
     @property
     def threads(self) -> int:
         """Tasks that can run at the same time, as long as no worker is connected none."""
-        return sum(self.client.nthreads().values())
+        try:
+            return sum(self.client.nthreads().values()) if self.connected else 0
+        except OSError:  # the scheduler went away just now
+            return 0
 
-    def watch(self) -> None:
-        """Replace workers that died; to be called now and then.
+    def watch(self, progress: bool = False) -> None:
+        """Replace workers that died, if they are ours; to be called now and then.
+
+        Parameters
+        ----------
+        progress : bool
+            Whether a worker has delivered something since the last call.
 
         Raises
         ------
         RunError
-            When workers cannot start, or keep dying.
+            When there will be no workers: they cannot start, keep dying, or stay away.
         """
-        self._watch()
+        self._watch(self.threads, progress)
 
 
 @contextmanager
@@ -79,7 +95,11 @@ def local(count: int) -> Iterator[Workers]:
     with ExitStack() as stack:
         folder = Path(tempfile.mkdtemp(prefix="uq-"))
         stack.enter_context(undone(lambda: shutil.rmtree(folder, ignore_errors=True)))
-        settings = {"temporary-directory": str(folder), "distributed.scheduler.http.routes": []}
+        settings = {
+            "temporary-directory": str(folder),
+            "distributed.scheduler.http.routes": [],
+            "distributed.scheduler.allowed-failures": 2,  # the third worker killed ends a task
+        }
         stack.enter_context(dask.config.set(settings))
         stack.enter_context(_quiet())
         cluster = stack.enter_context(
@@ -99,7 +119,7 @@ def local(count: int) -> Iterator[Workers]:
         stack.enter_context(undone(processes.kill))
         for _ in range(count):
             processes.start()
-        yield Workers(client, lambda: processes.watch(bool(client.nthreads())))
+        yield Workers(client, processes.watch, local=True)
 
 
 @contextmanager
@@ -122,6 +142,7 @@ def remote(address: str) -> Iterator[Workers]:
     """
     with ExitStack() as stack:
         stack.enter_context(_quiet())
+        _check_certificates(address)
         try:
             client = stack.enter_context(
                 Client(address, set_as_default=False, timeout=_REMOTE_SECONDS)
@@ -129,20 +150,60 @@ def remote(address: str) -> Iterator[Workers]:
         except (OSError, ValueError) as error:
             reason = " ".join(str(error).split())
             raise InputError(f"--scheduler {address}: cannot connect: {reason}") from None
-        here = importlib.metadata.version(_PACKAGE)
-        _check_packages(client, f"--scheduler {address}", here)
-        yield Workers(client, lambda: None)
+        _check_versions(client, f"--scheduler {address}")
+        try:
+            yield Workers(client, _Presence(client, address).watch, local=False)
+        finally:
+            if client.status == "running":
+                client.run(end_children, on_error="ignore")
 
 
-def _check_packages(client: Client, where: str, here: str) -> None:
-    """Refuse workers without this package: they would not survive their first task."""
-    there = client.run(importlib.metadata.version, _PACKAGE, on_error="return")
+def _check_certificates(address: str) -> None:
+    """Refuse an encrypted connection that nobody gave certificates for."""
+    try:
+        context = Security().get_connection_args("client")["ssl_context"]
+    except OSError as error:
+        raise InputError(
+            f"--scheduler {address}: the certificates cannot be used: {error}"
+        ) from None
+    if address.startswith("tls:") and context is None:
+        raise InputError(
+            f"--scheduler {address}: cannot connect without certificates: set "
+            "DASK_DISTRIBUTED__COMM__TLS__CA_FILE, ..__TLS__CLIENT__CERT and ..__TLS__CLIENT__KEY"
+        )
+
+
+def _check_versions(client: Client, where: str) -> None:
+    """Refuse workers that would give other bits, or not survive their first task."""
+    there = client.run(differences, versions(), on_error="return")
     if not there:
         raise InputError(f"{where}: the cluster has no workers")
-    for worker, version in there.items():
-        if version != here:
-            has = f"has {_PACKAGE} {version}" if isinstance(version, str) else f"lacks {_PACKAGE}"
-            raise InputError(f"{where}: worker {worker} {has}, this process has {here}")
+    for worker, wrong in there.items():
+        if isinstance(wrong, Exception):
+            reason = " ".join(str(wrong).split())
+            raise InputError(f"{where}: worker {worker} lacks {_PACKAGE}: {reason}")
+        if wrong:
+            raise InputError(f"{where}: worker {worker} {wrong}")
+
+
+class _Presence:
+    """Whether somebody else's cluster is still there."""
+
+    def __init__(self, client: Client, address: str) -> None:
+        self._client = client
+        self._address = address
+        self._last_seen = time.monotonic()
+
+    def watch(self, threads: int, progress: bool) -> None:
+        if self._client.status in ("closing", "closed"):
+            raise RunError(f"--scheduler {self._address}: the scheduler is gone")
+        if threads or progress:
+            self._last_seen = time.monotonic()
+        elif time.monotonic() > self._last_seen + _WORKERLESS_SECONDS:
+            raise RunError(
+                f"--scheduler {self._address}: the cluster has had no workers for "
+                f"{_WORKERLESS_SECONDS:g} s"
+            )
 
 
 class _Processes:
@@ -151,8 +212,9 @@ class _Processes:
     def __init__(self, address: str, folder: Path) -> None:
         self._address = address
         self._folder = folder
-        self._running: list[subprocess.Popen[bytes]] = []
+        self._running: dict[subprocess.Popen[bytes], Path] = {}
         self._started = 0
+        self._deaths = 0
         self._connected = False
         self._began = time.monotonic()
 
@@ -161,30 +223,33 @@ class _Processes:
         self._started += 1
         with log.open("wb") as stream:
             process = subprocess.Popen(
-                # -P: the folder one works in is searched only where the parent searches it.
-                [sys.executable, "-P", "-m", "uq.worker", self._address, str(self._folder)],
+                command("uq.worker", self._address, str(self._folder)),
                 stdin=subprocess.PIPE,
                 stdout=stream,
                 stderr=stream,
                 env=_environment(),
             )
-        self._running.append(process)
+        self._running[process] = log
 
-    def watch(self, connected: bool) -> None:
+    def watch(self, threads: int, progress: bool) -> None:
         """Replace dead processes; give up when they die young, or none has ever connected."""
-        self._connected = self._connected or connected
-        for number, process in enumerate(list(self._running)):
+        self._connected = self._connected or threads > 0
+        if progress:
+            self._deaths = 0
+        for process, log in list(self._running.items()):
             if process.poll() is None:
                 continue
-            if not self._connected:
-                log = (self._folder / f"{number}.log").read_text().strip()
-                last = log.splitlines()[-1] if log else f"exit code {process.returncode}"
+            killed = process.returncode < 0  # by somebody: the next may live
+            if not self._connected and not killed:
+                said = log.read_text(errors="replace").strip()
+                last = said.splitlines()[-1] if said else f"exit code {process.returncode}"
                 raise RunError(f"a worker process could not start: {last}")
-            self._running.remove(process)
+            del self._running[process]
             _close(process)
+            self._deaths += 1
             self.start()
-        if self._started > _STARTS_AT_MOST:
-            raise RunError(f"worker processes keep dying: {self._started} were started")
+        if self._deaths > _DEATHS_AT_MOST:
+            raise RunError(f"worker processes keep dying: {self._deaths} without a row computed")
         if not self._connected and time.monotonic() > self._began + _START_SECONDS:
             raise RunError(f"no worker process answered within {_START_SECONDS} s")
 
@@ -202,31 +267,9 @@ def _close(process: subprocess.Popen[bytes]) -> None:
 
 
 def _environment() -> dict[str, str]:
-    """Return what makes a worker import and compile as this process does."""
-    environment = dict(os.environ) | {"PYTHONPATH": os.pathsep.join(sys.path)}
-    environment |= {
+    return inherited() | {
         "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
         "DASK_DISTRIBUTED__WORKER__HTTP__ROUTES": "[]",
-    }
-    return SINGLE_THREADED | environment | _numba_settings()
-
-
-def _numba_settings() -> dict[str, str]:
-    """Return the instruction set and cache that numba uses in this process, if it is loaded.
-
-    It reads the environment once, at import: what the environment says now may be something else.
-    """
-    if "numba" not in sys.modules:
-        return {}
-    import numba
-    from numba.core.registry import cpu_target
-
-    config: Any = numba.config
-    _, cpu, features = cpu_target.target_context.codegen().magic_tuple()
-    return {
-        "NUMBA_CPU_NAME": cpu,
-        "NUMBA_CPU_FEATURES": features,
-        "NUMBA_CACHE_DIR": config.CACHE_DIR,
     }
 
 

@@ -4,7 +4,7 @@ A batch that raises or returns arrays of the wrong shape is halved until the gui
 found; these get a status and a sentence, the others their values.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,7 +37,9 @@ class Chunk(NamedTuple):
     failures: dict[str, tuple[int, str]]
 
 
-class _Fault(NamedTuple):
+class Fault(NamedTuple):
+    """Why rows have no values."""
+
     status: Status
     message: str
 
@@ -81,10 +83,10 @@ def evaluate(
         first, last = todo.pop()
         # Copies, so that the kernel sees writable arrays of its own in every process.
         returned = _call(model, settings, x[first:last].copy(), seed[first:last].copy(), expected)
-        if isinstance(returned, _Fault) and last - first > 1:
+        if isinstance(returned, Fault) and last - first > 1:
             middle = (first + last) // 2
             todo += [(middle, last), (first, middle)]
-        elif isinstance(returned, _Fault):
+        elif isinstance(returned, Fault):
             status[first] = returned.status
             messages[first] = returned.message
         else:
@@ -99,19 +101,40 @@ def evaluate(
     return Chunk(columns, status, _first_failures(status, messages, start))
 
 
+def lost_rows(model: Model, settings: Any, rows: int, fault: Fault, start: int = 0) -> Chunk:
+    """Return blank rows that were lost to one fault; `start` as in `evaluate`."""
+    status = np.full(rows, fault.status, dtype=np.int8)
+    columns = blank_rows(columns_of(model, settings), rows)
+    return Chunk(columns, status, {fault.status.label: (start, fault.message)})
+
+
+def joined(chunks: Sequence[Chunk]) -> Chunk:
+    """Return one chunk for several that follow each other."""
+    if len(chunks) == 1:
+        return chunks[0]
+    failures: dict[str, tuple[int, str]] = {}
+    for chunk in chunks:
+        failures = chunk.failures | failures  # the first of a kind stays
+    return Chunk(
+        {name: np.concatenate([chunk.columns[name] for chunk in chunks]) for name in chunks[0][0]},
+        np.concatenate([chunk.status for chunk in chunks]),
+        failures,
+    )
+
+
 def _call(
     model: Model,
     settings: Any,
     x: NDArray[np.float64],
     seed: NDArray[np.uint64],
     expected: Mapping[str, Column],
-) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8]] | _Fault:
+) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8]] | Fault:
     try:
         with np.errstate(all="ignore"):
             returned = model.batch(x, seed, settings)
     except Exception as error:
         text = " ".join(str(error).split())
-        return _Fault(Status.RAISED, f"{type(error).__name__}: {text}" if text else repr(error))
+        return Fault(Status.RAISED, f"{type(error).__name__}: {text}" if text else repr(error))
     if not isinstance(returned, tuple) or len(returned) != 2:
         raise KernelError(f"model '{model.name}': batch must return (outputs, status)")
     outputs, status = returned
@@ -129,7 +152,7 @@ def _call(
             )
         if array.shape != (len(x), *column.shape):
             wrong = f"'{name}' has shape {array.shape}, expected {(len(x), *column.shape)}"
-            return _Fault(Status.BAD_SHAPE, wrong)
+            return Fault(Status.BAD_SHAPE, wrong)
     unknown = np.setdiff1d(status, list(Status))
     if unknown.size:
         raise KernelError(f"model '{model.name}': no such status: {unknown[0]}")

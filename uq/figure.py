@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
 from uq.elements import Element, Floats
+from uq.literals import plain
 
 WIDTH = 3.4
 """One column of a journal [inch]."""
@@ -34,6 +35,7 @@ _STYLE: Any = {
     "legend.fontsize": 7,
     "legend.frameon": False,
     "lines.linewidth": 1.2,
+    "text.parse_math": False,  # a dollar sign in a file is one
     "svg.hashsalt": "vibrolife",
 }
 styled = mpl.rc_context(_STYLE)
@@ -97,10 +99,10 @@ def file_name(*words: str) -> str:
 
 def sentence(text: str, unit: str = "", width: int = 44) -> str:
     """Return text for an axis: wrapped, with a capital, its unit behind, nothing read as TeX."""
-    text = text[:1].upper() + text[1:]
+    text = plain(text[:1].upper() + text[1:])
     if unit and unit != "1":
         text += f" [{powers(unit)}]"
-    return textwrap.fill(text.replace("$", r"\$"), width)
+    return textwrap.fill(text, width)
 
 
 def powers(unit: str) -> str:

@@ -147,7 +147,7 @@ def rerun_failed(
     plain = json.loads(json.dumps(differing))  # as it will be read again
     with runner.kept(study, path, again=plain, say=say) as kept:
         work = work_of(study)._replace(settings=changed)
-        return runner.carry_out(work, workers, scheduler, None, progress, kept)
+        return runner.carry_out(work, workers, scheduler, None, progress, kept=kept)
 
 
 def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:

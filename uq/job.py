@@ -7,22 +7,17 @@ computes them changes no bit of the result.
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import asdict
 from math import ceil
-from queue import Empty, SimpleQueue
 from typing import TYPE_CHECKING, NamedTuple
 
-from uq.errors import InputError, RunError
-from uq.evaluate import Chunk, KernelError, evaluate
-from uq.interrupts import in_background
+from uq.evaluate import Chunk, KernelError
+from uq.flight import Flight
+from uq.isolation import Evaluate, task_of
 from uq.sampling import Rows
 from uq.store import DiskStore, MemoryStore, row_bytes
-from uq.task import evaluate_rows
 from uq.work import Work
 
 if TYPE_CHECKING:
-    from distributed import Future
-
     from uq.cluster import Workers
 
 CHUNK_SECONDS = 0.5
@@ -32,6 +27,7 @@ _BLOCK_SECONDS = 2.0  # longest chunk for the sake of a whole block of the kerne
 _FIRST_ROWS = 16
 _IN_FLIGHT = 4  # chunks at least, also while workers start
 _GROWTH = 4  # of the chunks of the pilot
+_LIMIT_SHARE = 0.25  # of the time limit of a row, for a whole chunk
 _CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
 _ENOUGH_ROWS = 32  # to blame the model and not the rows
 _POLL_SECONDS = 0.2
@@ -69,6 +65,10 @@ class Job:
         Called with a `Progress` whenever rows have arrived.
     store : MemoryStore or DiskStore
         Where they are kept; what it lacks is computed.
+    evaluate : callable
+        Computes rows on this computer.
+    row_limit : float or None
+        Longest time for one row [s].
 
     Attributes
     ----------
@@ -82,11 +82,15 @@ class Job:
         chunk_rows: int | None,
         report: Report,
         store: MemoryStore | DiskStore,
+        evaluate: Evaluate,
+        row_limit: float | None = None,
     ) -> None:
         self.work = work
         self.report = report
         self.store = store
         self._wish = chunk_rows
+        self._evaluate = evaluate
+        self._row_limit = row_limit
         self._todo = deque(store.missing)
         self._untaken = store.total - store.done
         self._row_seconds = 0.0
@@ -121,53 +125,34 @@ class Job:
             spent += self._here(size)
 
     def finish_here(self) -> None:
-        """Run the other rows in this process."""
+        """Run the other rows without workers."""
         while not self.complete:
             self._here(self._chunk_rows())
 
     def finish_on(self, crew: "Workers") -> None:
-        """Run the other rows on workers, and here until the first of them is there."""
-        arrived: SimpleQueue[Future] = SimpleQueue()
-        flying: dict[Future, tuple[int, Rows]] = {}
+        """Run the other rows on workers, and here while none of our own is there."""
+        flight = Flight(self.work, task_of(self.work), crew, self._row_limit)
         while not self.complete:
+            threads = crew.threads
             # No more chunks in flight than keep the workers busy.
-            while self._untaken and len(flying) < max(_IN_FLIGHT, 2 * crew.threads):
+            while self._untaken and len(flight) < max(_IN_FLIGHT, 2 * threads):
                 # Towards the end smaller ones, so that all workers finish together.
-                share = ceil(self._untaken / max(1, crew.threads))
-                start, some = self._take(min(self._chunk_rows(), self._whole(share)))
-                future = crew.client.submit(
-                    evaluate_rows,
-                    self.work.model_reference,
-                    self.work.model.version,
-                    asdict(self.work.settings),
-                    some.x,
-                    some.seed,
-                    start,
-                    pure=False,
-                )
-                flying[future] = start, some
-                future.add_done_callback(arrived.put)
-            if not crew.threads and self._untaken:
+                share = ceil(self._untaken / max(1, threads))
+                flight.send(*self._take(min(self._chunk_rows(), self._whole(share))))
+            if crew.local and not threads and self._untaken:
                 self._here(self._chunk_rows())
-            try:
-                future = arrived.get(timeout=_POLL_SECONDS)
-            except Empty:
-                self.store.keep_up()
-                crew.watch()
-                continue
-            start, some = flying.pop(future)
-            chunk, seconds = _result(future, start, len(some.x))
-            self._row_seconds = seconds / len(some.x)
-            self._keep(start, some, chunk)
+            for start, some, chunk, seconds in flight.landed():
+                self._row_seconds = seconds / len(some.x)
+                self._keep(start, some, chunk)
+            self.store.keep_up()
 
     def _here(self, size: int) -> float:
-        """Run the next rows in this process; return the seconds it took."""
+        """Run the next rows on this computer; return the seconds it took."""
         if not self._untaken:
             return 0.0
         start, some = self._take(size)
         began = time.perf_counter()
-        model, settings = self.work.model, self.work.settings
-        chunk = in_background(lambda: evaluate(model, settings, some.x, some.seed, start))
+        chunk = self._evaluate(some.x, some.seed, start)
         seconds = time.perf_counter() - began
         self._row_seconds = seconds / len(some.x)
         self._keep(start, some, chunk)
@@ -195,31 +180,29 @@ class Job:
         self.report(Progress(store.done, store.total, store.failed, store.found))
 
     def _chunk_rows(self) -> int:
-        if self._wish:
-            return self._whole(self._wish)
         most = _CHUNK_BYTES // row_bytes(self.work)
-        if not self._row_seconds:
-            return self._whole(most)
-        block = min(self.work.model.block, ceil(_BLOCK_SECONDS / self._row_seconds))
-        blocks = CHUNK_SECONDS / (self._row_seconds * block)
-        return self._whole(min(most, block * max(1, round(blocks))))
+        if self._row_limit and self._row_seconds:  # sound chunks are not to be stopped
+            most = max(1, min(most, int(_LIMIT_SHARE * self._row_limit / self._row_seconds)))
+        if self._wish:
+            return self._whole(min(self._wish, most) if self._row_limit else self._wish)
+        return min(self._whole(most), chunk_rows(self.work, self._row_seconds))
 
     def _whole(self, size: float) -> int:
         """Round up to whole groups of the design."""
         return self.work.group * ceil(size / self.work.group)
 
 
-def _result(future: "Future", start: int, count: int) -> tuple[Chunk, float]:
-    from distributed import KilledWorker
+def chunk_rows(work: Work, row_seconds: float) -> int:
+    """Return how many rows make a good chunk, whole groups of the design.
 
-    rows = f"rows {start} to {start + count - 1}"
-    try:
-        result: tuple[Chunk, float] = future.result()
-    except (InputError, RunError):
-        raise
-    except KilledWorker:
-        raise RunError(f"{rows} killed the worker processes that computed them") from None
-    except Exception as error:
-        reason = " ".join(str(error.__cause__ or error).split())
-        raise RunError(f"a worker could not compute {rows}: {reason}") from error
-    return result
+    Parameters
+    ----------
+    work : Work
+    row_seconds : float
+        What a row costs [s], 0 if unknown.
+    """
+    size: float = _CHUNK_BYTES // row_bytes(work)
+    if row_seconds:
+        block = min(work.model.block, ceil(_BLOCK_SECONDS / row_seconds))
+        size = min(size, block * max(1, round(CHUNK_SECONDS / (row_seconds * block))))
+    return work.group * ceil(size / work.group)

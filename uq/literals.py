@@ -38,3 +38,19 @@ def shown(value: Any, width: int = 60) -> str:
     except (ValueError, RecursionError):  # thousands of digits, or of brackets
         return "..."
     return text if len(text) <= width else f"{text[: width - 3]}..."
+
+
+# Control characters but the line feed, and what turns the direction of writing.
+_UNPRINTABLE = re.compile(
+    "[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+
+
+def plain(text: str) -> str:
+    r"""Return a text that does nothing to a terminal: ``\u001b`` for an escape character."""
+    return _UNPRINTABLE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def plain_line(text: str) -> str:
+    """Return a text as `plain` does, on one line."""
+    return plain(text).replace("\n", "\\n")

@@ -2,10 +2,12 @@
 
 import importlib.metadata
 import platform
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
 _LIBRARIES = ("vibrolife", "numpy", "numba", "scipy", "SALib")
+_COMPUTING = ("vibrolife", "numpy", "numba", "scipy", "distributed")
 
 
 def provenance() -> dict[str, str]:
@@ -17,6 +19,33 @@ def provenance() -> dict[str, str]:
 def _here() -> dict[str, str]:
     here = {"cpu": _cpu(), "python": platform.python_version()}
     return here | {name: importlib.metadata.version(name) for name in _LIBRARIES}
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Return what must be the same in all processes that compute rows of one result."""
+    python = ".".join(platform.python_version_tuple()[:2])
+    return {"Python": python} | {name: importlib.metadata.version(name) for name in _COMPUTING}
+
+
+def differences(wanted: Mapping[str, str]) -> str:
+    """Say in what this process differs from the one that tells what it wants; nothing if equal.
+
+    Parameters
+    ----------
+    wanted : dict of str to str
+        `versions` of the process that wants rows.
+
+    Returns
+    -------
+    str
+        The rest of a sentence about this process, for the user of the other one.
+    """
+    pairs = [(name, there, wanted.get(name)) for name, there in versions().items()]
+    wrong = [(name, there, here) for name, there, here in pairs if there != here]
+    has = ", ".join(f"{name} {there}" for name, there, _ in wrong)
+    needs = ", ".join(f"{name} {here}" for name, _, here in wrong)
+    return f"has {has}; this process has {needs}: install the same on both" if wrong else ""
 
 
 def _cpu() -> str:

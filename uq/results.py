@@ -21,6 +21,7 @@ from uq.contract import Model, Status
 from uq.designs import DESIGNS, block_names
 from uq.errors import InputError
 from uq.provenance import provenance
+from uq.soundness import unsound
 
 if TYPE_CHECKING:
     from uq.sampling import Rows
@@ -30,10 +31,11 @@ SCHEMA_VERSION = 1
 CHECKSUM = "checksum"
 """Attribute of the file; see `uq.store.seal`."""
 
-UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, KeyError)
+UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, TypeError)
 """What a damaged file makes netCDF4 and xarray raise."""
 
 _IN_MEMORY_BYTES = 200_000_000
+_INFLATED_BYTES, _INFLATION = 100_000_000, 100  # a file that claims more was not made by us
 
 Columns = Mapping[str, NDArray[Any]]
 
@@ -158,6 +160,12 @@ def open_result(path: str | Path) -> xr.Dataset:
         raise InputError(f"{path}: is a folder, not a result")
     try:
         ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False)
+        if ds.nbytes > _INFLATED_BYTES + _INFLATION * path.stat().st_size:
+            ds.close()
+            raise InputError(
+                f"{path}: not a sound result: its {path.stat().st_size / 1e6:.3g} MB claim to be "
+                f"{ds.nbytes / 1e9:.3g} GB"
+            )
         if ds.nbytes < _IN_MEMORY_BYTES:
             with ds:
                 ds.load()
@@ -189,6 +197,8 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
             f"{path}: written with schema version {version}; this version of vibrolife reads "
             f"{SCHEMA_VERSION}: run the study again, or read it with xarray"
         )
+    if fault := unsound(ds):
+        raise InputError(f"{path}: not a sound result: {fault}")
 
 
 def failed(ds: xr.Dataset) -> NDArray[np.bool_]:

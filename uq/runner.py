@@ -1,26 +1,32 @@
-"""From a study to its result: rows in chunks, in this process or on dask workers.
+"""From a study to its result: rows in chunks, on this computer or on dask workers.
 
-The first rows always run here. They compile the kernel once, before any worker needs it, they
-show what a row costs, and they are the first chunks of the result.
+The first rows always run on this computer. They compile the kernel once, before any worker needs
+it, they show what a row costs, and they are the first chunks of the result. A process of its own
+computes them, so that a row may crash it, unless the user wants all in one process.
 """
 
 import os
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from uq import results, store
 from uq.changes import refusal_to_extend, what_changed
 from uq.errors import InputError
+from uq.evaluate import Chunk, evaluate
+from uq.interrupts import in_background
+from uq.isolation import Evaluate, isolated
 from uq.job import Job, Report
 from uq.sampling import rows
 from uq.study import Study, load_study
 from uq.work import Work, work_of
 
-IN_PROCESS_SECONDS = 4.0
+SHORT_SECONDS = 4.0
 """A study whose remaining work is shorter than this is not worth starting workers."""
 
 
@@ -30,6 +36,7 @@ def run(
     workers: int | None = None,
     scheduler: str | None = None,
     chunk_rows: int | None = None,
+    row_limit: float | None = None,
     fresh: bool = False,
     progress: Report | None = None,
     say: Callable[[str], object] = lambda _: None,
@@ -46,12 +53,14 @@ def run(
     output : str or Path, optional
         Default ``results/<name>.nc``.
     workers : int, optional
-        Worker processes; 0 computes in this process. By default this process computes what takes
-        a few seconds, else one worker per core.
+        Worker processes; 0 computes in this process, and a row that crashes ends it. By default
+        one process computes what takes a few seconds, else one worker per core.
     scheduler : str, optional
         Address of a running dask scheduler, instead of own workers.
     chunk_rows : int, optional
         Rows per task, rounded up to whole groups of the design; by default half a second of work.
+    row_limit : float, optional
+        Longest time for one row [s]; one that outlives it is stopped and marked ``timed-out``.
     fresh : bool
         Overwrite whatever `output` holds.
     progress : callable, optional
@@ -79,7 +88,7 @@ def run(
     if not fresh and (found := finished(study, path)) is not None:
         return found
     with kept(study, path, fresh, say=say) as there:
-        return carry_out(work_of(study), workers, scheduler, chunk_rows, progress, there)
+        return carry_out(work_of(study), workers, scheduler, chunk_rows, progress, row_limit, there)
 
 
 @contextmanager
@@ -143,9 +152,10 @@ def compute(
     scheduler: str | None = None,
     chunk_rows: int | None = None,
     progress: Report | None = None,
+    row_limit: float | None = None,
 ) -> xr.Dataset:
     """Run a study without writing anything; parameters as in `run`."""
-    return carry_out(work_of(study), workers, scheduler, chunk_rows, progress)
+    return carry_out(work_of(study), workers, scheduler, chunk_rows, progress, row_limit)
 
 
 def carry_out(
@@ -154,6 +164,7 @@ def carry_out(
     scheduler: str | None = None,
     chunk_rows: int | None = None,
     progress: Report | None = None,
+    row_limit: float | None = None,
     kept: store.DiskStore | None = None,
 ) -> xr.Dataset:
     """Compute the rows of some work, in memory or to be kept; other parameters as in `run`."""
@@ -163,20 +174,34 @@ def carry_out(
         raise InputError(f"workers must not be negative: {workers}")
     if chunk_rows is not None and chunk_rows < 1:
         raise InputError(f"chunk_rows must be at least 1: {chunk_rows}")
+    if row_limit is not None and not row_limit > 0:
+        raise InputError(f"the time limit of a row must be positive: {row_limit:g} s")
+    if row_limit is not None and workers == 0:
+        raise InputError(
+            "a time limit for rows needs another process that can be stopped: "
+            "workers = 0 has none (leave it out, or take 1)"
+        )
     where = kept or store.MemoryStore(work)
-    job = Job(work, chunk_rows, progress or (lambda _: None), where)
-    if where.found:
-        job.tell()
+    place = nullcontext(_in_process(work)) if workers == 0 else isolated(work, row_limit)
+    with place as evaluate_here:
+        job = Job(work, chunk_rows, progress or (lambda _: None), where, evaluate_here, row_limit)
+        if where.found:
+            job.tell()
+        _finish(job, workers, scheduler)
+    return where.dataset()
+
+
+def _finish(job: Job, workers: int | None, scheduler: str | None) -> None:
     if scheduler is not None:
         from uq import cluster
 
         with cluster.remote(scheduler) as crew:  # before anything is computed
             job.pilot(share=1 / 8)
             job.finish_on(crew)
-        return where.dataset()
+        return
     if not workers:
         job.pilot(share=1)
-    if workers == 0 or (workers is None and job.seconds_left < IN_PROCESS_SECONDS):
+    if workers == 0 or (workers is None and job.seconds_left < SHORT_SECONDS):
         job.finish_here()
     elif not job.complete:
         from uq import cluster
@@ -185,4 +210,12 @@ def carry_out(
             if workers:
                 job.pilot(share=1 / 8)  # while they start
             job.finish_on(crew)
-    return where.dataset()
+
+
+def _in_process(work: Work) -> Evaluate:
+    """Return what computes rows in this process: nothing protects it from them."""
+
+    def call(x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
+        return in_background(lambda: evaluate(work.model, work.settings, x, seed, start))
+
+    return call

@@ -4,7 +4,7 @@ Rows are numbered so that more samples append: row = (j * replicates + r) * bloc
 point j, replicate r and block b of its group.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,11 @@ class Rows(NamedTuple):
     replicate: NDArray[np.int32]
     group: NDArray[np.int64]
     block: NDArray[np.int16]
+
+    def part(self, first: int, last: int) -> "Rows":
+        """Return the rows from `first` to before `last` of these."""
+        fields: list[NDArray[Any]] = [field[first:last] for field in self]
+        return Rows(*fields)
 
 
 def group_size(study: "Study") -> int:

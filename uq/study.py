@@ -19,6 +19,8 @@ from uq.registry import find_model
 from uq.study_file import AnalysisTable, DesignTable, StudyFile
 from uq.values import read_settings
 
+_LONGEST = 1_000_000  # bytes of a study file
+
 __all__ = ["Study", "load_study", "read_study_text", "study_from_text"]
 
 
@@ -194,7 +196,11 @@ def study_from_text(text: str, source: str = "study", model: str | None = None) 
 
 def _read(path: Path) -> str:
     try:
-        return path.read_bytes().decode("utf-8-sig")
+        with path.open("rb") as file:
+            content = file.read(_LONGEST + 1)
+        if len(content) > _LONGEST:
+            raise InputError(f"{path}: no study is longer than {_LONGEST // 1_000_000} MB")
+        return content.decode("utf-8-sig")
     except FileNotFoundError:
         folder = path.parent
         files = [entry.name for entry in folder.glob("*.toml")] if folder.is_dir() else []

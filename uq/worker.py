@@ -5,24 +5,16 @@ ends, the pipe closes; then the worker removes their temporary folder and stops.
 """
 
 import asyncio
-import os
 import shutil
 import sys
-import threading
+
+from uq.child import end_with_parent
 
 
 def main(address: str, folder: str) -> None:
     """Serve the scheduler at `address` until the parent process is gone."""
-    threading.Thread(target=_stop_with_parent, args=(folder,), daemon=True).start()
+    end_with_parent(lambda: shutil.rmtree(folder, ignore_errors=True))
     asyncio.run(_serve(address, folder))
-
-
-def _stop_with_parent(folder: str) -> None:
-    # From the file descriptor: a thread inside sys.stdin would hold its lock for ever.
-    while os.read(sys.stdin.fileno(), 1024):
-        pass
-    shutil.rmtree(folder, ignore_errors=True)
-    os._exit(0)
 
 
 async def _serve(address: str, folder: str) -> None:

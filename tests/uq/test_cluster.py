@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -13,8 +14,9 @@ import pytest
 import sample_models
 
 import uq
-from uq import cluster, job, runner
-from uq.errors import InputError, RunError
+from uq import cluster, job, provenance, runner
+from uq.child import Task
+from uq.errors import InputError
 from uq.study import load_study
 from uq.task import evaluate_rows
 
@@ -28,7 +30,8 @@ def tidy(folder, monkeypatch):
     yield
     assert not any(temporary.iterdir())
     assert not [place for place in sys.path if place.startswith(str(temporary))]
-    assert not [child for child in psutil.Process().children() if "uq.worker" in child.cmdline()]
+    left = [child for child in psutil.Process().children() if child.status() != "zombie"]
+    assert not [child for child in left if {"uq.worker", "uq.child"} & set(child.cmdline())]
 
 
 @pytest.mark.parametrize(
@@ -45,8 +48,9 @@ def test_workers_give_the_bits_of_this_process(write_study, tidy, model, paramet
 def test_all_workers_work(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=400), "sample_models:PROCESS")
     ds = runner.compute(study, workers=2, chunk_rows=2)
-    processes = set(ds["y"].values) - {float(os.getpid())}
-    assert len(processes) == 2
+    # The first rows are computed by a process that is no worker.
+    assert len(set(ds["y"].values)) == 3
+    assert float(os.getpid()) not in ds["y"].values
 
 
 def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeypatch):
@@ -68,7 +72,7 @@ def test_workers_are_started_for_longer_studies_only(
     write_study, tidy, monkeypatch, seconds, processes
 ):
     monkeypatch.setattr(job, "CHUNK_SECONDS", 0.05)
-    monkeypatch.setattr(runner, "IN_PROCESS_SECONDS", seconds)
+    monkeypatch.setattr(runner, "SHORT_SECONDS", seconds)
     monkeypatch.setattr(cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = runner.compute(load_study(path, "sample_models:PROCESS"))
@@ -97,27 +101,33 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
         address = empty.scheduler_address
         with pytest.raises(InputError, match=rf"^--scheduler {address}: .* no workers$"):
             runner.compute(study, scheduler=address)
+
+
+def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monkeypatch):
+    study = load_study(write_study())
+    other = provenance.versions() | {"numpy": "1.0", "Python": "2.7"}
+    monkeypatch.setattr(cluster, "versions", lambda: other)
     with cluster.local(1) as crew:
         crew.client.wait_for_workers(1)
-        with pytest.raises(InputError, match=r"^there: worker .* has vibrolife .*, this .* 0\.0$"):
-            cluster._check_packages(crew.client, "there", "0.0")
-        monkeypatch.setattr(cluster, "_PACKAGE", "no-such-package")
-        with pytest.raises(InputError, match=r"^there: worker .* lacks no-such-package, this"):
-            cluster._check_packages(crew.client, "there", "0.0")
+        address = crew.client.scheduler.address
+        with pytest.raises(InputError) as refused:
+            runner.compute(study, scheduler=address)
+    (line,) = refused.value.lines
+    here = provenance.versions()
+    assert re.fullmatch(
+        rf"--scheduler {address}: worker tcp://\S+ has Python {here['Python']}, numpy "
+        rf"{here['numpy']}; this process has Python 2.7, numpy 1.0: install the same on both",
+        line,
+    )
 
 
-def test_rows_that_kill_their_worker_end_the_run_with_a_sentence(write_study, tidy, monkeypatch):
-    monkeypatch.setenv("UQ_TEST_SURVIVOR", str(os.getpid()))
-    path = write_study(uncertain=("x1",), law='distribution = "uniform", lower = 0.0, upper = 1.0')
-    study = load_study(path, "sample_models:DYING")
-    with pytest.raises(RunError, match=r"^rows \d+ to \d+ killed the worker processes"):
-        runner.compute(study, workers=1, chunk_rows=8)
-
-
-def test_a_worker_with_another_version_of_the_model_is_refused():
+def test_a_worker_that_differs_is_refused_with_its_first_rows():
     x, seed = np.full((2, 3), 0.5), np.zeros(2, np.uint64)
     with pytest.raises(InputError, match="a worker has version 1 of model 'ishigami'.* has 2"):
-        evaluate_rows("ishigami", "2", {}, x, seed, 0)
+        evaluate_rows(Task("ishigami", "2", ()), provenance.versions(), None, x, seed, 0)
+    later = provenance.versions() | {"vibrolife": "99"}
+    with pytest.raises(InputError, match=r"^a worker has vibrolife \S+; this process has .* 99"):
+        evaluate_rows(Task("ishigami", "1", ()), later, None, x, seed, 0)
 
 
 def test_a_script_needs_no_main_guard(write_study, folder):

@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 
 from uq.errors import InputError, RunError, nearest
 from uq.interrupts import undo_all
+from uq.literals import plain_line
 from uq.threads import SINGLE_THREADED
 
 _when_interrupted = "interrupted"
@@ -26,7 +27,8 @@ def main() -> NoReturn:
         code = _run(sys.argv[1:] or ["--help"])
         sys.stdout.flush()
     except (InputError, RunError) as error:
-        print(error, file=sys.stderr)
+        for line in getattr(error, "lines", (str(error),)):
+            print(plain_line(line), file=sys.stderr)
         code = 2 if isinstance(error, InputError) else 1
     except BrokenPipeError:  # whoever read this output, such as "head", has had enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -104,6 +104,22 @@ def schema() -> None:
 
 
 @app.command()
+def plan(
+    study: StudyFile,
+    workers: Workers = None,
+    samples: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Instead of the study's own.")
+    ] = None,
+    model: ModelReference = None,
+    json: Json = False,
+) -> None:
+    """Say what a study will take, from a few of its rows."""
+    from uq.cli.plan import plan as show_plan
+
+    show_plan(study, model, samples, workers, json)
+
+
+@app.command()
 def run(
     study: StudyFile,
     output: Annotated[
@@ -118,14 +134,22 @@ def run(
     chunk_rows: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Rows per task; default: 0.5 s of work.")
     ] = None,
+    row_limit: Annotated[
+        float | None, typer.Option(metavar="S", help="Stop a row after so many seconds.")
+    ] = None,
     model: ModelReference = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Overwrite whatever OUT.nc is.")] = False,
     quiet: Quiet = False,
 ) -> int:
-    """Run a study, or go on where it stopped; write its result and show the summary."""
+    """Run a study, or go on where it stopped; show the summary."""
     from uq.cli import studies
 
-    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler, "chunk_rows": chunk_rows}
+    options: dict[str, Any] = {
+        "workers": workers,
+        "scheduler": scheduler,
+        "chunk_rows": chunk_rows,
+        "row_limit": row_limit,
+    }
     return studies.run(study, output, model, samples, fresh, quiet, options)
 
 

@@ -10,28 +10,39 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from uq.literals import plain
 from uq.time_units import time_unit
 
 if TYPE_CHECKING:
     from rich.console import JustifyMethod
 
+
+class _Terminal(Console):
+    """A console that texts from a file can do nothing to."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        super().print(
+            *(plain(thing) if isinstance(thing, str) else thing for thing in objects), **options
+        )
+
+
 # Names such as work_rate[site=left] are not rich's markup.
-console = Console(markup=False, highlight=False, emoji=False)
+console = _Terminal(markup=False, highlight=False, emoji=False)
 
 
 def print_json(value: Any) -> None:
     """Print JSON; a number that is not finite is a mistake of the caller."""
-    print(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False))
+    print(plain(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False)))
 
 
 def heading(text: str, more: str = "") -> None:
     """Print a line that stands out, with what explains it behind."""
-    console.print(Text.assemble((text, "bold"), f"  {more}" if more else ""))
+    console.print(Text.assemble((plain(text), "bold"), plain(f"  {more}") if more else ""))
 
 
 def paragraph(text: str, indent: int = 4) -> None:
     """Print text that keeps its indent where it wraps."""
-    console.print(Padding(text, (0, 0, 0, indent), expand=False))
+    console.print(Padding(plain(text), (0, 0, 0, indent), expand=False))
 
 
 def grid(rows: Iterable[Sequence[str]], header: Sequence[str] = (), indent: int = 2) -> None:
@@ -52,7 +63,7 @@ def grid(rows: Iterable[Sequence[str]], header: Sequence[str] = (), indent: int 
         justify: JustifyMethod = "right" if all(map(_looks_numeric, columns[i])) else "left"
         table.add_column(titles[i], justify=justify, overflow="fold")
     for row in zip(*(columns[i] for i in kept), strict=True):
-        table.add_row(*map(Text, row))
+        table.add_row(*(Text(plain(cell)) for cell in row))
     console.print(Padding(table, (0, 0, 0, indent), expand=False))
 
 

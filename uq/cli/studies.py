@@ -17,6 +17,7 @@ from uq.cli.printing import console, grid, heading
 from uq.contract import Status
 from uq.designs import DESIGNS
 from uq.job import Progress
+from uq.literals import plain_line
 from uq.sampling import group_size, rows
 from uq.store import folder_of
 from uq.study import Study, load_study
@@ -99,7 +100,7 @@ def carried_out(
 
         def say(line: str) -> None:
             if not quiet:
-                print(line, file=sys.stderr)
+                print(plain_line(line), file=sys.stderr)
 
         say_when_interrupted("interrupted; nothing was written")
         ds = action(progress=report, say=say)
@@ -132,7 +133,7 @@ def _verdict(study: Study, ds: Any) -> int:
     ]
     print(
         f"{failed} of {ds.sizes['sample']} rows failed, more than max_failed = "
-        f"{study.analysis.max_failed:g} allows ({'; '.join(examples)})",
+        f"{study.analysis.max_failed:g} allows ({plain_line('; '.join(examples))})",
         file=sys.stderr,
     )
     return 1

@@ -1,0 +1,283 @@
+"""Whatever happens to the processes that compute, the result is that of an undisturbed run."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import psutil
+import pytest
+
+from uq import cluster, flight, isolation, runner
+from uq.contract import Status
+from uq.errors import InputError
+from uq.evaluate import KernelError
+from uq.results import open_result
+from uq.study import load_study
+
+COMMAND = Path(sys.executable).with_name("uq")
+PATIENCE = 60.0
+FAULTY = "faulty_models:FAULTY"
+
+
+def processes(module, of=None):
+    """Return the living processes, started by this one, that run a module."""
+    found = []
+    for child in (of or psutil.Process()).children(recursive=True):
+        try:
+            if module in child.cmdline() and child.status() != psutil.STATUS_ZOMBIE:
+                found.append(child)
+        except psutil.NoSuchProcess:
+            pass
+    return found
+
+
+def wait_for(condition):
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.02)
+
+
+@pytest.fixture
+def study_of(write_study):
+    def make(model=FAULTY, samples=120, **settings):
+        text = "\n".join(f"{key} = {value!r}" for key, value in settings.items())
+        name = "linear" if model == "linear" else "faulty"
+        law = 'distribution = "uniform", lower = 0.0, upper = 1.0'
+        more = f"[settings]\n{text}"
+        path = write_study(model=name, uncertain=("x1",), samples=samples, law=law, more=more)
+        return load_study(path, None if model == "linear" else model)
+
+    return make
+
+
+@pytest.fixture
+def undisturbed():
+    """Return a function that computes a study with nothing that could go wrong."""
+    return lambda study: runner.compute(study, workers=0)
+
+
+class Killer:
+    """Kills processes as a run goes on; called with the run's progress."""
+
+    def __init__(self, module, times, all_of_them):
+        self.module, self.times, self.all = module, times, all_of_them
+
+    def __call__(self, progress):
+        found = processes(self.module)
+        if self.times and found and progress.done < progress.total:
+            self.times -= 1
+            for process in found if self.all else found[:1]:
+                process.kill()
+
+
+@pytest.mark.parametrize(
+    ("module", "times", "all_of_them"),
+    [("uq.worker", 3, False), ("uq.worker", 2, True), ("uq.child", 4, True)],
+    ids=["one worker", "all workers", "all that compute"],
+)
+def test_killed_processes_leave_no_trace(study_of, undisturbed, module, times, all_of_them):
+    study = study_of(seconds=0.02)
+    killer = Killer(module, times, all_of_them)
+    ds = runner.compute(study, workers=2, chunk_rows=5, progress=killer)
+    assert killer.times == 0
+    assert ds.identical(undisturbed(study))
+
+
+@pytest.mark.slow
+def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monkeypatch):
+    study = study_of(seconds=0.1, samples=60)
+    failed = []
+    real = flight.Flight._failed
+    monkeypatch.setattr(
+        flight.Flight,
+        "_failed",
+        lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
+    )
+
+    def kill_thrice():
+        for _ in range(3):
+            # A worker whose child is there is about to compute.
+            wait_for(lambda: [w for w in processes("uq.worker") if processes("uq.child", w)])
+            time.sleep(0.5)
+            for worker in processes("uq.worker"):
+                worker.kill()
+                worker.wait(PATIENCE)
+
+    thread = threading.Thread(target=kill_thrice)
+    thread.start()
+    ds = runner.compute(study, workers=1, chunk_rows=20)
+    thread.join()
+    assert "KilledWorker" in failed
+    assert ds.identical(undisturbed(study))
+
+
+FAULTS = {
+    "raise": ("linear", {"fail_how": "raise"}, Status.RAISED, "x1 is above"),
+    "nan": ("linear", {"fail_how": "nan"}, Status.NON_FINITE, "'y' is nan"),
+    "inf": ("linear", {"fail_how": "inf"}, Status.NON_FINITE, "'y' is inf"),
+    "shape": ("linear", {"fail_how": "shape"}, Status.BAD_SHAPE, "'y' has shape"),
+    "exit": ("linear", {"fail_how": "exit"}, Status.CRASHED, "exit code 1"),
+    "hang": ("linear", {"fail_how": "hang"}, Status.TIMED_OUT, "did not end within 0.5 s"),
+    "segfault": (FAULTY, {"how": "segfault"}, Status.CRASHED, "Segmentation fault"),
+    "killed": (FAULTY, {"how": "kill"}, Status.CRASHED, "Killed"),
+}
+
+
+@pytest.mark.parametrize("workers", [None, pytest.param(2, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("fault", FAULTS)
+def test_guilty_rows_get_their_status_and_the_others_their_values(
+    study_of, undisturbed, monkeypatch, fault, workers
+):
+    monkeypatch.setattr(isolation, "_FIRST_SECONDS", 0.5)
+    model, settings, status, words = FAULTS[fault]
+    key = "fail_above" if model == "linear" else "above"
+    study = study_of(model, samples=100, **settings, **{key: 0.98})
+    ds = runner.compute(
+        study, workers=workers, row_limit=0.5 if fault == "hang" else None, chunk_rows=30
+    )
+    guilty = ds["x1"].values > 0.98
+    assert 0 < guilty.sum() < 5
+    assert np.array_equal(ds["status"].values, np.where(guilty, status, Status.OK))
+    first = np.flatnonzero(guilty)[0]
+    example = ds["status"].attrs[f"example_{status.name.lower()}"]
+    assert example.startswith(f"row {first}: ")
+    assert words in example
+    sound = undisturbed(study_of(model, samples=100))
+    assert np.array_equal(ds["y"].values[~guilty], sound["y"].values[~guilty])
+    assert np.isnan(ds["y"].values[guilty]).all()
+
+
+def test_a_wrong_dtype_refuses_the_model(study_of):
+    study = study_of(above=0.98, how="dtype")
+    for workers in (0, 1):
+        with pytest.raises(KernelError, match="'y' is float32, expected float64"):
+            runner.compute(study, workers=workers, chunk_rows=10)
+
+
+@pytest.mark.slow
+def test_compiling_is_no_part_of_the_time_of_a_row(study_of, monkeypatch):
+    monkeypatch.setattr(isolation, "_FIRST_SECONDS", 0.0)
+    seconds = []
+    real = isolation.Isolated._answer
+
+    def timed(self, connection, limit):
+        began = time.monotonic()
+        answer = real(self, connection, limit)
+        seconds.append(time.monotonic() - began)
+        return answer
+
+    monkeypatch.setattr(isolation.Isolated, "_answer", timed)
+    ds = runner.compute(study_of("faulty_models:COMPILING", samples=1), row_limit=1.0)
+    assert ds["status"].values.tolist() == [Status.OK]
+    assert max(seconds) > 1.0  # or this shows nothing
+
+
+def test_a_time_limit_needs_a_process_to_stop(uq, study_of):
+    study = study_of()
+    with pytest.raises(InputError, match="needs another process"):
+        runner.compute(study, workers=0, row_limit=1.0)
+    with pytest.raises(InputError, match="must be positive"):
+        runner.compute(study, row_limit=0.0)
+    ended = uq("run", study.path, "--model", FAULTY, "--workers", 0, "--row-limit", 1)
+    assert (ended.code, ended.err.count("\n")) == (2, 1)
+
+
+def test_too_many_failed_rows_are_an_exit_code_after_the_result(uq, study_of, folder):
+    study = study_of("linear", samples=50, fail_how="exit", fail_above=0.8)
+    ended = uq("run", study.path, "--workers", 1)
+    assert ended.code == 1
+    assert "crashed" in ended.out
+    assert "rows failed, more than max_failed = 0.1 allows (crashed: row " in ended.err
+    assert (folder / "results" / "small.nc").exists()
+
+
+@pytest.mark.slow
+def test_processes_with_a_cold_cache_agree(study_of, folder):
+    model = "faulty_models:COMPILED"
+    study = study_of(model, samples=20)
+    environment = os.environ | {
+        "XDG_CACHE_HOME": str(folder / "cache"),
+        "PYTHONPATH": os.pathsep.join(sys.path),
+    }
+    environment.pop("NUMBA_CACHE_DIR", None)
+    started = [
+        subprocess.Popen(
+            [COMMAND, "run", study.path, "-o", f"{i}.nc", "--model", model, "--quiet"],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        for i in range(8)
+    ]
+    ended = [(*process.communicate(timeout=240), process.returncode) for process in started]
+    assert [(err, code) for _, err, code in ended] == [("", 0)] * 8
+    results = [(folder / f"{i}.nc").read_bytes() for i in range(8)]
+    assert len(set(results)) == 1
+    assert list((folder / "cache").rglob("*.nbi"))
+
+
+SURROUNDINGS = {
+    "decimal comma": {"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8", "COLUMNS": "80"},
+    "plain": {"LC_ALL": "C", "LANG": "C", "NO_COLOR": "1", "TERM": "dumb"},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("surroundings", SURROUNDINGS)
+def test_surroundings_change_no_bit(study_of, undisturbed, folder, surroundings):
+    study = study_of("linear", samples=40, fail_how="nan", fail_above=0.95)
+    expected = undisturbed(study)
+    environment = os.environ | SURROUNDINGS[surroundings]
+    environment |= {"PYTHONPATH": os.pathsep.join(sys.path)}
+    ended = subprocess.run(
+        [COMMAND, "run", study.path, "--workers", "1"],
+        env=environment,
+        stdin=None,
+        # Closed standard input: not even /dev/null is there.
+        preexec_fn=lambda: os.close(0),
+        capture_output=True,
+        timeout=PATIENCE,
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert b"\x1b" not in ended.stdout + ended.stderr
+    assert max(map(len, ended.stdout.decode().splitlines())) <= 80
+    assert open_result(folder / "results" / "small.nc").identical(expected)
+
+
+def test_everything_listens_on_this_computer_alone(study_of):
+    listening = set()
+
+    def look(progress):
+        for process in (psutil.Process(), *psutil.Process().children(recursive=True)):
+            for connection in process.net_connections(kind="inet"):
+                if connection.status == psutil.CONN_LISTEN:
+                    listening.add(connection.laddr.ip)
+
+    runner.compute(study_of(seconds=0.02, samples=60), workers=2, chunk_rows=5, progress=look)
+    assert listening == {"127.0.0.1"}
+
+
+def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch):
+    monkeypatch.setattr(cluster, "_DEATHS_AT_MOST", 3)
+    stop = threading.Event()
+
+    def kill_on():
+        while not stop.wait(0.05):
+            for process in processes("uq.worker"):
+                process.send_signal(signal.SIGKILL)
+
+    thread = threading.Thread(target=kill_on)
+    thread.start()
+    try:
+        with pytest.raises(cluster.RunError, match="worker process"):
+            runner.compute(study_of(seconds=0.5, samples=600), workers=1, chunk_rows=1)
+    finally:
+        stop.set()
+        thread.join()

@@ -1,0 +1,191 @@
+"""A cluster of somebody else: its scheduler and workers are processes of their own."""
+
+import contextlib
+import os
+import socket
+import subprocess
+import sys
+import time
+
+import dask
+import psutil
+import pytest
+
+from uq import cluster, runner
+from uq.errors import InputError, RunError
+from uq.study import load_study
+
+PATIENCE = 60.0
+FAULTY = "faulty_models:FAULTY"
+
+
+class Cluster:
+    """A scheduler and workers, started by their own commands."""
+
+    def __init__(self, folder, protocol="tcp", options=()):
+        self.folder, self.options = folder, options
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        self.address = f"{protocol}://127.0.0.1:{port}"
+        self.environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+        self.started = []
+        self.scheduler = self._start(
+            "distributed.cli.dask_scheduler",
+            *("--host", self.address, "--no-dashboard", "--no-show"),
+        )
+
+    def add_worker(self):
+        place = self.folder / f"worker{len(self.started)}"
+        place.mkdir()
+        return self._start(
+            "distributed.cli.dask_worker",
+            self.address,
+            *("--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1"),
+            *("--local-directory", place),
+        )
+
+    def _start(self, module, *arguments):
+        log = (self.folder / f"{len(self.started)}.log").open("wb")
+        with log:
+            process = subprocess.Popen(
+                [sys.executable, "-m", module, *map(str, (*arguments, *self.options))],
+                cwd=self.folder,
+                env=self.environment,
+                stdout=log,
+                stderr=log,
+            )
+        self.started.append(process)
+        return process
+
+    def end(self, process=None):
+        for one in [process] if process else self.started:
+            with contextlib.suppress(psutil.NoSuchProcess):
+                family = psutil.Process(one.pid).children(recursive=True)
+                one.kill()
+                for child in family:
+                    with contextlib.suppress(psutil.NoSuchProcess):
+                        child.kill()
+            one.wait(PATIENCE)
+
+
+@pytest.fixture
+def start(folder):
+    """Return a function that starts a cluster in a folder of its own."""
+    clusters = []
+
+    def call(workers=1, **options):
+        place = folder / f"cluster{len(clusters)}"
+        place.mkdir()
+        clusters.append(Cluster(place, **options))
+        for _ in range(workers):
+            clusters[-1].add_worker()
+        return clusters[-1]
+
+    yield call
+    for one in clusters:
+        one.end()
+
+
+@pytest.fixture
+def study(write_study):
+    law = 'distribution = "uniform", lower = 0.0, upper = 1.0'
+    more = "[settings]\nseconds = 0.05"
+    path = write_study(model="faulty", uncertain=("x1",), samples=100, law=law, more=more)
+    return load_study(path, FAULTY)
+
+
+def patiently(address, *arguments, **options):
+    """Run on a cluster that may still be starting."""
+    end = time.monotonic() + PATIENCE
+    while True:
+        try:
+            return runner.compute(*arguments, scheduler=address, **options)
+        except InputError as error:
+            if time.monotonic() > end or not (
+                "connect" in str(error) or "no workers" in str(error)
+            ):
+                raise
+            time.sleep(0.5)
+
+
+pytestmark = pytest.mark.slow
+
+
+def test_workers_come_and_go(start, study):
+    there = start()
+    seen = []
+
+    def change(progress):
+        seen.append(progress.done)
+        if len(seen) == 3:
+            there.add_worker()
+        if len(seen) == 12:
+            there.end(there.started[1])
+
+    ds = patiently(there.address, study, chunk_rows=2, progress=change)
+    assert ds.identical(runner.compute(study, workers=0))
+    assert there.scheduler.poll() is None
+
+
+def test_a_scheduler_that_dies_ends_the_run(start, study, monkeypatch):
+    monkeypatch.setattr(cluster, "_REMOTE_SECONDS", 2)
+    there = start()
+
+    def kill(progress):
+        if progress.done > 20:
+            there.end(there.scheduler)
+
+    with pytest.raises(RunError, match=rf"^--scheduler {there.address}: the scheduler is gone$"):
+        patiently(there.address, study, chunk_rows=2, progress=kill)
+
+
+def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch):
+    monkeypatch.setattr(cluster, "_WORKERLESS_SECONDS", 2.0)
+    there = start()
+
+    def kill(progress):
+        if progress.done > 20:
+            there.end(there.started[1])
+
+    with pytest.raises(RunError, match="the cluster has had no workers for 2 s"):
+        patiently(there.address, study, chunk_rows=2, progress=kill)
+
+
+def self_signed(stem):
+    """Return the files of a new certificate and its key."""
+    certificate, key = stem.with_suffix(".pem"), stem.with_suffix(".key")
+    command = "openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=127.0.0.1".split()
+    command += ["-keyout", key, "-out", certificate]
+    subprocess.run(command, check=True, capture_output=True)
+    return certificate, key
+
+
+def tls(authority, certificate, key):
+    """Return what a user's dask configuration says."""
+    files = {"ca-file": authority, "client.cert": certificate, "client.key": key}
+    return {f"distributed.comm.tls.{name}": str(path) for name, path in files.items()}
+
+
+def test_certificates_are_used_and_demanded(start, study, folder):
+    certificate, key = self_signed(folder / "ours")
+    files = ("--tls-ca-file", certificate, "--tls-cert", certificate, "--tls-key", key)
+    there = start(protocol="tls", options=files)
+    with dask.config.set(tls(certificate, certificate, key)):
+        ds = patiently(there.address, study, chunk_rows=10)
+    assert ds.identical(runner.compute(study, workers=0))
+    with pytest.raises(InputError, match=f"^--scheduler {there.address}: .* certificates: set"):
+        runner.compute(study, scheduler=there.address)
+    # Somebody with another certificate is a stranger.
+    with (
+        dask.config.set(tls(certificate, *self_signed(folder / "theirs"))),
+        pytest.raises(InputError),
+    ):
+        runner.compute(study, scheduler=there.address)
+
+
+def test_workers_left_alone_keep_no_process(start, study):
+    there = start()
+    patiently(there.address, study, chunk_rows=10)
+    family = psutil.Process(there.started[1].pid).children(recursive=True)
+    assert not [child for child in family if "uq.child" in child.cmdline()]

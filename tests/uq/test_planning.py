@@ -1,0 +1,103 @@
+"""A plan says what a run takes, and how wide its intervals will be."""
+
+import json
+import os
+
+import numpy as np
+import pytest
+
+from uq import planning, runner
+from uq.statistics import summarise
+from uq.study import load_study
+from uq.widths import expected_widths
+
+NORMAL = 'distribution = "uniform", lower = 0.0, upper = 1.0'
+
+
+def test_the_cost_of_rows_that_sleep(write_study, monkeypatch):
+    monkeypatch.setattr(planning, "PILOT_SECONDS", 0.5)
+    more = "[settings]\nseconds = 0.01"
+    study = load_study(
+        write_study(uncertain=("x1",), samples=3000, more=more), "sample_models:SLEEPING"
+    )
+    cost, pilot = planning.pilot(study, workers=2)
+    assert cost.rows == 3000
+    assert cost.workers == 2
+    assert 0.01 <= cost.row_seconds < 0.02
+    assert cost.seconds > 3000 * cost.row_seconds / 2
+    assert cost.pilot_rows == pilot.sizes["sample"] < 1000
+    # From all of the study, not its beginning.
+    assert pilot["sample"].size == len(np.unique(pilot["group"].values))
+    assert pilot["group"].values.max() > 2000
+
+
+def test_a_small_study_is_run_whole(write_study):
+    study = load_study(write_study(method="saltelli", samples=16, replicates=2))
+    cost, pilot = planning.pilot(study, workers=1)
+    assert cost.pilot_rows == cost.rows == 160
+    assert pilot["y"].values.tolist() == runner.compute(study, workers=0)["y"].values.tolist()
+
+
+def test_the_size_of_the_result_is_right(write_study, folder):
+    study = load_study(write_study(samples=20_000))
+    cost, _ = planning.pilot(study, workers=1)
+    runner.run(study, "out.nc", workers=0)
+    assert 1 / 1.5 < cost.result_bytes / os.path.getsize("out.nc") < 1.5
+
+
+@pytest.mark.parametrize("replicates", [1, 8])
+@pytest.mark.parametrize("method", ["monte-carlo", "saltelli"])
+def test_widths_are_those_that_come_out(write_study, method, replicates):
+    more = "[analysis]\nthresholds = {y = 5.0}\nquantiles = [0.25, 0.5]"
+    study = load_study(
+        write_study(
+            model="linear",
+            method=method,
+            samples=1024,
+            replicates=replicates,
+            uncertain=("x1", "x2"),
+            law=NORMAL,
+            more=more,
+        )
+    )
+    whole = runner.compute(study, workers=0)
+    pilot = whole.isel(sample=slice(0, 400))
+    expected = expected_widths(pilot)["y"]
+    found = summarise(whole)["outputs"]["y"]
+    pairs = [(expected["mean"], found["mean_interval"])]
+    pairs += [(width, found["quantiles"][p]) for p, width in expected["quantiles"].items()]
+    pairs += [
+        (width, found["thresholds"][t]["above"]) for t, width in expected["thresholds"].items()
+    ]
+    assert len(pairs) == 4
+    for width, interval in pairs:
+        if method == "monte-carlo":
+            assert width / (interval["high"] - interval["low"]) == pytest.approx(1.0, abs=0.3)
+        elif replicates == 1:
+            assert width is None and interval["low"] is None
+        elif interval["low"] is not None:  # scrambled designs are better than independent rows
+            assert width > interval["high"] - interval["low"]
+    assert ("S1" in expected) == (method == "saltelli")
+
+
+def test_plan_shows_all_of_it(uq, write_study):
+    path = write_study(model="linear", uncertain=("x1",), more="[settings]\nfail_above = 0.6")
+    shown = uq("plan", path, "--workers", 1)
+    assert shown.code == 0
+    for word in ("rows", "64", "failed", "one process", "quantile 0.5"):
+        assert word in shown.out
+    assert max(map(len, shown.out.splitlines())) <= 80
+    plan = json.loads(uq("plan", path, "--json", "--samples", 128).out)
+    assert plan["rows"] == 128
+    assert plan["pilot"]["failed"] > 0
+    assert set(plan) == {
+        "rows",
+        "workers",
+        "pilot",
+        "row_seconds",
+        "seconds",
+        "disk",
+        "widths",
+    }
+    assert plan["disk"]["run"] >= plan["disk"]["result"] > 0
+    assert plan["widths"]["y"]["mean"] > 0

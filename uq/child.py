@@ -1,0 +1,120 @@
+"""A process that computes rows for the one that started it: ``python -m uq.child HANDLE``.
+
+A kernel may crash it or never return; then the other one ends it and starts another.
+"""
+
+import os
+import sys
+import threading
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.errors import InputError
+from uq.evaluate import evaluate
+from uq.registry import find_model
+
+
+class Task(NamedTuple):
+    """What a child is for: one model with its settings.
+
+    Attributes
+    ----------
+    model : str
+        What `uq.registry.find_model` finds it by.
+    version : str
+        Which version of it is wanted.
+    settings : tuple of (str, object)
+        Names and values.
+    """
+
+    model: str
+    version: str
+    settings: tuple[tuple[str, Any], ...]
+
+
+class Request(NamedTuple):
+    """Rows to be computed; see `uq.evaluate.evaluate`."""
+
+    x: NDArray[np.float64]
+    seed: NDArray[np.uint64]
+    start: int
+
+
+READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "done", "refused"
+"""What a child says; with the last two goes a chunk or an exception."""
+
+
+def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> None:
+    """End this process, from a thread, when the pipe that is its standard input closes.
+
+    It does so when the process that holds the other end stops, however that ends.
+    """
+
+    def wait() -> None:
+        # From the file descriptor: a thread inside sys.stdin would hold its lock for ever.
+        while os.read(0, 1024):
+            pass
+        cleanup()
+        os._exit(0)
+
+    threading.Thread(target=wait, daemon=True).start()
+
+
+def main(handle: str) -> None:
+    """Answer the requests that arrive on a connection until it closes."""
+    end_with_parent()
+    connection = Connection(int(handle))
+    task: Task = connection.recv()
+    try:
+        model = find_model(task.model)
+        if model.version != task.version:
+            raise InputError(
+                f"a worker has version {model.version} of model '{model.name}', "
+                f"this process has {task.version}: install the same on both"
+            )
+        settings = model.settings(**dict(task.settings))
+    except Exception as error:
+        connection.send((REFUSED, error))
+        return
+    _tell_of_compilation(connection)
+    connection.send((READY, None))
+    while True:
+        request: Request = connection.recv()
+        try:
+            answer: Any = DONE, evaluate(model, settings, *request)
+        except Exception as error:
+            answer = REFUSED, error
+        connection.send(answer)
+
+
+def _tell_of_compilation(connection: Connection) -> None:
+    """Say when numba compiles: that is no part of the time a row takes."""
+    if "numba" not in sys.modules:
+        return
+    from numba.core import event
+
+    class Compilation(event.Listener):
+        depth = 0
+
+        def on_start(self, event: Any) -> None:
+            self.depth += 1
+            if self.depth == 1:
+                connection.send((COMPILING, None))
+
+        def on_end(self, event: Any) -> None:
+            self.depth -= 1
+            if self.depth == 0:
+                connection.send((COMPILED, None))
+
+    event.register("numba:compile", Compilation())
+
+
+if __name__ == "__main__":
+    try:
+        main(sys.argv[1])
+    except (EOFError, OSError):  # the connection closed: nobody wants an answer
+        sys.exit(0)

@@ -1,0 +1,74 @@
+"""What ``uq plan`` does."""
+
+from typing import Any
+
+from uq.cli.catalogue import finite
+from uq.cli.printing import console, grid, heading, number, paragraph, print_json
+from uq.planning import Cost, pilot
+from uq.results import failed
+from uq.study import load_study
+from uq.widths import expected_widths
+
+_INDICES = ("S1", "ST")
+
+
+def plan(
+    path: str, model: str | None, samples: int | None, workers: int | None, json: bool
+) -> None:
+    """Run a few rows of a study, and show what all of them will take and tell."""
+    study = load_study(path, model)
+    if samples is not None:
+        study = study.with_samples(samples)
+    cost, ds = pilot(study, workers)
+    found = {
+        "rows": cost.rows,
+        "workers": cost.workers,
+        "pilot": {"rows": cost.pilot_rows, "failed": int(failed(ds).sum())},
+        "row_seconds": cost.row_seconds,
+        "seconds": cost.seconds,
+        "disk": {"result": cost.result_bytes, "run": cost.run_bytes},
+        "widths": expected_widths(ds),
+    }
+    print_json(finite(found)) if json else _show(path, study.description, cost, found)
+
+
+def _show(path: str, description: str, cost: Cost, found: dict[str, Any]) -> None:
+    heading(path, description)
+    processes = "one process" if cost.workers == 1 else f"{cost.workers} processes"
+    failures = found["pilot"]["failed"]
+    told = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
+    grid(
+        [
+            ("rows", str(cost.rows), told),
+            ("a row", f"{cost.row_seconds:.3g} s", "of one process"),
+            ("time", _clock(cost.seconds), f"with {processes}, once the model is compiled"),
+            ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
+        ]
+    )
+    heading("\nExpected width of the 95 % intervals")
+    for name, entry in found["widths"].items():
+        unit = "" if entry["units"] == "1" else f" [{entry['units']}]"
+        heading(f"\n{name}{unit}")
+        lines = [("mean", number(entry["mean"]))]
+        lines += [(f"quantile {p}", number(width)) for p, width in entry["quantiles"].items()]
+        lines += [(f"P(> {t})", number(width)) for t, width in entry["thresholds"].items()]
+        lines += [(f"{k}, the widest", number(entry[k])) for k in _INDICES if k in entry]
+        grid(lines)
+    if any(entry["mean"] is None for entry in found["widths"].values()):
+        console.print()
+        paragraph("A dash: not from so few rows, or not from this design.", indent=0)
+
+
+def _clock(seconds: float) -> str:
+    if seconds < 120:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 120 else f"{seconds / 3600:.1f} h"
+
+
+def _size(count: int) -> str:
+    for unit in ("B", "kB", "MB"):
+        if count < 1000:
+            return f"{count:.3g} {unit}"
+        count //= 1000
+    return f"{count:.3g} GB"

@@ -1,0 +1,38 @@
+"""What makes another process import and compile as this one does."""
+
+import os
+import sys
+from typing import Any
+
+from uq.threads import SINGLE_THREADED
+
+
+def command(module: str, *arguments: str) -> list[str]:
+    """Return the command that runs a module in another process of this Python."""
+    # -P: the folder one works in is searched only where this process searches it.
+    return [sys.executable, "-P", "-m", module, *arguments]
+
+
+def inherited() -> dict[str, str]:
+    """Return the environment of a process that is to give the bits of this one."""
+    environment = dict(os.environ) | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    return SINGLE_THREADED | environment | _numba_settings()
+
+
+def _numba_settings() -> dict[str, str]:
+    """Return the instruction set and cache that numba uses in this process, if it is loaded.
+
+    It reads the environment once, at import: what the environment says now may be something else.
+    """
+    if "numba" not in sys.modules:
+        return {}
+    import numba
+    from numba.core.registry import cpu_target
+
+    config: Any = numba.config
+    _, cpu, features = cpu_target.target_context.codegen().magic_tuple()
+    return {
+        "NUMBA_CPU_NAME": cpu,
+        "NUMBA_CPU_FEATURES": features,
+        "NUMBA_CACHE_DIR": config.CACHE_DIR,
+    }
