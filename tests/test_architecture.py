@@ -55,11 +55,12 @@ LAYERS = {
         "intervals",
         "lifetime",
         "morris",
+        "realised",
         "sobol",
         "statistics",
         "targets",
     },
-    "drawing": {"figure", "index_plot", "plots"},
+    "drawing": {"figure", "index_plot", "input_plot", "plots"},
     "command": {"cli"},
 }
 """The modules of ``uq``, from the ground up: a layer may use itself and what lies below it."""

@@ -75,7 +75,7 @@ def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
     lines = [] if text.endswith("\n") else [""]
     for file, table in columns.items():
         if file not in kept:
-            lines += ["", "# Kept by uq, so that this text is complete.", f"[data.{key(file)}]"]
+            lines += ["# Kept by uq, so that this text is complete.", f"[data.{key(file)}]"]
             lines += [f"{key(column)} = '{numbers}'" for column, numbers in table.items()]
     return "\n".join([text, *lines, ""]) if any(lines) else text
 

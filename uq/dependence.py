@@ -77,7 +77,9 @@ def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> MatrixProblem | Non
             return MatrixProblem(f"must be the same as [{j}][{i}] = {ranks[j][i]!r}", (i, j))
     if _is_definite(normal_correlations(ranks)):
         return None
-    return MatrixProblem(f"no inputs can have these rank correlations together; {_remedy(ranks)}")
+    return MatrixProblem(
+        f"no inputs can have these rank correlations together; {_remedy(names, ranks)}"
+    )
 
 
 def correlated(u: Points, ranks: Matrix) -> Points:
@@ -112,7 +114,7 @@ def _is_definite(matrix: Floats) -> bool:
     return bool(np.linalg.eigvalsh(matrix)[0] > _LEAST_EIGENVALUE)
 
 
-def _remedy(ranks: Matrix) -> str:
+def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
     """Say what would mend a matrix: one entry if that is enough, else how much weaker all must be.
 
     With all other entries given, one entry may lie within the sum and difference of what the other
@@ -130,13 +132,14 @@ def _remedy(ranks: Matrix) -> str:
         half = np.sqrt((1 - both[0, 0]) * (1 - both[1, 1]))
         ends = both[0, 1] + np.array([-half, half])
         thousandths = 6000 / np.pi * np.arcsin(np.clip(ends, -1, 1) / 2)
-        low, high = np.ceil(thousandths[0]) / 1000, np.floor(thousandths[1]) / 1000
+        low, high = np.clip([np.ceil(thousandths[0]), np.floor(thousandths[1])], -999, 999) / 1000
         if low < high:
             found.append((max(low - ranks[i][j], ranks[i][j] - high), i, j, low, high))
     if found:
         _, i, j, low, high = min(found)
         between = f"between {low:.3f} and {high:.3f}"
-        return f"with the others, [{i}][{j}] = {ranks[i][j]!r} must lie {between}"
+        which = f"that of '{names[i]}' with '{names[j]}', {ranks[i][j]!r},"
+        return f"as the others are, {which} must lie {between}"
     return f"they are possible if all but the diagonal are multiplied by {_most(ranks):.2f} or less"
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from uq.curves import LEAST_POINTS, fast_curves, random_balance
 from uq.streams import Points, generator, inside, replicate_seed
-from uq.trajectories import morris_trajectories
+from uq.trajectories import morris_trajectories, optimised_trajectories
 
 MAX_SAMPLES = 2**30
 """Points of one replicate: what the 30 bits of a Sobol' sequence can tell apart."""
@@ -250,6 +250,15 @@ DESIGNS = {
     "morris": Design(
         "trajectories that change one input at a time, for screening with few rows",
         morris_trajectories,
+        ("morris",),
+        append_only=False,
+        labels=_steps,
+        follows_laws=False,
+        least=2,
+    ),
+    "morris-optimised": Design(
+        "trajectories chosen far apart, which favours the corners of the inputs",
+        optimised_trajectories,
         ("morris",),
         append_only=False,
         labels=_steps,

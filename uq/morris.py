@@ -17,6 +17,10 @@ MIN_TRAJECTORIES = 4
 """Fewer trajectories than this give no mean worth the name."""
 
 _ROUNDING = 1e-12
+_CORNERS = (
+    "trajectories chosen far apart favour the corners of the inputs: the effects are theirs, tens"
+    " of per cent off those of all trajectories, which the design 'morris' estimates"
+)
 
 
 class Trajectories(NamedTuple):
@@ -30,11 +34,14 @@ class Trajectories(NamedTuple):
         The inputs that change, d of them.
     direction : ndarray, shape (R, N, d, d)
         Whether a step (third axis) raises an input (last axis), 1, lowers it, -1, or neither, 0.
+    optimised : bool
+        Whether they were chosen far apart.
     """
 
     order: NDArray[np.intp]
     parameters: tuple[str, ...]
     direction: Floats
+    optimised: bool
 
     def whole(self, values: Floats) -> NDArray[np.bool_]:
         """Return which trajectories, shape (R, N), have a value at each of their points."""
@@ -63,7 +70,8 @@ def trajectories(ds: xr.Dataset) -> Trajectories:
     x = np.stack([values[order] for values in inputs.values()], axis=-1)
     change = np.diff(x, axis=2)
     change[np.abs(change) <= _ROUNDING * np.abs(x).max(axis=(0, 1, 2))] = 0.0
-    return Trajectories(order, tuple(inputs), np.sign(change))
+    optimised = ds.attrs["design"] == "morris-optimised"
+    return Trajectories(order, tuple(inputs), np.sign(change), optimised)
 
 
 def morris_indices(design: Trajectories, values: Floats) -> Indices:
@@ -89,8 +97,9 @@ def morris_indices(design: Trajectories, values: Floats) -> Indices:
 
     Notes
     -----
-    Trajectories that lie far apart favour the corners. The intervals are of what such trajectories
-    give on average, which may differ from the mean over all trajectories by tens of per cent.
+    Trajectories chosen far apart favour the corners. There the intervals are of what such
+    trajectories give on average, which differs from the mean over all trajectories by tens of per
+    cent; a note says so.
 
     References
     ----------
@@ -112,7 +121,7 @@ def morris_indices(design: Trajectories, values: Floats) -> Indices:
 
     replicates = [own[rows] for own, rows in zip(effects, whole, strict=True)]
     scatter: list[dict[str, Floats]] = []
-    notes = ["trajectories are chosen far apart: they favour the corners of the inputs"]
+    notes = [_CORNERS] if design.optimised else []
     if len(replicates) == 1:
         notes.append("no intervals: with replicates = 1 nothing shows the scatter of the effects")
     elif any(len(own) < 2 for own in replicates):
