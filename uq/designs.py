@@ -114,7 +114,7 @@ class Design:
         if self.append_only:
             return None
         able = ", ".join(name for name, other in DESIGNS.items() if other.append_only)
-        return f"cannot be extended: with more samples all rows change (those that can: {able})"
+        return f"cannot be extended; designs that can: {able}"
 
 
 def cross(a: Points, b: Points, second_order: bool) -> Points:
