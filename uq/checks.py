@@ -3,11 +3,9 @@
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from uq.conditioning import law_problem
 from uq.contract import Model
 from uq.designs import DESIGNS
 from uq.faults import Fault
-from uq.study_file import LAW
 from uq.values import parameter_problem, read_settings, unknown_name
 
 Tables = Mapping[str, Mapping[str, Any]]
@@ -15,7 +13,7 @@ Tables = Mapping[str, Mapping[str, Any]]
 
 
 def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Iterator[Fault]:
-    """Yield what does not suit the model.
+    """Yield what does not suit the model, but for the laws of its parameters.
 
     Parameters
     ----------
@@ -33,11 +31,6 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     for name, value in tables["fixed"].items():
         if name in model.parameter_names and (problem := parameter_problem(model, name, value)):
             yield Fault(("fixed", name), problem, value)
-    for name, table in tables["uncertain"].items():
-        if name in model.parameter_names:
-            law = LAW.validate_python(table)
-            if unsuited := law_problem(law, model.parameter(name)):
-                yield Fault(("uncertain", name, *unsuited.argument), unsuited.text, unsuited.value)
     given = tables["settings"]
     for name, text in read_settings(model, given)[1].items():
         yield Fault(("settings", name), text, given[name]) if name else Fault(("settings",), text)
@@ -95,8 +88,18 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
             f" use method = {able}, or leave the bound out",
             analysis["tolerance"],
         )
+    dependent = bool(tables["dependence"])
+    if dependent and not design.feeds_with(dependent):
+        return  # told at the design
     for name in analysis.get("sensitivity", ()):
-        if name not in design.feeds:
+        if dependent and name in design.feeds and name not in design.feeds_with(dependent):
+            yield Fault(
+                ("analysis", "sensitivity"),
+                "supposes independent inputs, and [dependence] says they are not; those that do not"
+                f" are {_names(design.feeds_with(dependent))}",
+                name,
+            )
+        elif name not in design.feeds:
             able = _names(key for key, other in DESIGNS.items() if name in other.feeds)
             yield Fault(
                 ("analysis", "sensitivity"),

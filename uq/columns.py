@@ -80,7 +80,7 @@ def failed_rows(
     """
     incomplete = np.zeros(len(status), dtype=np.bool_)
     for kind, values in required:
-        incomplete |= lacking(kind, values).reshape(len(status), -1).any(axis=1)
+        incomplete |= lacking(kind, values).any(axis=tuple(range(1, values.ndim)))
     return np.where(status == Status.OUT_OF_BUDGET, incomplete, status != Status.OK)
 
 

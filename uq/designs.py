@@ -11,9 +11,10 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Points = NDArray[np.float64]
+from uq.curves import LEAST_POINTS, fast_curves, random_balance
+from uq.streams import Points, generator, inside, replicate_seed
+from uq.trajectories import morris_trajectories, optimised_trajectories
 
 MAX_SAMPLES = 2**30
 """Points of one replicate: what the 30 bits of a Sobol' sequence can tell apart."""
@@ -27,10 +28,11 @@ class Design:
     ----------
     meaning : str
         One line for a reader of the study file.
-    draw : callable
+    draw : callable or None
         ``draw(seed, replicates, d, samples, start, stop)`` -> points start..stop of each replicate,
-        shape (stop - start, replicates, d), the same bits for any start and stop. Replicates are
-        independent. A crossed design draws 2 d columns.
+        shape (stop - start, replicates, [blocks,] d), the same bits for any start and stop.
+        Replicates are independent. A crossed design draws 2 d columns. None: the rows are
+        imported.
     feeds : tuple of str
         The sensitivity methods that can use its rows, the default first.
     append_only : bool
@@ -41,21 +43,36 @@ class Design:
         Whether rows are independent, which formulas for confidence and tolerance bounds need.
     crossed : bool
         Whether each point becomes a group of rows A, AB_1 .. AB_d, (BA_1 .. BA_d,) B.
+    labels : callable or None
+        ``labels(parameters)`` -> the names of the rows of a group, where a design draws groups.
+    follows_laws : bool
+        Whether the rows of a replicate, A and B of a crossed design, are spread as the laws say.
+    least : int
+        The smallest number of samples.
     """
 
     meaning: str
-    draw: Callable[[int, int, int, int, int, int], Points]
+    draw: Callable[[int, int, int, int, int, int], Points] | None
     feeds: tuple[str, ...]
     append_only: bool = True
     power_of_two: bool = False
     independent: bool = False
     crossed: bool = False
+    labels: Callable[[tuple[str, ...]], tuple[str, ...]] | None = None
+    follows_laws: bool = True
+    least: int = 1
 
     def blocks(self, d: int, second_order: bool) -> int:
         """Return the number of rows in a group."""
+        if self.labels is not None:
+            return len(self.labels(("",) * d))
         if not self.crossed:
             return 1
         return 2 * d + 2 if second_order else d + 2
+
+    def feeds_with(self, dependent: bool) -> tuple[str, ...]:
+        """Return the methods it feeds, where the inputs are dependent or not."""
+        return tuple(name for name in self.feeds if not dependent or name in FOR_DEPENDENT_INPUTS)
 
     def unit_rows(
         self,
@@ -75,19 +92,29 @@ class Design:
         ndarray, shape (stop - start, replicates, blocks, d)
             Inside the open unit cube.
         """
+        assert self.draw is not None, "imported rows are not drawn"
         if not self.crossed:
-            return self.draw(seed, replicates, d, samples, start, stop)[:, :, None, :]
+            points = self.draw(seed, replicates, d, samples, start, stop)
+            return points.reshape(stop - start, replicates, self.blocks(d, False), d)
         points = self.draw(seed, replicates, 2 * d, samples, start, stop)
         return cross(points[..., :d], points[..., d:], second_order)
 
     def size_problem(self, samples: int) -> str | None:
         """Say why `samples` is not a legal size, or return None."""
-        if not 1 <= samples <= MAX_SAMPLES:
-            return f"must be between 1 and {MAX_SAMPLES}"
+        if not self.least <= samples <= MAX_SAMPLES:
+            return f"must be between {self.least} and {MAX_SAMPLES}"
         legal = 1 << (samples - 1).bit_length()
         if self.power_of_two and samples != legal:
             return f"must be a power of two; the next is {legal}"
         return None
+
+    @property
+    def extension_problem(self) -> str | None:
+        """Say why rows cannot be appended to a result of this design, or return None."""
+        if self.append_only:
+            return None
+        able = ", ".join(name for name, other in DESIGNS.items() if other.append_only)
+        return f"cannot be extended; designs that can: {able}"
 
 
 def cross(a: Points, b: Points, second_order: bool) -> Points:
@@ -118,23 +145,20 @@ def cross(a: Points, b: Points, second_order: bool) -> Points:
 
 
 def block_names(design: Design, parameters: tuple[str, ...], second_order: bool) -> tuple[str, ...]:
-    """Return the name of each block of a group, in row order; ``("sample",)`` if uncrossed."""
+    """Return the name of each block of a group, in row order; ``("sample",)`` without groups."""
+    if design.labels is not None:
+        return design.labels(parameters)
     if not design.crossed:
         return ("sample",)
     mirrored = [f"BA_{name}" for name in parameters] if second_order else []
     return ("A", *(f"AB_{name}" for name in parameters), *mirrored, "B")
 
 
-def replicate_seed(seed: int, replicate: int) -> np.random.SeedSequence:
-    """Return the seed of one replicate: a stream of its own for each (seed, replicate)."""
-    return np.random.SeedSequence(entropy=seed, spawn_key=(replicate,))
-
-
 def _monte_carlo(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
     def points(replicate: int) -> Points:
         bits = np.random.PCG64(replicate_seed(seed, replicate))
         bits.advance(start * d)  # one step of the generator per number
-        return _inside(np.random.Generator(bits).random((stop - start, d)), 2.0**-54)
+        return inside(np.random.Generator(bits).random((stop - start, d)))
 
     return np.stack([points(replicate) for replicate in range(replicates)], axis=1)
 
@@ -150,9 +174,9 @@ def _whole_latin_hypercube(seed: int, replicates: int, d: int, samples: int) -> 
     from scipy.stats import qmc
 
     engines = [
-        qmc.LatinHypercube(d, rng=_generator(seed, replicate)) for replicate in range(replicates)
+        qmc.LatinHypercube(d, rng=generator(seed, replicate)) for replicate in range(replicates)
     ]
-    points = np.stack([_inside(engine.random(samples), 2.0**-54) for engine in engines], axis=1)
+    points = np.stack([inside(engine.random(samples)) for engine in engines], axis=1)
     points.setflags(write=False)
     return points
 
@@ -163,7 +187,7 @@ def _sobol(seed: int, replicates: int, d: int, samples: int, start: int, stop: i
         n = stop - start
         first = engine.random(min(n, 1)) if start == 0 else engine.fast_forward(start).random(0)
         rest = engine.random(n - len(first))
-        return _inside(np.concatenate([first, rest]), 2.0**-31)  # half of the last of 30 bits
+        return inside(np.concatenate([first, rest]), 2.0**-31)  # half of the last of 30 bits
 
     return np.stack([points(engine) for engine in _sequences("Sobol", seed, replicates, d)], axis=1)
 
@@ -171,7 +195,7 @@ def _sobol(seed: int, replicates: int, d: int, samples: int, start: int, stop: i
 def _halton(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
     def points(engine: Any) -> Points:
         engine.num_generated = start  # its fast_forward would compute all points before
-        return _inside(engine.random(stop - start), 2.0**-54)
+        return inside(engine.random(stop - start))
 
     return np.stack(
         [points(engine) for engine in _sequences("Halton", seed, replicates, d)], axis=1
@@ -188,17 +212,19 @@ def _sequences(name: str, seed: int, replicates: int, d: int) -> list[Any]:
 def _scrambled(name: str, seed: int, replicate: int, d: int) -> Any:
     from scipy.stats import qmc
 
-    return getattr(qmc, name)(d, rng=_generator(seed, replicate))
+    return getattr(qmc, name)(d, rng=generator(seed, replicate))
 
 
-def _generator(seed: int, replicate: int) -> np.random.Generator:
-    return np.random.default_rng(replicate_seed(seed, replicate))
+def _steps(parameters: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(f"step_{i}" for i in range(len(parameters) + 1))
 
 
-def _inside(points: Points, smallest: float) -> Points:
-    """Move the corner cases 0 and 1 inside, where every law has a finite quantile."""
-    return np.clip(points, smallest, 1.0 - 2.0**-53, out=points)
+def _curves(parameters: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(f"curve_{name}" for name in parameters)
 
+
+FOR_DEPENDENT_INPUTS = ("delta", "pawn")
+"""Sensitivity methods that do not suppose the inputs to be independent."""
 
 _GIVEN_DATA = ("rbd-fast", "delta", "pawn")
 
@@ -220,5 +246,43 @@ DESIGNS = {
         ("sobol",),
         power_of_two=True,
         crossed=True,
+    ),
+    "morris": Design(
+        "trajectories that change one input at a time, for screening with few rows",
+        morris_trajectories,
+        ("morris",),
+        append_only=False,
+        labels=_steps,
+        follows_laws=False,
+        least=2,
+    ),
+    "morris-optimised": Design(
+        "trajectories chosen far apart, which favours the corners of the inputs",
+        optimised_trajectories,
+        ("morris",),
+        append_only=False,
+        labels=_steps,
+        follows_laws=False,
+        least=2,
+    ),
+    "fast": Design(
+        "a curve through the inputs for each of them, for extended FAST",
+        fast_curves,
+        ("fast",),
+        append_only=False,
+        labels=_curves,
+        least=LEAST_POINTS,
+    ),
+    "rbd-fast": Design(
+        "one curve shuffled for each input, for RBD-FAST",
+        random_balance,
+        _GIVEN_DATA,
+        append_only=False,
+    ),
+    "imported": Design(
+        "the rows of a CSV or netCDF file, in the parameters' units",
+        None,
+        FOR_DEPENDENT_INPUTS,
+        append_only=False,
     ),
 }

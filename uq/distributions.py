@@ -4,56 +4,16 @@ Each law is a small frozen table as it stands in a study file, and names its `sc
 counterpart. To add one: write the class, add it to `Law`, state its moments in the tests.
 """
 
-from math import exp, inf, log, log1p, sqrt
-from typing import Annotated, Any, ClassVar, Literal, Self
+from math import exp, log, log1p, sqrt
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
-Positive = Annotated[float, Field(gt=0)]
-Scipy = tuple[str, dict[str, float]]
-
-
-class _Law(BaseModel):
-    """A continuous law of one variable; arguments in the parameter's unit."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
-
-    _ascending: ClassVar[tuple[str, ...]] = ()
-
-    source: str = Field("", description="where the numbers come from; shown in every result")
-
-    def frozen(self) -> Any:
-        """Return the law as a frozen `scipy.stats` distribution."""
-        from scipy import stats
-
-        name, arguments = self._scipy()
-        return getattr(stats, name)(**arguments)
-
-    def parent(self) -> tuple[Any, float, float]:
-        """Return the frozen law before any truncation, and the ends of the truncation.
-
-        Quantiles of a truncated law are best computed from its parent's: faster, and accurate in
-        both tails.
-        """
-        return self.frozen(), -inf, inf
-
-    def _scipy(self) -> Scipy:
-        raise NotImplementedError
-
-    @model_validator(mode="after")
-    def _check_order(self) -> Self:
-        names = self._ascending
-        values = [getattr(self, name) for name in names]
-        if values and (values != sorted(values) or values[0] == values[-1]):
-            wanted = " <= ".join(names) if len(names) > 2 else " < ".join(names)
-            given = ", ".join(
-                f"{name} = {value!r}" for name, value in zip(names, values, strict=True)
-            )
-            raise ValueError(f"must have {wanted}: {given}")
-        return self
+from uq.law import BaseLaw, Positive, Scipy
+from uq.observed import DiscreteChoice, Empirical, Histogram, IntegerRange
 
 
-class Uniform(_Law):
+class Uniform(BaseLaw):
     """Equally likely everywhere between two ends."""
 
     _ascending = ("lower", "upper")
@@ -66,7 +26,7 @@ class Uniform(_Law):
         return "uniform", {"loc": self.lower, "scale": self.upper - self.lower}
 
 
-class LogUniform(_Law):
+class LogUniform(BaseLaw):
     """Equally likely in every octave between two positive ends."""
 
     _ascending = ("lower", "upper")
@@ -79,7 +39,7 @@ class LogUniform(_Law):
         return "loguniform", {"a": self.lower, "b": self.upper}
 
 
-class Normal(_Law):
+class Normal(BaseLaw):
     """Gaussian law of a mean and a standard deviation."""
 
     distribution: Literal["normal"]
@@ -90,7 +50,7 @@ class Normal(_Law):
         return "norm", {"loc": self.mean, "scale": self.sd}
 
 
-class TruncatedNormal(_Law):
+class TruncatedNormal(BaseLaw):
     """Gaussian law, with mean and sd before the cut, given that it falls between two ends."""
 
     _ascending = ("lower", "upper")
@@ -113,10 +73,11 @@ class TruncatedNormal(_Law):
         """Return the normal law before the cut, and the ends of the cut."""
         from scipy import stats
 
-        return stats.norm(self.mean, self.sd), self.lower, self.upper
+        lower, upper = self.truncate or (self.lower, self.upper)
+        return stats.norm(self.mean, self.sd), max(lower, self.lower), min(upper, self.upper)
 
 
-class LogNormal(_Law):
+class LogNormal(BaseLaw):
     """Law whose logarithm is Gaussian, by mean and cv or by median and sigma."""
 
     model_config = ConfigDict(
@@ -146,7 +107,7 @@ class LogNormal(_Law):
         return "lognorm", {"s": self.sigma, "scale": self.median}
 
 
-class Triangular(_Law):
+class Triangular(BaseLaw):
     """Linear rise from one end to the mode, linear fall to the other."""
 
     _ascending = ("lower", "mode", "upper")
@@ -165,7 +126,27 @@ class Triangular(_Law):
         }
 
 
-class Beta(_Law):
+class Pert(BaseLaw):
+    """Smooth bell between two ends: a beta law of mean (lower + 4 mode + upper) / 6."""
+
+    _ascending = ("lower", "mode", "upper")
+
+    distribution: Literal["pert"]
+    lower: float
+    mode: float
+    upper: float
+
+    def _scipy(self) -> Scipy:
+        width = self.upper - self.lower
+        return "beta", {
+            "a": 1 + 4 * (self.mode - self.lower) / width,
+            "b": 1 + 4 * (self.upper - self.mode) / width,
+            "loc": self.lower,
+            "scale": width,
+        }
+
+
+class Beta(BaseLaw):
     """Beta law of two shapes, stretched between two ends."""
 
     _ascending = ("lower", "upper")
@@ -185,7 +166,7 @@ class Beta(_Law):
         }
 
 
-class Weibull(_Law):
+class Weibull(BaseLaw):
     """Weibull law: P(X > x) = exp(-(x/scale)^shape)."""
 
     distribution: Literal["weibull"]
@@ -196,7 +177,7 @@ class Weibull(_Law):
         return "weibull_min", {"c": self.shape, "scale": self.scale}
 
 
-class Gamma(_Law):
+class Gamma(BaseLaw):
     """Gamma law of mean shape * scale and variance shape * scale^2."""
 
     distribution: Literal["gamma"]
@@ -207,6 +188,27 @@ class Gamma(_Law):
         return "gamma", {"a": self.shape, "scale": self.scale}
 
 
+class Gumbel(BaseLaw):
+    """Law of largest values: P(X <= x) = exp(-exp(-(x - mode)/scale))."""
+
+    distribution: Literal["gumbel"]
+    mode: float
+    scale: Positive
+
+    def _scipy(self) -> Scipy:
+        return "gumbel_r", {"loc": self.mode, "scale": self.scale}
+
+
+class Exponential(BaseLaw):
+    """Law without memory: P(X > x) = exp(-x/mean)."""
+
+    distribution: Literal["exponential"]
+    mean: Positive
+
+    def _scipy(self) -> Scipy:
+        return "expon", {"scale": self.mean}
+
+
 Law = Annotated[
     Uniform
     | LogUniform
@@ -214,8 +216,15 @@ Law = Annotated[
     | TruncatedNormal
     | LogNormal
     | Triangular
+    | Pert
     | Beta
     | Weibull
-    | Gamma,
+    | Gamma
+    | Gumbel
+    | Exponential
+    | DiscreteChoice
+    | IntegerRange
+    | Empirical
+    | Histogram,
     Field(discriminator="distribution"),
 ]

@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.columns import censored_name, lacking
+from uq.designs import DESIGNS
 from uq.errors import InputError, nearest
 from uq.reading import read_study_text
 from uq.results import elements, failed
@@ -87,9 +88,13 @@ def analysis_of(ds: xr.Dataset) -> AnalysisTable:
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
     """Return the rows for plain statistics: A and B of a crossed design, all rows of others.
 
-    The mixed blocks of a crossed design repeat the numbers of A and B.
+    The mixed blocks of a crossed design repeat the numbers of A and B. Where the rows do not follow
+    the laws of the inputs there are none.
     """
-    plain = [code for code, label in flags(ds["block"]) if label in ("A", "B", "sample")]
+    design = DESIGNS[ds.attrs["design"]]
+    mixed = ("AB_", "BA_") if design.crossed else ()
+    labels = flags(ds["block"]) if design.follows_laws else []
+    plain = [code for code, label in labels if not label.startswith(mixed)]
     chosen = np.isin(ds["block"].values, plain)
     return ds if chosen.all() else ds.isel(sample=chosen)
 

@@ -18,6 +18,8 @@ _MEANING = {
     "ST": "with all interactions (ST)",
     "delta": "Borgonovo's delta",
     "pawn": "PAWN, median",
+    "sigma": "scatter of effects (sigma)",
+    "mu_star": "mean magnitude of effects (mu*)",
 }
 
 
@@ -84,11 +86,14 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
         axes.axvline(limit, color="black", ls="--", lw=0.8, label=label)
     axes.axvline(0, color="black", lw=0.6)
     # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
-    low, high = axes.get_xlim()
-    axes.set_xlim(max(low, -0.25), min(high, 1.25))
+    shares = "mu_star" not in kinds
+    if shares:
+        low, high = axes.get_xlim()
+        axes.set_xlim(max(low, -0.25), min(high, 1.25))
     axes.set_yticks(range(len(labels)), labels)
     known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
-    axes.set_xlabel("Sensitivity index [1]" + known * ",\nwith 95 % interval")
+    subject = "Sensitivity index [1]" if shares else "Effect, in the unit of the output"
+    axes.set_xlabel(subject + known * ",\nwith 95 % interval")
     figure.suptitle(_subject(ds, name), x=0.01, ha="left", fontsize=8)
     legend(axes)
     return figure

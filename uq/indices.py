@@ -1,5 +1,6 @@
 """Which inputs an output's scatter comes from: every method, for a result as a whole."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,14 +10,25 @@ from numpy.typing import NDArray
 from uq.designs import DESIGNS
 from uq.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.errors import InputError, nearest
+from uq.fast import curves, fast_indices
 from uq.given_data import given_data_indices
+from uq.independent_inputs import are_dependent, independent_inputs, notes_on_inputs
+from uq.morris import morris_indices, trajectories
 from uq.sobol import crossed, sobol_indices
 from uq.targets import Index, Indices, RefusedError, Target, targets
+
+_GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
+    "sobol": (crossed, sobol_indices),
+    "morris": (trajectories, morris_indices),
+    "fast": (curves, fast_indices),
+}
+"""Methods whose rows belong together: what finds them in a result, and the estimate from them."""
 
 
 def methods(ds: xr.Dataset) -> tuple[str, ...]:
     """Return the methods that the study asks for, or else the first that its design can feed."""
-    return analysis_of(ds).sensitivity or DESIGNS[ds.attrs["design"]].feeds[:1]
+    feeds = DESIGNS[ds.attrs["design"]].feeds_with(are_dependent(ds))
+    return analysis_of(ds).sensitivity or feeds[:1]
 
 
 def sensitivities(
@@ -133,22 +145,20 @@ class _Found(NamedTuple):
 def _estimate(ds: xr.Dataset, method: str | None, output: str | None) -> tuple[str, list[_Found]]:
     method = method or methods(ds)[0]
     _check_method(ds, method)
-    design = crossed(ds) if method == "sobol" else None
-    inputs = {
-        str(name): variable.values
-        for name, variable in ds.data_vars.items()
-        if variable.attrs["role"] == "input"
-    }
+    find, estimate = _GROUPED.get(method, (None, None))
+    design = find(ds) if find else None
+    inputs, notes = independent_inputs(ds), tuple(notes_on_inputs(ds))
     found = []
     for target in _chosen(ds, output):
         indices: Indices | str
         try:
             if target.refused:
                 raise RefusedError(target.refused)
-            if design is None:
+            if estimate is None:
                 indices = given_data_indices(method, inputs, target.values)
             else:
-                indices = sobol_indices(design, target.values)
+                indices = estimate(design, target.values)
+            indices = indices._replace(notes=indices.notes + notes)
         except RefusedError as refusal:
             indices = str(refusal)
         whole = np.isfinite(target.values) if design is None else design.whole(target.values)
@@ -158,9 +168,14 @@ def _estimate(ds: xr.Dataset, method: str | None, output: str | None) -> tuple[s
 
 def _check_method(ds: xr.Dataset, method: str) -> None:
     design = ds.attrs["design"]
-    feeds = DESIGNS[design].feeds
+    feeds = DESIGNS[design].feeds_with(are_dependent(ds))
     if method in feeds:
         return
+    if method in DESIGNS[design].feeds:
+        raise InputError(
+            f"method '{method}' supposes independent inputs, and those of this study are not;"
+            f" use {' or '.join(feeds)}"
+        )
     able = [name for name, other in DESIGNS.items() if method in other.feeds]
     if not able:
         known = sorted({name for other in DESIGNS.values() for name in other.feeds})

@@ -32,6 +32,7 @@ from uq.figure import (
 )
 from uq.index_plot import bars
 from uq.indices import methods, sensitivities
+from uq.input_plot import inputs
 from uq.lifetime import survival
 from uq.time_units import time_unit
 
@@ -70,7 +71,8 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
 def _figures(ds: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     kinds = {output: ds[output].attrs["kind"] for output in shown_outputs(ds, analysis_of(ds))}
     numbers = {output: kind for output, kind in kinds.items() if kind != "category"}
-    for output, kind in numbers.items():
+    drawn = numbers if independent_rows(ds).sizes["sample"] else {}
+    for output, kind in drawn.items():
         if kind == "lifetime":
             yield file_name("lifetime", output), lifetime(ds, output)
         else:
@@ -79,6 +81,8 @@ def _figures(ds: xr.Dataset) -> Iterator[tuple[str, Figure]]:
         for name, entry in sensitivities(ds, method)["outputs"].items():
             if "refused" not in entry:
                 yield file_name(method, name), bars(ds, name, entry)
+    if numbers and (figure := inputs(ds)) is not None:
+        yield "inputs", figure
 
 
 @styled

@@ -7,7 +7,8 @@ from pydantic import BaseModel, ValidationError
 
 from uq.errors import InputError, nearest
 from uq.faults import Fault
-from uq.study_file import LAWS, StudyFile, Tolerance
+from uq.law import BaseLaw
+from uq.study_file import LAWS, DependenceTable, StudyFile, Tied, Tolerance
 
 
 def read_study_text(text: str, source: str = "study") -> StudyFile:
@@ -95,7 +96,9 @@ def _remove(entries: Any, path: tuple[str | int, ...]) -> None:
 def _fault(error: dict[str, Any]) -> Fault:
     path, value, law = list(error["loc"]), error["input"], None
     if path[0] == "uncertain" and len(path) > 2:
-        law = LAWS[path.pop(2)]  # pydantic puts the law's name into the path
+        # Pydantic puts into the path what kind of entry it is, and then the law's name.
+        tied = path.pop(2) == "equals"
+        law = Tied if tied else LAWS[path.pop(2)] if len(path) > 2 else None
     match error["type"]:
         case "extra_forbidden":
             kind, known = _beside(path, law)
@@ -117,12 +120,16 @@ def _fault(error: dict[str, Any]) -> Fault:
 def _beside(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[str]]:
     """Return what could stand where something unknown stands: kind and names."""
     if law is not None:
-        return f"argument of {path[1]}'s law", list(law.model_fields)
+        common = list(BaseLaw.model_fields)[1:] if law is not Tied else []  # last, but the source
+        own = [name for name in law.model_fields if name not in common]
+        return f"argument of {path[1]}'s law", own + common
     if len(path) == 1:
         return "table", list(StudyFile.model_fields)
     if len(path) == 3:
         return "key", list(Tolerance._fields)
     table: Any = StudyFile.model_fields[path[0]].annotation
+    if path[0] == "dependence":
+        table = DependenceTable
     return "key", list(table.model_fields)
 
 

@@ -73,6 +73,8 @@ def build(
     for i, name in enumerate(model.parameter_names):
         if name in study.uncertain:
             inputs[name] = _input(model, name, rows.x[:, i], study.uncertain[name].source)
+        elif name in study.tied:
+            inputs[name] = _input(model, name, rows.x[:, i], study.tied[name].source)
         else:
             inputs[name] = _input(model, name, study.fixed.get(name, model.nominal[name]))
     ds = xr.Dataset(
@@ -218,8 +220,8 @@ def relabel(ds: xr.Dataset, study: "Study") -> xr.Dataset:
     """
     made = {name: ds.attrs[name] for name in provenance() if name in ds.attrs}
     ds = ds.assign_attrs(_attributes(study) | made)
-    for name, law in study.uncertain.items():
-        ds[name].attrs["source"] = law.source or study.model.parameter(name).source
+    for name, entry in (dict(study.uncertain) | dict(study.tied)).items():
+        ds[name].attrs["source"] = entry.source or study.model.parameter(name).source
     return ds
 
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.conditioning import ppf_within
+from uq.conditioning import factor_ends, ppf_between, ppf_within
+from uq.data_files import numbers
+from uq.dependence import correlated
 from uq.designs import DESIGNS
 
 if TYPE_CHECKING:
@@ -74,7 +76,20 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
     place, block = np.divmod(number, blocks)
     group, replicate = np.divmod(place, table.replicates)
 
-    per_group = table.replicates * blocks
+    x = _imported(study, start, stop) if study.imported else _drawn(study, start, stop)
+    return Rows(
+        x,
+        row_seeds(table.seed, replicate, group, block),
+        replicate.astype(np.int32),
+        group,
+        block.astype(np.int16),
+    )
+
+
+def _drawn(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
+    """Return the inputs of the rows start..stop, shape (n, all parameters)."""
+    table = study.design
+    per_group = table.replicates * group_size(study)
     first, last = start // per_group, -(-stop // per_group)
     cube = DESIGNS[table.method].unit_rows(
         seed=table.seed,
@@ -87,21 +102,47 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
     )
     offset = first * per_group
     unit = cube.reshape(-1, cube.shape[-1])[start - offset : stop - offset]
+    if study.dependence is not None:
+        columns = [list(study.uncertain).index(name) for name in study.dependence.parameters]
+        unit = unit.copy()
+        unit[:, columns] = correlated(unit[:, columns], study.dependence.rank_correlation)
 
+    x = _constants(study, stop - start)
     names = study.model.parameter_names
-    x = np.empty((stop - start, len(names)))
-    x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
+    scaled = []
     for column, (name, law) in zip(unit.T, study.uncertain.items(), strict=True):
-        bounds = study.model.parameter(name).bounds
         # A contiguous copy: on strided data numpy may take another path, with other last bits.
-        x[:, names.index(name)] = ppf_within(law, np.ascontiguousarray(column), bounds)
-    return Rows(
-        x,
-        row_seeds(table.seed, replicate, group, block),
-        replicate.astype(np.int32),
-        group,
-        block.astype(np.int16),
-    )
+        u = np.ascontiguousarray(column)
+        if law.times is None:
+            x[:, names.index(name)] = ppf_within(law, u, study.bounds(name))
+        else:
+            scaled.append((name, law, u))
+    for name, law, u in scaled:  # once those that they scale are known
+        other, bounds = x[:, names.index(law.times)].copy(), study.bounds(name)
+        factor = ppf_between(law, u, *factor_ends(other, bounds))
+        x[:, names.index(name)] = np.clip(factor * other, *bounds)
+    return _with_ties(study, x)
+
+
+def _imported(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
+    """Return the inputs of the rows start..stop as the file has them."""
+    x = _constants(study, stop - start)
+    for name, column in study.imported.items():
+        x[:, study.model.parameter_names.index(name)] = numbers(column)[start:stop]
+    return _with_ties(study, x)
+
+
+def _constants(study: "Study", count: int) -> NDArray[np.float64]:
+    x = np.empty((count, len(study.model.parameter_names)))
+    x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
+    return x
+
+
+def _with_ties(study: "Study", x: NDArray[np.float64]) -> NDArray[np.float64]:
+    names = study.model.parameter_names
+    for name, tied in study.tied.items():
+        x[:, names.index(name)] = x[:, names.index(tied.equals)]
+    return x
 
 
 def row_seeds(seed: int, *keys: NDArray[np.int64]) -> NDArray[np.uint64]:

@@ -31,8 +31,10 @@ def json_schema() -> Schema:
     )
     definitions = schema["definitions"] = schema.pop("$defs")
     uncertain = schema["properties"]["uncertain"]
-    definitions["Law"] = uncertain["additionalProperties"]
-    uncertain["additionalProperties"] = {"$ref": "#/definitions/Law"}
+    laws, tied = uncertain["additionalProperties"]["oneOf"]
+    definitions["Law"] = laws
+    definitions["Entry"] = {"oneOf": [{"$ref": "#/definitions/Law"}, tied]}
+    uncertain["additionalProperties"] = {"$ref": "#/definitions/Entry"}
     uncertain["minProperties"] = 1
     definitions["StudyTable"]["properties"]["model"]["enum"] = list(model_names())
     schema["allOf"] = [
@@ -102,6 +104,12 @@ def _design_schema(design: Design) -> dict[str, Schema]:
         table["samples"] = {"enum": [2**k for k in range(MAX_SAMPLES.bit_length())]}
     if not design.crossed:
         table["second_order"] = {"const": False}
+    if design.least > 1:
+        table["samples"] = {"minimum": design.least}
+    if design.draw is None:
+        table["replicates"] = {"const": 1}
+    else:
+        table["file"] = {"not": {}}
     if not design.independent:
         analysis["tolerance"] = {"not": {}}
     return {"design": {"properties": table}, "analysis": {"properties": analysis}}
@@ -127,7 +135,7 @@ def _fixed(model: Model, name: str) -> Schema:
 
 
 def _uncertain(model: Model, name: str) -> Schema:
-    return {"allOf": [{"$ref": "#/definitions/Law"}], **_texts(model, name)}
+    return {"allOf": [{"$ref": "#/definitions/Entry"}], **_texts(model, name)}
 
 
 def _setting(model: Model, name: str, kind: Any) -> Schema:

@@ -8,8 +8,8 @@ import xarray as xr
 from numpy.typing import NDArray
 from SALib.analyze.sobol import first_order, second_order, total_order
 
-from uq.elements import Floats, flags
-from uq.errors import InputError
+from uq.elements import Floats
+from uq.groups import grouped_rows
 from uq.intervals import is_constant, scatter_interval
 from uq.targets import Index, Indices, RefusedError
 
@@ -63,16 +63,8 @@ def crossed(ds: xr.Dataset) -> Crossed:
     InputError
         When a group lacks rows.
     """
-    labels = flags(ds["block"])
-    keys = np.stack([ds[name].values for name in ("replicate", "group", "block")])
-    order = np.lexsort(keys[::-1])
-    if order.size % len(labels) == 0:
-        groups = keys[:, order].reshape(3, -1, len(labels))
-        whole = (np.ptp(groups[:2], axis=2) == 0).all()
-        if whole and (groups[2] == [code for code, _ in labels]).all():
-            order = order.reshape(ds.attrs["replicates"], -1, len(labels))
-            return Crossed(order, {label: i for i, (_, label) in enumerate(labels)})
-    raise InputError("rows of the design are missing: Sobol' indices need whole groups")
+    order, labels = grouped_rows(ds)
+    return Crossed(order, {label: i for i, label in enumerate(labels)})
 
 
 def sobol_indices(design: Crossed, values: Floats) -> Indices:

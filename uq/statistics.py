@@ -9,6 +9,7 @@ import xarray as xr
 
 from uq import intervals
 from uq.contract import Status
+from uq.designs import DESIGNS
 from uq.elements import (
     Element,
     Floats,
@@ -26,6 +27,11 @@ from uq.study_file import AnalysisTable
 NO_INTERVALS = (
     "no intervals: the rows of a '{design}' design are not independent, and with replicates = 1"
     " nothing shows how far its estimates scatter; set replicates = 8"
+)
+
+NO_STATISTICS = (
+    "no statistics: the rows of a '{design}' design do not follow the laws of the inputs; see"
+    " 'uq sensitivity'"
 )
 
 
@@ -248,6 +254,8 @@ def _plain(number: float) -> float | None:
 
 
 def _notes(ds: xr.Dataset) -> list[str]:
+    if not DESIGNS[ds.attrs["design"]].follows_laws:
+        return [NO_STATISTICS.format(design=ds.attrs["design"])]
     if ds.attrs["design"] == "monte-carlo" or ds.attrs["replicates"] > 1:
         return []
     return [NO_INTERVALS.format(design=ds.attrs["design"])]

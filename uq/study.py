@@ -3,20 +3,22 @@
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, Self
 
 from uq.checks import design_faults, model_faults
 from uq.contract import Model
+from uq.data_files import Columns, columns_of_files, numbers, with_columns
 from uq.designs import DESIGNS
 from uq.distributions import Law
 from uq.errors import InputError, nearest
 from uq.faults import Fault
+from uq.input_checks import dependence_faults, import_faults, input_faults, read_entries
 from uq.reading import parse, read_study_text, shape_faults, sound_entries
 from uq.registry import find_model
-from uq.study_file import AnalysisTable, DesignTable, StudyFile
+from uq.study_file import AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied
 from uq.values import read_settings
 
 _LONGEST = 1_000_000  # bytes of a study file
@@ -40,16 +42,22 @@ class Study:
     fixed : dict of str to float
         Parameters that override their nominal values.
     uncertain : dict of str to Law
-        In the file's order, which is the order of the design's columns.
+        In the file's order, which is the order of the design's columns. Of a parameter that is
+        another times a factor this is the law of the factor.
     settings : object
         An instance of ``model.settings``.
     analysis : AnalysisTable
         outputs (all of them if the file names none), quantiles, max_failed, tolerance,
         thresholds, sensitivity.
     text : str
-        The whole study file.
+        The whole study file, with the numbers of the files that it names.
     path : str
         Where it was read from.
+    tied : dict of str to Tied
+        Parameters that have the value of another.
+    dependence : DependenceTable or None
+    imported : dict of str to str
+        For an imported design: parameter -> its column, for `uq.data_files.numbers`.
     """
 
     name: str
@@ -63,18 +71,28 @@ class Study:
     analysis: AnalysisTable
     text: str
     path: str
+    tied: Mapping[str, Tied] = field(default_factory=dict)
+    dependence: DependenceTable | None = None
+    imported: Mapping[str, str] = field(default_factory=dict)
+
+    def bounds(self, name: str) -> tuple[float, float]:
+        """Return the bounds of a parameter and of those that are tied to it, together."""
+        names = [name, *(other for other, tied in self.tied.items() if tied.equals == name)]
+        lows, highs = zip(*(self.model.parameter(one).bounds for one in names), strict=True)
+        return max(lows), min(highs)
 
     @property
     def identity(self) -> str:
         """SHA-256 of what decides the rows: not the number of samples, comments or [analysis]."""
-        design = self.design.model_dump(exclude={"samples"})
+        design = self.design.model_dump(exclude={"samples", "file"})
         constants = {
             name: self.fixed.get(name, nominal)
             for name, nominal in self.model.nominal.items()
-            if name not in self.uncertain
+            if name not in self.uncertain and name not in self.tied
         }
+        # What files are called does not matter, what they hold does.
         laws = [
-            [name, law.model_dump(exclude={"source"}, exclude_none=True)]
+            [name, law.model_dump(exclude={"source", "file", "column"}, exclude_none=True)]
             for name, law in self.uncertain.items()
         ]
         parts = [
@@ -85,6 +103,13 @@ class Study:
             laws,
             asdict(self.settings),
         ]
+        # Each only where there is any: studies without them keep the identity that they had.
+        if self.tied:
+            parts.append({name: tied.equals for name, tied in self.tied.items()})
+        if self.dependence:
+            parts.append(self.dependence.model_dump(exclude={"source"}))
+        if self.imported:
+            parts.append(dict(self.imported))
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
     def with_samples(self, samples: int) -> Self:
@@ -105,6 +130,9 @@ class Study:
             The design cannot have this size; the line names ``--samples``.
         """
         problem = DESIGNS[self.design.method].size_problem(samples)
+        for column in self.imported.values():
+            if samples > (most := len(numbers(column))):
+                problem = f"the file has {most} rows"
         if problem:
             raise InputError(f"--samples {samples}: {problem} for '{self.design.method}'")
         return replace(self, design=self.design.model_copy(update={"samples": samples}))
@@ -130,10 +158,12 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
     InputError
         Everything that is wrong with the file, one line each.
     """
-    return study_from_text(_read(Path(path)), str(path), model)
+    return study_from_text(_read(Path(path)), str(path), model, Path(path).parent)
 
 
-def study_from_text(text: str, source: str = "study", model: str | None = None) -> Study:
+def study_from_text(
+    text: str, source: str = "study", model: str | None = None, folder: Path | None = None
+) -> Study:
     """Check the text of a study file; see `load_study`.
 
     Parameters
@@ -143,6 +173,8 @@ def study_from_text(text: str, source: str = "study", model: str | None = None) 
     source : str
         Where it comes from: what error lines call it.
     model : str, optional
+    folder : Path, optional
+        What the files that it names are relative to; the text in a result needs none.
 
     Returns
     -------
@@ -156,6 +188,9 @@ def study_from_text(text: str, source: str = "study", model: str | None = None) 
     faults = shape_faults(data)
     tables = sound_entries(data, faults)
     lines: list[str] = []
+    columns, more = columns_of_files(tables, folder)
+    entries, spoilt = read_entries(tables, columns)
+    faults += [*more, *spoilt, *dependence_faults(tables, entries)]
 
     reference = model or tables["study"].get("model")
     found = None
@@ -169,6 +204,8 @@ def study_from_text(text: str, source: str = "study", model: str | None = None) 
                 faults += [Fault(("study", "model"), line, reference) for line in error.lines]
     if found is not None:
         faults += model_faults(found, data, tables)
+        faults += input_faults(found, entries)
+        faults += import_faults(found, tables, entries, columns)
     faults += design_faults(tables)
     order = (*StudyFile.model_fields, *data)
     faults.sort(key=lambda fault: order.index(str(fault.path[0])))
@@ -186,12 +223,23 @@ def study_from_text(text: str, source: str = "study", model: str | None = None) 
         description=file.study.description,
         design=file.design,
         fixed=file.fixed,
-        uncertain=file.uncertain,
+        uncertain={name: law for name, law in entries.items() if not isinstance(law, Tied)},
         settings=settings,
         analysis=file.analysis.model_copy(update={"outputs": outputs}),
-        text=text,
+        text=with_columns(text, columns, file.data),
         path=source,
+        tied={name: tied for name, tied in entries.items() if isinstance(tied, Tied)},
+        dependence=file.dependence,
+        imported=_imported(file, columns),
     )
+
+
+def _imported(file: StudyFile, columns: Columns) -> dict[str, str]:
+    """Return the columns of an imported design, those that are uncertain, in the file's order."""
+    if file.design.method != "imported" or file.design.file is None:
+        return {}
+    table = columns[file.design.file]
+    return {name: table[name] for name, e in file.uncertain.items() if not isinstance(e, Tied)}
 
 
 def _read(path: Path) -> str:

@@ -11,7 +11,9 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Discriminator,
     Field,
+    Tag,
     TypeAdapter,
     WithJsonSchema,
 )
@@ -19,6 +21,7 @@ from pydantic import (
 from uq.designs import DESIGNS, MAX_SAMPLES
 from uq.distributions import Law
 from uq.errors import nearest
+from uq.law import BaseLaw
 from uq.literals import shown
 
 LAW: TypeAdapter[Any] = TypeAdapter(Law)
@@ -100,6 +103,42 @@ class DesignTable(_Table):
     )
     second_order: bool = Field(False, description="saltelli only: also pairs of parameters")
     seed: int = Field(0, ge=0, lt=2**63, description="the same seed gives the same rows")
+    file: str | None = Field(
+        None, description="imported only: CSV or netCDF with a column for each uncertain parameter"
+    )
+
+
+class Tied(_Table):
+    """A parameter that has the value of another in every row."""
+
+    equals: str = Field(description="another uncertain parameter, which has a law of its own")
+    source: str = Field("", description="why they are the same; shown in every result")
+
+
+def _kind(entry: Any) -> str:
+    tied = isinstance(entry, Tied) or (isinstance(entry, dict) and "equals" in entry)
+    return "equals" if tied else "distribution"
+
+
+Entry = Annotated[
+    Annotated[Law, Tag("distribution")] | Annotated[Tied, Tag("equals")], Discriminator(_kind)
+]
+"""How a parameter varies: by a law, or as another does."""
+
+ENTRY: TypeAdapter[BaseLaw | Tied] = TypeAdapter(Entry)
+
+
+class DependenceTable(_Table):
+    """Rank correlations of uncertain parameters, by a Gaussian copula."""
+
+    parameters: Annotated[tuple[str, ...], _LIST, _DISTINCT, Field(min_length=2)] = Field(
+        description="the dependent ones, in the order of the matrix; others are independent"
+    )
+    rank_correlation: Annotated[tuple[Annotated[tuple[float, ...], _LIST], ...], _LIST] = Field(
+        description="Spearman's, a row for each parameter; of the law itself, before it is cut"
+        " into discrete values"
+    )
+    source: str = Field("", description="where the numbers come from")
 
 
 class Tolerance(NamedTuple):
@@ -162,6 +201,10 @@ class StudyFile(_Table):
     fixed: dict[str, Annotated[float, Field(allow_inf_nan=True)]] = Field(
         {}, description="parameter = value: overrides the nominal"
     )
-    uncertain: dict[str, Law] = Field(description="one table per parameter that varies")
+    uncertain: dict[str, Entry] = Field(description="one table per parameter that varies")
+    dependence: DependenceTable | None = Field(None, description="rank correlations of inputs")
     settings: dict[str, Any] = Field({}, description="numerical settings of the model")
     analysis: AnalysisTable = Field(default_factory=AnalysisTable)
+    data: dict[str, dict[str, str]] = Field(
+        {}, description="file -> column -> numbers: what files held, kept in results by 'uq run'"
+    )

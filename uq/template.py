@@ -11,7 +11,9 @@ from uq.conditioning import law_problem
 from uq.contract import Model, Parameter
 from uq.designs import DESIGNS
 from uq.distributions import Law, LogNormal, Normal, Uniform
+from uq.law import BaseLaw
 from uq.literals import toml
+from uq.observed import Empirical
 from uq.study_file import LAWS, AnalysisTable, DesignTable
 from uq.values import bounds_of
 
@@ -112,11 +114,22 @@ def _uncertain(model: Model, laws: dict[str, Law]) -> Iterator[str]:
 
 
 def _menu() -> Iterator[str]:
+    common = ("distribution", *BaseLaw.model_fields)
     for name, law in LAWS.items():
-        arguments = [key for key in law.model_fields if key not in ("distribution", "source")]
+        arguments = [key for key in law.model_fields if key not in common]
         if law is LogNormal:
             arguments = ["mean, cv", "or median, sigma"]
+        elif law is Empirical:
+            arguments = ["file, column", "or values"]
         yield f"# {name}: {', '.join(arguments)}"
+    yield "# Any of them may be cut: truncate = [lower, upper]"
+    yield '# A law may be that of a factor on another uncertain parameter: times = "other"'
+    yield '# A parameter may be the same as another, instead of a law: equals = "other"'
+    yield ""
+    yield "# Rank correlations, with ones on the diagonal:"
+    yield "# [dependence]"
+    yield '# parameters = ["one", "other"]'
+    yield "# rank_correlation = [[1.0, 0.5], [0.5, 1.0]]"
 
 
 def _settings(model: Model) -> Iterator[str]:
@@ -149,6 +162,8 @@ def _entries(
     table: type[BaseModel], given: dict[str, Any], examples: dict[str, Any] | None = None
 ) -> Iterator[str]:
     for name, field in table.model_fields.items():
+        if field.default is None and name not in (examples or {}):
+            continue  # what few studies have, and TOML has no word for nothing
         yield f"# {field.description}"
         if name in given:
             yield f"{name} = {toml(given[name])}"

@@ -4,15 +4,21 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from SALib.sample import fast_sampler
 from SALib.sample import sobol as salib_sobol
-from scipy.stats import qmc
+from scipy.stats import kstest, qmc
 
-from uq.designs import DESIGNS, block_names, replicate_seed
+from uq.designs import DESIGNS, block_names
+from uq.streams import replicate_seed
+from uq.trajectories import STEP
 
 SIZE = 64
+DRAWN = [name for name, design in DESIGNS.items() if design.draw is not None]
+REPEATING = ("morris", "morris-optimised", "fast", "rbd-fast")  # levels, or one curve for all
 
 
-def points(method, start=0, stop=SIZE, *, samples=SIZE, seed=5, replicates=2, d=3, **more):
+def points(method, start=0, stop=SIZE, *, samples=None, seed=5, replicates=2, d=3, **more):
+    samples = max(SIZE, DESIGNS[method].least) if samples is None else samples
     return DESIGNS[method].unit_rows(
         seed=seed,
         replicates=replicates,
@@ -24,7 +30,7 @@ def points(method, start=0, stop=SIZE, *, samples=SIZE, seed=5, replicates=2, d=
     )
 
 
-@pytest.mark.parametrize("method", DESIGNS)
+@pytest.mark.parametrize("method", DRAWN)
 def test_points_lie_inside_the_open_cube(method):
     cube = points(method)
     assert cube.shape == (SIZE, 2, DESIGNS[method].blocks(3, False), 3)
@@ -32,7 +38,7 @@ def test_points_lie_inside_the_open_cube(method):
 
 
 @given(
-    method=st.sampled_from(sorted(DESIGNS)),
+    method=st.sampled_from(DRAWN),
     cuts=st.lists(st.integers(0, SIZE), max_size=4),
     second_order=st.booleans(),
 )
@@ -46,25 +52,40 @@ def test_any_cutting_gives_the_same_bits(method, cuts, second_order):
     assert np.concatenate(parts).tobytes() == whole.tobytes()
 
 
-@pytest.mark.parametrize("method", DESIGNS)
+@pytest.mark.parametrize("method", DRAWN)
 def test_more_samples_append_where_the_design_says_so(method):
     first, again = points(method), points(method, 0, SIZE, samples=4 * SIZE)
-    assert np.array_equal(first, again) == DESIGNS[method].append_only
+    if DESIGNS[method].append_only or not method.startswith("morris"):
+        assert np.array_equal(first, again) == DESIGNS[method].append_only
 
 
-def test_only_the_latin_hypercube_cannot_be_extended():
-    fixed = {name for name, design in DESIGNS.items() if not design.append_only}
-    assert fixed == {"latin-hypercube"}
+def test_designs_that_cannot_be_extended_say_which_can():
+    able = {name for name, design in DESIGNS.items() if design.append_only}
+    assert able == {"monte-carlo", "sobol", "halton", "saltelli"}
+    for name, design in DESIGNS.items():
+        assert (design.extension_problem is None) == (name in able)
+    assert DESIGNS["morris"].extension_problem == (
+        "cannot be extended; designs that can: monte-carlo, sobol, halton, saltelli"
+    )
 
 
-@pytest.mark.parametrize("method", DESIGNS)
+@pytest.mark.parametrize("method", [name for name in DRAWN if name not in REPEATING])
 def test_replicates_and_seeds_have_nothing_in_common(method):
     cube, other = points(method, replicates=3), points(method, seed=6)
     groups = [cube[:, 0, 0], cube[:, 1, 0], cube[:, 2, 0], other[:, 0, 0], other[:, 1, 0]]
     assert len({value for group in groups for value in group.ravel()}) == 5 * SIZE * 3
 
 
-@pytest.mark.parametrize("method", DESIGNS)
+@pytest.mark.parametrize("method", REPEATING)
+@pytest.mark.parametrize("seed", [0, 5])
+def test_replicates_and_seeds_differ(method, seed):
+    cube, other = points(method, seed=seed), points(method, seed=6)
+    np.testing.assert_array_equal(cube, points(method, seed=seed))
+    assert (cube[:, 0] != cube[:, 1]).mean() > 0.4
+    assert (cube != other).mean() > 0.4
+
+
+@pytest.mark.parametrize("method", DRAWN)
 def test_a_replicate_does_not_depend_on_how_many_there_are(method):
     few, many = points(method, replicates=2), points(method, replicates=5)
     np.testing.assert_array_equal(few, many[:, :2])
@@ -136,3 +157,45 @@ def test_the_next_legal_size_is_told(method, samples, following):
 def test_other_designs_take_any_size(method):
     assert DESIGNS[method].size_problem(1000) is None
     assert DESIGNS[method].size_problem(0) == "must be between 1 and 1073741824"
+
+
+@pytest.mark.parametrize("method", ["morris", "morris-optimised"])
+@pytest.mark.parametrize("samples", [2, 8, 9, 20])
+def test_each_step_of_a_trajectory_changes_one_input_by_the_same_probability(method, samples):
+    cube = points(method, 0, samples, samples=samples)
+    assert cube.shape == (samples, 2, 4, 3)
+    steps = np.diff(cube, axis=2)
+    np.testing.assert_array_equal((steps != 0).sum(axis=3), 1)
+    np.testing.assert_array_equal((steps != 0).sum(axis=2), 1)
+    np.testing.assert_allclose(np.abs(steps[steps != 0]), STEP, rtol=1e-12)
+    assert set(np.round(cube.ravel(), 12)) <= {0.005, 0.335, 0.665, 0.995}
+
+
+def test_optimised_trajectories_lie_farther_apart():
+    def spread(method):
+        cube = points(method, 0, 8, samples=8, replicates=20).transpose(1, 0, 2, 3)
+        return np.mean([np.linalg.norm(a[:, None] - b) for c in cube for a in c for b in c])
+
+    assert spread("morris-optimised") > 1.05 * spread("morris")
+
+
+def test_the_rows_of_extended_fast_are_those_of_salib():
+    problem = {"num_vars": 3, "names": ["a", "b", "c"], "bounds": [[0.0, 1.0]] * 3}
+    cube = points("fast", 0, 100, samples=100)
+    for replicate in range(2):
+        rng = np.random.default_rng(replicate_seed(5, replicate))
+        theirs = fast_sampler.sample(problem, 100, seed=rng)
+        np.testing.assert_array_equal(cube[:, replicate].transpose(1, 0, 2).reshape(-1, 3), theirs)
+
+
+def test_a_random_balance_design_fills_each_input_evenly_and_mixes_them():
+    cube = points("rbd-fast", 0, 1024, samples=1024)[:, 0, 0]
+    for column in cube.T:
+        assert kstest(column, "uniform").statistic < 2 / 1024
+    assert np.abs(np.corrcoef(cube.T) - np.eye(3)).max() < 0.15
+
+
+@pytest.mark.parametrize(("method", "least"), [("morris", 2), ("fast", 65)])
+def test_the_smallest_size_is_told(method, least):
+    assert DESIGNS[method].size_problem(least) is None
+    assert DESIGNS[method].size_problem(least - 1) == f"must be between {least} and 1073741824"

@@ -40,6 +40,19 @@ MOMENTS = {
         3 * sqrt(gamma(2) - gamma(1.5) ** 2),
     ),
     "gamma": ({"shape": 2.5, "scale": 3.0}, 7.5, 3 * sqrt(2.5)),
+    # Vose, "Risk analysis": mean (a + 4 b + c)/6, variance (mean - a)(c - mean)/7.
+    "pert": ({"lower": 1.0, "mode": 2.0, "upper": 6.0}, 2.5, sqrt(1.5 * 3.5 / 7)),
+    "gumbel": ({"mode": 3.0, "scale": 0.5}, 3 + 0.5 * np.euler_gamma, 0.5 * np.pi / sqrt(6)),
+    "exponential": ({"mean": 3.0}, 3.0, 3.0),
+    "discrete-choice": ({"values": [1.0, 4.0], "weights": [2.0, 1.0]}, 2.0, sqrt(2.0)),
+    "integer-range": ({"lower": 1, "upper": 6}, 3.5, sqrt(35 / 12)),
+    "empirical": ({"values": [1.0, 2.0, 2.0, 7.0]}, 3.0, sqrt((4 + 1 + 1 + 16) / 4)),
+    # Two boxes: [0, 1] with a third, [1, 3] with two thirds of the probability.
+    "histogram": (
+        {"edges": [0.0, 1.0, 3.0], "counts": [1, 2]},
+        1.5,
+        sqrt(1 / 3 * 1 / 3 + 2 / 3 * (27 - 1) / 6 - 1.5**2),
+    ),
 }
 
 
@@ -100,6 +113,21 @@ def test_the_survival_of_a_weibull_is_the_one_documented():
         ("beta", {"alpha": 1.0, "beta": 1.0, "lower": 1.0, "upper": 0.0}),
         ("weibull", {"shape": -1.0, "scale": 1.0}),
         ("gamma", {"shape": 1.0, "scale": 0.0}),
+        ("pert", {"lower": 1.0, "mode": 3.0, "upper": 2.0}),
+        ("gumbel", {"mode": 1.0, "scale": 0.0}),
+        ("exponential", {"mean": 0.0}),
+        ("discrete-choice", {"values": [1.0]}),
+        ("discrete-choice", {"values": [1.0, 2.0], "weights": [1.0]}),
+        ("discrete-choice", {"values": [1.0, 2.0], "weights": [1.0, 0.0]}),
+        ("integer-range", {"lower": 3, "upper": 3}),
+        ("integer-range", {"lower": 1.5, "upper": 3.5}),
+        ("empirical", {"values": [1.0, 1.0]}),
+        ("empirical", {"file": "a.csv"}),
+        ("empirical", {"file": "a.csv", "column": "k", "values": [1.0, 2.0]}),
+        ("histogram", {"edges": [0.0, 1.0], "counts": [1, 2]}),
+        ("histogram", {"edges": [0.0, 2.0, 1.0], "counts": [1, 2]}),
+        ("histogram", {"edges": [0.0, 1.0, 2.0], "counts": [0, 0]}),
+        ("normal", {"mean": 1.0, "sd": 1.0, "truncate": [2.0, 1.0]}),
     ],
 )
 def test_arguments_that_make_no_law_are_refused(name, arguments):

@@ -33,7 +33,8 @@ ONE_FAULT = [
     (
         {"desing": {"seed": 1}},
         "[desing]: no such table; did you mean 'design'?"
-        " (allowed: study, design, fixed, uncertain, settings, analysis)",
+        " (allowed: study, design, fixed, uncertain,"
+        " dependence, settings, analysis, data)",
     ),
     (
         {"study": {"name": "a/b"}},
@@ -54,7 +55,8 @@ ONE_FAULT = [
     (
         {"design": {"method": "monte_carlo"}},
         "[design] method = \"monte_carlo\": no such design; did you mean 'monte-carlo'?"
-        " (allowed: monte-carlo, latin-hypercube, sobol, halton, saltelli)",
+        " (allowed: monte-carlo, latin-hypercube, sobol, halton, saltelli, morris,"
+        " morris-optimised, fast, rbd-fast, imported)",
     ),
     (
         {"design": {"method": "saltelli", "samples": 1000}},
@@ -125,7 +127,7 @@ ONE_FAULT = [
     (
         {"uncertain": {"x3": {**UNIFORM, "meen": 1}}},
         "[uncertain.x3] meen = 1: no such argument of x3's law"
-        " (allowed: source, distribution, lower, upper)",
+        " (allowed: source, distribution, lower, upper, truncate, times)",
     ),
     (
         {"uncertain": {"x3": {**UNIFORM, "lower": "0"}}},
@@ -211,7 +213,7 @@ ONE_FAULT = [
     (
         {"analysis": {"sensitivity": ["sobl"]}},
         "[analysis] sensitivity[0] = \"sobl\": no such method; did you mean 'sobol'?"
-        " (allowed: rbd-fast, delta, pawn, sobol)",
+        " (allowed: rbd-fast, delta, pawn, sobol, morris, fast)",
     ),
     (
         {"analysis": {"sensitivity": ["sobol"]}},
@@ -220,7 +222,8 @@ ONE_FAULT = [
     ),
     (
         {"design": {"method": "saltelli"}, "analysis": {"sensitivity": ["delta"]}},
-        "method = 'monte-carlo' or 'latin-hypercube' or 'sobol' or 'halton' can",
+        "method = 'monte-carlo' or 'latin-hypercube' or 'sobol' or 'halton' or 'rbd-fast' or"
+        " 'imported' can",
     ),
 ]
 

@@ -40,7 +40,7 @@ def test_every_figure_of_a_study_is_written_as_png_and_svg(tmp_path):
 def test_the_same_result_gives_the_same_bytes(tmp_path):
     ds = linear("saltelli", samples=16, replicates=4)
     once, again = (plots.save_all(ds, tmp_path / name) for name in ("once", "again"))
-    assert len(once) == 4
+    assert len(once) == 6
     for one, other in zip(once, again, strict=True):
         assert one.read_bytes() == other.read_bytes()
 
@@ -49,7 +49,7 @@ def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
     draw, drawn = Figure.draw, []
     monkeypatch.setattr(Figure, "draw", lambda *given: (drawn.append(given), draw(*given)))
     paths = plots.save_all(linear(samples=64), tmp_path)
-    assert len(drawn) == len(paths) == 4
+    assert len(drawn) == len(paths) == 6
 
 
 def test_categories_alone_give_no_figure(tmp_path):
@@ -149,7 +149,7 @@ def test_titles_of_indices_are_in_words():
 @pytest.mark.parametrize("kind", ["lifetime", "value"])
 def test_degenerate_results_are_drawn_all_the_same(tmp_path, value, kind):
     ds = asking(with_output(linear(samples=64), "odd", np.full(64, value), kind), outputs=["odd"])
-    assert len(plots.save_all(ds, tmp_path)) == 2
+    assert len(plots.save_all(ds, tmp_path)) == 4
 
 
 def test_a_time_history_has_a_panel_for_each_quantity():

@@ -117,19 +117,25 @@ def _ranked(table: Mapping[str, Any], dummy: Mapping[str, float]) -> Iterator[li
     last = list(table.values())[-1]
     for label in sorted(last, key=lambda label: -(last[label]["value"] or 0.0)):
         cells = (
-            (_index(one[label], "value"), _index_interval(one[label])) for one in table.values()
+            (_index(one[label], "value", kind), _index_interval(one[label], kind))
+            for kind, one in table.items()
         )
         yield [label, *(text for pair in cells for text in pair)]
     if dummy:
-        cells = ((_index(dummy, kind), "") for kind in table)
+        cells = ((_index(dummy, kind, kind), "") for kind in table)
         yield ["(an input without effect)", *(text for pair in cells for text in pair)]
 
 
-def _index(entry: Entry, key: str) -> str:
-    """Return an index to three decimals: names of inputs need the room of the others."""
-    return "-" if entry[key] is None else f"{entry[key]:.3f}"
+def _index(entry: Entry, key: str, kind: str) -> str:
+    """Return an index to three decimals: names of inputs need the room of the others.
+
+    Morris' measures have the unit of the output.
+    """
+    if entry[key] is None:
+        return "-"
+    return f"{entry[key]:.3g}" if kind in ("mu", "sigma", "mu_star") else f"{entry[key]:.3f}"
 
 
-def _index_interval(entry: Entry) -> str:
-    ends = [_index(entry, end) for end in ("low", "high")]
+def _index_interval(entry: Entry, kind: str) -> str:
+    ends = [_index(entry, end, kind) for end in ("low", "high")]
     return "" if ends == ["-", "-"] else " to ".join(ends)

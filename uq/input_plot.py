@@ -1,0 +1,62 @@
+"""The figure of the inputs: each law as stated, and what the rows have made of it."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.conditioning import cdf_within
+from uq.distributions import Law
+from uq.elements import Floats
+from uq.figure import COLOURS, WIDTH, is_wide, sentence, styled
+from uq.realised import EVERYWHERE, stated_and_realised
+
+
+@styled
+def inputs(ds: xr.Dataset) -> Figure | None:
+    """Draw how the values of each input are distributed, beside the law that was stated.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        None where the rows do not follow the laws.
+    """
+    found = stated_and_realised(ds)
+    if not found:
+        return None
+    figure = Figure(figsize=(WIDTH, 0.3 + 1.4 * len(found)), layout="constrained")
+    panels = figure.subplots(len(found), squeeze=False)[:, 0]
+    for axes, (name, (law, values)) in zip(panels, found.items(), strict=True):
+        _panel(axes, law, values)
+        attrs = ds[name].attrs
+        meaning, unit = attrs["long_name"], attrs["units"]
+        if law.times is not None:
+            meaning, unit = f"{meaning}: factor on {law.times}", ""
+        axes.set_xlabel(sentence(meaning, unit))
+    rows = len(next(iter(found.values()))[1])
+    panels[0].set_title(f"Share per bin of {rows} rows; line: as stated", loc="left")
+    return figure
+
+
+def _panel(axes: Axes, law: Law, values: Floats) -> None:
+    wide = is_wide(values)
+    scaled = np.log10(values) if wide else values
+    count = min(len(np.histogram_bin_edges(scaled, "scott")) - 1, 60)
+    edges = np.histogram_bin_edges(scaled, max(count, 1))
+    edges = 10**edges if wide else edges
+    edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
+    rows = np.histogram(values, edges)[0] / len(values)
+    # Like the histogram: bins have their lower end, the last one its upper end too.
+    upper = cdf_within(law, np.append(np.nextafter(edges[1:-1], -np.inf), edges[-1]), EVERYWHERE)
+    lower = cdf_within(law, np.nextafter(edges[:1], -np.inf), EVERYWHERE)
+    stated = np.diff(np.append(lower, upper))
+    axes.stairs(rows, edges, fill=True, color=COLOURS[4])
+    axes.stairs(stated, edges, color=COLOURS[1], lw=1.2)
+    axes.set_ylim(0, None)
+    if wide:
+        axes.set_xscale("log")

@@ -1,0 +1,70 @@
+"""What all laws of an uncertain parameter have in common."""
+
+from math import inf
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+Positive = Annotated[float, Field(gt=0)]
+Scipy = tuple[str, dict[str, Any]]
+
+
+def _tuple(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
+
+
+LIST = BeforeValidator(_tuple)
+
+
+class BaseLaw(BaseModel):
+    """A law of one variable; arguments in the parameter's unit."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    _ascending: ClassVar[tuple[str, ...]] = ()
+    discrete: ClassVar[bool] = False
+
+    source: str = Field("", description="where the numbers come from; shown in every result")
+    truncate: Annotated[tuple[float, float] | None, LIST] = Field(
+        None, description="[lower, upper]: the law given that it falls between them"
+    )
+    times: str | None = Field(
+        None, description="another uncertain parameter: this one is that times the law"
+    )
+
+    def frozen(self) -> Any:
+        """Return the law, before `truncate`, as a frozen `scipy.stats` distribution."""
+        from scipy import stats
+
+        name, arguments = self._scipy()
+        return getattr(stats, name)(**arguments)
+
+    def parent(self) -> tuple[Any, float, float]:
+        """Return the frozen law before any truncation, and the ends of the truncation.
+
+        Quantiles of a truncated law are best computed from its parent's: faster, and accurate in
+        both tails.
+        """
+        return (self.frozen(), *(self.truncate or (-inf, inf)))
+
+    def _scipy(self) -> Scipy:
+        raise NotImplementedError
+
+    @model_validator(mode="after")
+    def _check_order(self) -> Self:
+        names = self._ascending
+        values = [getattr(self, name) for name in names]
+        if values and (values != sorted(values) or values[0] == values[-1]):
+            wanted = " <= ".join(names) if len(names) > 2 else " < ".join(names)
+            given = ", ".join(
+                f"{name} = {value!r}" for name, value in zip(names, values, strict=True)
+            )
+            raise ValueError(f"must have {wanted}: {given}")
+        return self
+
+    @model_validator(mode="after")
+    def _check_truncation(self) -> Self:
+        if self.truncate and not self.truncate[0] < self.truncate[1]:
+            low, high = self.truncate
+            raise ValueError(f"truncate must have lower < upper: [{low!r}, {high!r}]")
+        return self
