@@ -200,7 +200,7 @@ def _inside(points: Points, smallest: float) -> Points:
     return np.clip(points, smallest, 1.0 - 2.0**-53, out=points)
 
 
-_GIVEN_DATA = ("rbd-fast", "delta", "pawn")
+_GIVEN_DATA = ("rbd-fast", "delta", "pawn", "hdmr", "quantile", "regional")
 
 DESIGNS = {
     "monte-carlo": Design("independent rows", _monte_carlo, _GIVEN_DATA, independent=True),

@@ -13,7 +13,7 @@ from uq.errors import InputError, nearest
 from uq.intervals import Replicates
 from uq.reading import read_study_text
 from uq.results import elements, failed
-from uq.study_file import AnalysisTable
+from uq.study_file import AnalysisTable, StudyFile
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -82,7 +82,12 @@ class Element:
 
 def analysis_of(ds: xr.Dataset) -> AnalysisTable:
     """Return the [analysis] of the study that a result carries."""
-    return read_study_text(ds.attrs["study"], "study of this result").analysis
+    return study_file_of(ds).analysis
+
+
+def study_file_of(ds: xr.Dataset) -> StudyFile:
+    """Return the study that a result carries."""
+    return read_study_text(ds.attrs["study"], "study of this result")
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:

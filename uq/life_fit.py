@@ -57,10 +57,13 @@ def life_fits(ds: xr.Dataset, output: str) -> dict[str, dict[str, Any]]:
        (2003), sections 5.1.2 and 10.3.
     """
     rows = independent_rows(ds)
-    return {
-        element.name: {law: _one(law, element, replicates_of(rows) is None) for law in FAMILIES}
-        for element in lifetimes(rows, output)
-    }
+    independent = replicates_of(rows) is None
+    return {one.name: fits_of(one, independent) for one in lifetimes(rows, output)}
+
+
+def fits_of(element: Element, independent: bool) -> dict[str, Any]:
+    """Fit every law to one element of a lifetime; see `life_fits`."""
+    return {law: _one(law, element, independent) for law in FAMILIES}
 
 
 class _Sample(NamedTuple):

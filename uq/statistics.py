@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
+from numpy.typing import NDArray
 
 from uq import intervals
 from uq.b_lives import b_lives, ended_by, entry, quantile_entry
@@ -22,7 +23,11 @@ from uq.elements import (
     shown_outputs,
 )
 from uq.intervals import Replicates
+from uq.life_fit import fits_of
+from uq.regime_split import between_share
+from uq.regimes_of import within_regime
 from uq.study_file import AnalysisTable
+from uq.targets import targets
 
 NO_INTERVALS = (
     "no intervals: the rows of a '{design}' design are not independent, and with replicates = 1"
@@ -30,7 +35,12 @@ NO_INTERVALS = (
 )
 
 
-def summarise(ds: xr.Dataset, analysis: AnalysisTable | None = None) -> dict[str, Any]:
+def summarise(
+    ds: xr.Dataset,
+    analysis: AnalysisTable | None = None,
+    regime: str | None = None,
+    fits: bool = False,
+) -> dict[str, Any]:
     """Describe a result in plain data, ready for JSON.
 
     Parameters
@@ -39,28 +49,38 @@ def summarise(ds: xr.Dataset, analysis: AnalysisTable | None = None) -> dict[str
         A result.
     analysis : AnalysisTable, optional
         What to show; by default what the result's own study asks for.
+    regime : str, optional
+        Describe the rows in this regime only; those that failed without one count as failed.
+    fits : bool
+        Whether each lifetime also has ``fits``, as `uq.life_fits` returns them.
 
     Returns
     -------
     dict
         ``samples`` and ``status`` count all rows. Everything else is about the ``rows_used``, the
         independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
-        element -> mean, sd, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes, counts of
-        never, censored, undefined and failed rows) and ``notes``, sentences on what could not be
-        given. A number that does not exist or is not finite is None; beside it ``never``,
+        element -> mean, sd, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
+        ``between_regimes``: the share of its variance, or of its rate's, that lies between them,
+        counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
+        not be given. A number that does not exist or is not finite is None; beside it ``never``,
         ``low_censored`` and the like say why.
     """
     analysis = analysis or analysis_of(ds)
+    if regime is not None:
+        ds = within_regime(ds, regime)
     rows = independent_rows(ds)
     replicate = replicates_of(rows)
     outputs = shown_outputs(ds, analysis)
+    codes = rows["regime"].values if "regime" in output_names(ds) else None
     return {
         "samples": ds.sizes["sample"],
         "rows_used": rows.sizes["sample"],
         "status": status_counts(ds),
-        "regime": regime_shares(rows) if "regime" in output_names(ds) else {},
+        "regime": {} if codes is None else regime_shares(rows),
         "outputs": {
             element.name: _describe(element, replicate, analysis)
+            | _between(element, codes, replicate)
+            | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
             for element in elements_of(rows, outputs)
         },
         "notes": _notes(ds),
@@ -183,6 +203,21 @@ def _tolerance(
     late = intervals.tolerance_bounds(element.at_most, failed, *analysis.tolerance)
     bounds = entry(lower=(early.low, early.low), upper=(early.high, late.high))
     return bounds | {"rows_needed": intervals.rows_needed(*analysis.tolerance, failed)}
+
+
+def _fitted(element: Element, fits: bool) -> bool:
+    return fits and element.kind == "lifetime"
+
+
+def _between(
+    element: Element, codes: NDArray[np.integer] | None, replicate: Replicates
+) -> dict[str, Any]:
+    target = next(targets([element], {}))
+    if codes is None or target.refused:
+        return {}
+    value, interval = between_share(target.values, codes, replicate)
+    ends = {"low": _plain(interval.low), "high": _plain(interval.high)}
+    return {"between_regimes": {"value": _plain(value)} | ends} if np.isfinite(value) else {}
 
 
 def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:
