@@ -76,16 +76,18 @@ def given_data_indices(
     idle = np.random.default_rng(0).random((len(y), DUMMIES))
     columns = np.column_stack([*x.values(), idle])
     if method == "quantile":
-        raw = quantile_indices(columns, y, quantiles)
+        raw, notes = quantile_indices(columns, y, quantiles)
         found = {kind: without_optimism(one, one[len(x) :]) for kind, one in raw.items()}
     else:
         kind, measure = _METHODS[method]
-        found = {kind: measure(columns, y)}
+        found, notes = {kind: measure(columns, y)}, ()
     values_of = {
         kind: {parameter: Index(float(v)) for parameter, v in zip(x, one, strict=False)}
         for kind, one in found.items()
     }
-    return Indices(values_of, dummy={k: float(one[len(x) :].max()) for k, one in found.items()})
+    return Indices(
+        values_of, notes, dummy={k: float(one[len(x) :].max()) for k, one in found.items()}
+    )
 
 
 def _rbd_fast(x: Floats, y: Floats) -> Floats:

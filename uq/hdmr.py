@@ -16,10 +16,12 @@ MIN_ROWS = 300
 EXPLAINED = 0.8
 """An expansion that explains less of rows it has not seen says too little about the output."""
 
-_DEGREES = range(2, 10)
-_MOST_ROWS = 4096
+_DEGREES = (2, 4, 6, 8)
+_ENOUGH = 0.99
+_LEAST_VALUES = 10
+_MOST_ROWS = 2048
 _TERMS_PER_ROW = 0.8
-_MOST_TERMS = 1000
+_MOST_TERMS = 500
 
 
 def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
@@ -51,6 +53,11 @@ def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
     .. [2] A. B. Owen, "Sobol' indices and Shapley value", SIAM/ASA J. Uncertainty Quantification
        2, 245-251 (2014).
     """
+    if len(np.unique(y)) < _LEAST_VALUES:
+        raise RefusedError(
+            f"it takes fewer than {_LEAST_VALUES} values, and no polynomial has such steps; use"
+            " rbd-fast, pawn or regional"
+        )
     n = min(len(y), _MOST_ROWS)
     if n < MIN_ROWS * 2:
         raise RefusedError(
@@ -69,6 +76,10 @@ def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
         rest = (y - expected)[half:]
         if (gain := float(1 - rest.var() / y[half:].var())) > explained:
             degree, explained = candidate, gain
+        else:
+            break  # more terms than the rows can tell apart
+        if explained > _ENOUGH:
+            break
     if not degree:
         raise RefusedError(f"{n} rows are too few for the pairs of {len(x)} inputs")
     if explained < EXPLAINED:
