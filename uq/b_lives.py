@@ -43,8 +43,11 @@ def b_lives(element: Element, replicate: Replicates) -> dict[str, dict[str, Any]
     if any("censored" in entry for entry in found.values()):
         time = _times(element)
         seen = curve(element, time, replicate)
+        first_end = _first(seen["survival"] < 1, time)
         for name, probability in B_LIVES.items():
             passed = {end: _first(seen[end] <= 1 - probability, time) for end in _ENDS}
+            if passed["low"] == first_end:  # nothing is known of times before the first end
+                passed["low"] = None
             if "censored" in found[name] and passed["survival"] is not None:
                 ends = {_ENDS[end]: value for end, value in passed.items()}
                 found[name] = ends | {"assumes": ASSUMES}

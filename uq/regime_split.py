@@ -68,7 +68,11 @@ def _independent(
         statistic = ratio / freedom[0] / ((1 - ratio) / freedom[1])
     if not half > 0 or stats.f.sf(statistic, *freedom) > 1 - CONFIDENCE:
         return value, UNKNOWN
-    return value, Interval(value - half, value + half)
+    # Fisher's transformation of the root, in which the estimate is as good as normal.
+    root = np.sqrt(value)
+    wide = half / (2 * root * (1 - value))
+    low, high = (np.tanh(np.arctanh(root) + side * wide) for side in (-1, 1))
+    return value, Interval(np.copysign(low**2, low), high**2)
 
 
 def _split(y: Floats, regime: NDArray[np.integer]) -> tuple[float, Floats, Floats]:
