@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from uq.attraction import basins
     from uq.indices import sensitivity
+    from uq.life_fit import life_fits
     from uq.lifetime import survival
+    from uq.regime_table import regimes
     from uq.results import open_result
     from uq.runner import run
     from uq.simulation import simulate
@@ -18,8 +20,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "basins",
+    "life_fits",
     "load_study",
     "open_result",
+    "regimes",
     "run",
     "sensitivity",
     "simulate",
@@ -29,8 +33,10 @@ __all__ = [
 
 _MODULES = {
     "basins": "attraction",
+    "life_fits": "life_fit",
     "load_study": "study",
     "open_result": "results",
+    "regimes": "regime_table",
     "run": "runner",
     "sensitivity": "indices",
     "simulate": "simulation",

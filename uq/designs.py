@@ -223,10 +223,10 @@ def _curves(parameters: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"curve_{name}" for name in parameters)
 
 
-FOR_DEPENDENT_INPUTS = ("delta", "pawn")
+FOR_DEPENDENT_INPUTS = ("delta", "pawn", "quantile", "regional")
 """Sensitivity methods that do not suppose the inputs to be independent."""
 
-_GIVEN_DATA = ("rbd-fast", "delta", "pawn")
+_GIVEN_DATA = ("rbd-fast", "delta", "pawn", "hdmr", "quantile", "regional")
 
 DESIGNS = {
     "monte-carlo": Design("independent rows", _monte_carlo, _GIVEN_DATA, independent=True),

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from uq.columns import censored_name, lacking
 from uq.designs import DESIGNS
 from uq.errors import InputError, nearest
+from uq.intervals import Replicates
 from uq.reading import read_study_text
 from uq.results import elements, failed
-from uq.study_file import AnalysisTable
+from uq.study_file import AnalysisTable, StudyFile
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -82,7 +83,12 @@ class Element:
 
 def analysis_of(ds: xr.Dataset) -> AnalysisTable:
     """Return the [analysis] of the study that a result carries."""
-    return read_study_text(ds.attrs["study"], "study of this result").analysis
+    return study_file_of(ds).analysis
+
+
+def study_file_of(ds: xr.Dataset) -> StudyFile:
+    """Return the study that a result carries."""
+    return read_study_text(ds.attrs["study"], "study of this result")
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
@@ -97,6 +103,11 @@ def independent_rows(ds: xr.Dataset) -> xr.Dataset:
     plain = [code for code, label in labels if not label.startswith(mixed)]
     chosen = np.isin(ds["block"].values, plain)
     return ds if chosen.all() else ds.isel(sample=chosen)
+
+
+def replicates_of(rows: xr.Dataset) -> Replicates:
+    """Return the replicate of each row, or None where the rows are independent."""
+    return None if rows.attrs["design"] == "monte-carlo" else rows["replicate"].values
 
 
 def flags(variable: xr.DataArray) -> list[tuple[int, str]]:
@@ -196,3 +207,17 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
         names = [element.name for element in found]
         raise InputError(f"no such element '{name}'{nearest(name, names)}")
     return chosen
+
+
+def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
+    """Return the elements of a lifetime that a user means; see `named_elements`.
+
+    Raises
+    ------
+    InputError
+        Also when the output is not a lifetime.
+    """
+    found = named_elements(ds, name)
+    if found[0].kind != "lifetime":
+        raise InputError(f"'{name}' is not a lifetime")
+    return found

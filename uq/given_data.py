@@ -1,12 +1,13 @@
-"""Sensitivity from a plain sample: RBD-FAST, Borgonovo's delta and PAWN, by SALib's estimators.
+"""Sensitivity from a plain sample: every method that asks for no design of its own.
 
+RBD-FAST, Borgonovo's delta, PAWN and HDMR are SALib's estimators, Kolmogorov's distance scipy's.
 Their scatter is not known: bootstrap intervals of these estimates miss the truth far more often
 than they say. Beside each index stands what the same estimate makes of inputs that play no part;
 an index below that shows nothing.
 """
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,10 @@ from SALib.analyze.rbd_fast import compute_first_order, permute_outputs, unskew_
 from scipy.stats import norm, rankdata
 
 from uq.elements import Floats
+from uq.hdmr import hdmr_indices
 from uq.intervals import is_constant
+from uq.quantile_oriented import quantile_indices, without_optimism
+from uq.regional import ks_distances
 from uq.targets import Index, Indices, RefusedError
 
 MIN_ROWS = 64
@@ -29,27 +33,32 @@ _HARMONICS = 10
 _TIED = 0.01
 
 
-def given_data_indices(method: str, x: dict[str, Floats], values: Floats) -> Indices:
+def given_data_indices(
+    method: str, x: dict[str, Floats], values: Floats, quantiles: Mapping[str, float]
+) -> Indices:
     """Estimate the indices of one method.
 
     Parameters
     ----------
-    method : {"rbd-fast", "delta", "pawn"}
+    method : {"rbd-fast", "delta", "pawn", "hdmr", "quantile", "regional"}
     x : dict of str to ndarray, shape (n,)
         The uncertain parameters.
     values : ndarray, shape (n,)
         One number per row, NaN where there is none: the row is left out.
+    quantiles : dict of str to float
+        Name -> probability of each quantile that ``quantile`` is about.
 
     Returns
     -------
     Indices
-        ``S1`` (RBD-FAST), ``delta`` or ``pawn`` (the median over slices); without intervals, with
-        `dummy`.
+        ``S1`` (RBD-FAST), ``delta``, ``pawn`` (the median over slices), ``KS`` (regional), one for
+        each of `quantiles`, or those of `uq.hdmr`; without intervals, with `dummy`.
 
     Raises
     ------
     RefusedError
-        Too few rows, a constant output, or one with repeated values where a density is needed.
+        Too few rows, a constant output, one with repeated values where a density is needed, one
+        that is no event where it must be.
     """
     kept = np.isfinite(values)
     y = values[kept]
@@ -57,13 +66,24 @@ def given_data_indices(method: str, x: dict[str, Floats], values: Floats) -> Ind
         raise RefusedError(f"only {len(y)} of {len(kept)} rows have a value; {MIN_ROWS} are needed")
     if is_constant(y):
         raise RefusedError("the same value in all rows: nothing depends on the inputs")
-    name, measure = _METHODS[method]
-    dummies = np.random.default_rng(0).random((len(y), DUMMIES))
-    columns = np.column_stack([*(column[kept] for column in x.values()), dummies])
-    found = measure(columns, y)
-    indices = {parameter: Index(float(v)) for parameter, v in zip(x, found, strict=False)}
-    dummy = {name: float(found[len(x) :].max())}
-    return Indices({name: indices}, dummy=dummy)
+    x = {parameter: column[kept] for parameter, column in x.items()}
+    if method == "hdmr":
+        return hdmr_indices(x, y)
+    idle = np.random.default_rng(0).random((len(y), DUMMIES))
+    columns = np.column_stack([*x.values(), idle])
+    if method == "quantile":
+        raw, notes = quantile_indices(columns, y, quantiles)
+        found = {kind: without_optimism(one, one[len(x) :]) for kind, one in raw.items()}
+    else:
+        kind, measure = _METHODS[method]
+        found, notes = {kind: measure(columns, y)}, ()
+    values_of = {
+        kind: {parameter: Index(float(v)) for parameter, v in zip(x, one, strict=False)}
+        for kind, one in found.items()
+    }
+    return Indices(
+        values_of, notes, dummy={k: float(one[len(x) :].max()) for k, one in found.items()}
+    )
 
 
 def _rbd_fast(x: Floats, y: Floats) -> Floats:
@@ -101,4 +121,5 @@ _METHODS: dict[str, tuple[str, Callable[[Floats, Floats], NDArray[np.float64]]]]
     "rbd-fast": ("S1", _rbd_fast),
     "delta": ("delta", _delta),
     "pawn": ("pawn", _pawn),
+    "regional": ("KS", ks_distances),
 }

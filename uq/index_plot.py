@@ -20,7 +20,13 @@ _MEANING = {
     "pawn": "PAWN, median",
     "sigma": "scatter of effects (sigma)",
     "mu_star": "mean magnitude of effects (mu*)",
+    "shapley": "Shapley effect",
+    "KS": "Kolmogorov's distance of the rows where it happens",
 }
+
+
+def _is_bar(kind: str, value: Any) -> bool:
+    return isinstance(value, dict) and kind not in ("S2", "dummy")
 
 
 def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:
@@ -68,7 +74,7 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    kinds = [kind for kind in _MEANING if kind in entry]
+    kinds = [kind for kind, value in entry.items() if _is_bar(kind, value)]
     parameters = sorted(entry[kinds[-1]], key=lambda p: float(entry[kinds[-1]][p]["value"]))
     labels = [_named(ds[parameter]) for parameter in parameters]
     lines = [max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels]
@@ -79,7 +85,7 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
         found = [entry[kind][parameter] for parameter in parameters]
         table = np.array([(one["value"], one["low"], one["high"]) for one in found], dtype=float)
         value, ends = table[:, 0], table[:, 1:].T
-        axes.barh(y, value, thickness, color=COLOURS[i], label=_MEANING[kind])
+        axes.barh(y, value, thickness, color=COLOURS[i], label=_MEANING.get(kind, kind))
         axes.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
     for limit in entry.get("dummy", {}).values():
         label = "largest of inputs that play no part"
@@ -107,6 +113,9 @@ def _named(parameter: xr.DataArray) -> str:
 def _subject(ds: xr.Dataset, name: str) -> str:
     """Return in words what the indices are about."""
     inside = name.removeprefix("rate(").removeprefix("P(").removesuffix(")")
+    category, _, label = inside.partition("=")
+    if category in ds and ds[category].attrs.get("kind") == "category":
+        return sentence(f"whether it is {label}: {ds[category].attrs['long_name']}", width=56)
     key, _, threshold = inside.partition("<")
     (element,) = named_elements(ds, key)
     place = place_in_words(element, ds[element.output])

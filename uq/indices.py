@@ -7,15 +7,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.designs import DESIGNS
+from uq.designs import DESIGNS, FOR_DEPENDENT_INPUTS
 from uq.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.errors import InputError, nearest
 from uq.fast import curves, fast_indices
 from uq.given_data import given_data_indices
 from uq.independent_inputs import are_dependent, independent_inputs, notes_on_inputs
 from uq.morris import morris_indices, trajectories
+from uq.regimes_of import within_regime
 from uq.sobol import crossed, sobol_indices
-from uq.targets import Index, Indices, RefusedError, Target, targets
+from uq.targets import Index, Indices, RefusedError, Target, category_targets, targets
 
 _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
     "sobol": (crossed, sobol_indices),
@@ -25,14 +26,22 @@ _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
 """Methods whose rows belong together: what finds them in a result, and the estimate from them."""
 
 
-def methods(ds: xr.Dataset) -> tuple[str, ...]:
-    """Return the methods that the study asks for, or else the first that its design can feed."""
-    feeds = DESIGNS[ds.attrs["design"]].feeds_with(are_dependent(ds))
-    return analysis_of(ds).sensitivity or feeds[:1]
+def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
+    """Return the methods that the study asks for, or else the first that its design can feed.
+
+    Of dependent inputs, one that does not suppose them to be independent.
+    """
+    dependent = are_dependent(ds) if dependent is None else dependent
+    feeds = DESIGNS[ds.attrs["design"]].feeds_with(dependent)
+    asked = analysis_of(ds).sensitivity
+    return tuple(name for name in asked if name in feeds) or feeds[:1] or asked
 
 
 def sensitivities(
-    ds: xr.Dataset, method: str | None = None, output: str | None = None
+    ds: xr.Dataset,
+    method: str | None = None,
+    output: str | None = None,
+    regime: str | None = None,
 ) -> dict[str, Any]:
     """Estimate sensitivity indices as plain data, ready for JSON.
 
@@ -44,7 +53,10 @@ def sensitivities(
         By default the first of `methods`.
     output : str, optional
         An output, one element of it, or one of the names that this function returns; by default
-        the outputs that the study wants to see.
+        the outputs that the study wants to see. Of a category, such as the regime, the targets
+        are ``P(regime=label)``: whether a row is in each that occurs.
+    regime : str, optional
+        Use the rows in this regime only. Among them the inputs depend on each other.
 
     Returns
     -------
@@ -60,7 +72,9 @@ def sensitivities(
     InputError
         When the design cannot feed the method, or there is no such output.
     """
-    name, found = _estimate(ds, method, output)
+    if regime is not None:
+        ds = within_regime(ds, regime)
+    name, found = _estimate(ds, method, output, within=regime is not None)
     outputs = {}
     for one in found:
         entry: dict[str, Any] = {"rows_used": one.rows_used, "groups_dropped": one.dropped}
@@ -142,20 +156,31 @@ class _Found(NamedTuple):
         return int((~self.whole).sum())
 
 
-def _estimate(ds: xr.Dataset, method: str | None, output: str | None) -> tuple[str, list[_Found]]:
-    method = method or methods(ds)[0]
-    _check_method(ds, method)
+def _estimate(
+    ds: xr.Dataset, method: str | None, output: str | None, within: bool = False
+) -> tuple[str, list[_Found]]:
+    why = (
+        "within a regime the inputs depend on each other"
+        if within
+        else "the inputs of this study depend on each other"
+        if are_dependent(ds)
+        else ""
+    )
+    method = method or [*methods(ds, bool(why)), *DESIGNS[ds.attrs["design"]].feeds][0]
+    _check_method(ds, method, why)
+    asked = analysis_of(ds).quantiles
     find, estimate = _GROUPED.get(method, (None, None))
     design = find(ds) if find else None
     inputs, notes = independent_inputs(ds), tuple(notes_on_inputs(ds))
     found = []
-    for target in _chosen(ds, output):
+    for target in _chosen(ds, method, output):
         indices: Indices | str
         try:
             if target.refused:
                 raise RefusedError(target.refused)
             if estimate is None:
-                indices = given_data_indices(method, inputs, target.values)
+                quantiles = _quantiles(target, asked)
+                indices = given_data_indices(method, inputs, target.values, quantiles)
             else:
                 indices = estimate(design, target.values)
             indices = indices._replace(notes=indices.notes + notes)
@@ -166,15 +191,22 @@ def _estimate(ds: xr.Dataset, method: str | None, output: str | None) -> tuple[s
     return method, found
 
 
-def _check_method(ds: xr.Dataset, method: str) -> None:
+def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
+    """Return what quantiles of a target are called: B10 of a life is where its rate is high."""
+    if target.element is not None and target.element.kind == "lifetime":
+        return {"B10": 0.9, "B50": 0.5}
+    return {f"Q{probability!r}": probability for probability in asked}
+
+
+def _check_method(ds: xr.Dataset, method: str, dependent: str) -> None:
     design = ds.attrs["design"]
-    feeds = DESIGNS[design].feeds_with(are_dependent(ds))
+    feeds = DESIGNS[design].feeds_with(bool(dependent))
     if method in feeds:
         return
     if method in DESIGNS[design].feeds:
         raise InputError(
-            f"method '{method}' supposes independent inputs, and those of this study are not;"
-            f" use {' or '.join(feeds)}"
+            f"method '{method}' supposes independent inputs, but {dependent}"
+            f" (methods that do not: {', '.join(FOR_DEPENDENT_INPUTS)})"
         )
     able = [name for name, other in DESIGNS.items() if method in other.feeds]
     if not able:
@@ -188,23 +220,44 @@ def _check_method(ds: xr.Dataset, method: str) -> None:
     )
 
 
-def _chosen(ds: xr.Dataset, output: str | None) -> list[Target]:
-    """Return the targets that a user means, all of them or by name."""
-    analysis = analysis_of(ds)
+def _chosen(ds: xr.Dataset, method: str, output: str | None) -> list[Target]:
+    """Return the targets that a user means, all that suit the method or by name."""
     if output is None:
-        found = list(targets(elements_of(ds, shown_outputs(ds, analysis)), analysis.thresholds))
+        found = [
+            target
+            for name in shown_outputs(ds, analysis_of(ds))
+            for target in _targets(ds, name)
+            if target.event or method != "regional"
+            if not target.event or method != "quantile"
+        ]
+        if not found and method == "regional":
+            raise InputError(
+                "'regional' needs an event: a category, or a time of a lifetime in [analysis]"
+                " thresholds"
+            )
         if not found:
             raise InputError("none of the outputs is a number: there is nothing to apportion")
         return found
     # rate(first_time_to_depth[depth=0.00025]) and P(life<1000.0) hold the name of an element.
-    element = output.removeprefix("rate(").removeprefix("P(").rstrip(")").partition("<")[0]
-    found = list(targets(named_elements(ds, element), analysis.thresholds))
-    if output == element:
+    inside = output.removeprefix("rate(").removeprefix("P(").rstrip(")").partition("<")[0]
+    name = inside if "[" in inside else inside.partition("=")[0]
+    found = _targets(ds, name)
+    if output == name:
+        if not found:
+            raise InputError(f"no row has a {name}: there is nothing to apportion")
         return found
     chosen = [target for target in found if target.name == output]
     if not chosen:
         raise InputError(f"no such output '{output}'{nearest(output, [t.name for t in found])}")
     return chosen
+
+
+def _targets(ds: xr.Dataset, name: str) -> list[Target]:
+    """Return the targets of an output or of one element of it."""
+    if name in ds and ds[name].attrs.get("kind") == "category" and ds[name].ndim == 1:
+        return list(category_targets(ds, name))
+    known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
+    return list(targets(known, analysis_of(ds).thresholds))
 
 
 def _plain(index: Index) -> dict[str, float | None]:

@@ -130,7 +130,9 @@ def scattered_share_interval(
     if count < 2:
         return Interval(*np.full((2, *np.shape(share)), np.nan))
     variance = estimates.var(axis=0, ddof=1) / count
-    variance = np.where(np.ptp(estimates, axis=0) > 0, variance, np.nan)
+    # A curve of survival may reach 0 as a whole while a replicate's, censored, does not.
+    known = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
+    variance = np.where(known, variance, np.nan)
     return _wilson(share, at * (1 - at) / variance, stats.t.ppf(_UPPER_TAIL, count - 1))
 
 

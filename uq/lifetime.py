@@ -7,10 +7,8 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from uq.elements import Element, Floats, Mask, independent_rows, named_elements
-from uq.errors import InputError
+from uq.elements import Element, Floats, Mask, independent_rows, lifetimes, replicates_of
 from uq.intervals import CONFIDENCE, Interval, Replicates, scattered_share_interval
-from uq.statistics import replicates_of
 
 
 def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
@@ -44,12 +42,10 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
        analysis" (2003).
     """
     rows = independent_rows(ds)
-    chosen = named_elements(rows, output)
-    if chosen[0].kind != "lifetime":
-        raise InputError(f"'{output}' is not a lifetime")
+    chosen = lifetimes(rows, output)
     time = np.unique(np.concatenate([_finite(element.values) for element in chosen]))
     replicate = replicates_of(rows)
-    curves = [_curve(element, time, replicate) for element in chosen]
+    curves = [curve(element, time, replicate) for element in chosen]
 
     whole = rows[chosen[0].output]
     places = {dim: whole[dim] for dim in whole.dims if dim != "sample"}
@@ -57,7 +53,7 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     shape = tuple(whole.sizes[dim] for dim in dims)
     data = {}
     for name, meaning in _VARIABLES.items():
-        values = np.stack([curve[name] for curve in curves])
+        values = np.stack([one[name] for one in curves])
         along = ("time",) if values.ndim > 1 else ()
         attrs = {"long_name": meaning, "units": "1"}
         data[name] = ((*dims, *along), values.reshape(shape + values.shape[1:]), attrs)
@@ -79,8 +75,8 @@ _VARIABLES = {
 }
 
 
-def _curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, Any]:
-    """Return every variable of `survival` for one element."""
+def curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, Any]:
+    """Return every variable of `survival` for one element, at times [s] that ascend."""
     values, censored = element.at_least, element.censored[element.present]
     counts = {name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")}
     counts["rows"] = len(values)
@@ -88,7 +84,7 @@ def _curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, A
         unknown = np.full(len(time), np.nan)
         return counts | {"never": np.nan} | dict.fromkeys(("survival", "low", "high"), unknown)
     estimate = _kaplan_meier(values, censored, time)
-    curve = estimate.evaluate(time)
+    share = estimate.evaluate(time)
     if replicate is None:
         interval = _greenwood(estimate, time)
     else:
@@ -97,9 +93,9 @@ def _curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, A
             _kaplan_meier(values[of == r], censored[of == r], time).evaluate(time)
             for r in np.unique(of)
         ]
-        interval = scattered_share_interval(curve, np.array(estimates))
+        interval = scattered_share_interval(share, np.array(estimates))
     never = element.never.sum() / len(values)
-    return counts | {"never": never, "survival": curve} | interval._asdict()
+    return counts | {"never": never, "survival": share} | interval._asdict()
 
 
 def _kaplan_meier(values: Floats, censored: Mask, time: Floats) -> Any:

@@ -77,7 +77,7 @@ def _figures(ds: xr.Dataset) -> Iterator[tuple[str, Figure]]:
             yield file_name("lifetime", output), lifetime(ds, output)
         else:
             yield file_name("histogram", output), histogram(ds, output)
-    for method in methods(ds) if numbers else ():
+    for method in methods(ds):
         for name, entry in sensitivities(ds, method)["outputs"].items():
             if "refused" not in entry:
                 yield file_name(method, name), bars(ds, name, entry)

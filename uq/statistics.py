@@ -6,23 +6,29 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
+from numpy.typing import NDArray
 
 from uq import intervals
+from uq.b_lives import b_lives, ended_by, entry, quantile_entry
 from uq.contract import Status
 from uq.designs import DESIGNS
 from uq.elements import (
     Element,
-    Floats,
     Mask,
     analysis_of,
     elements_of,
     flags,
     independent_rows,
     output_names,
+    replicates_of,
     shown_outputs,
 )
-from uq.intervals import Interval, Replicates
+from uq.intervals import Replicates
+from uq.life_fit import fits_of
+from uq.regime_split import between_share
+from uq.regimes_of import within_regime
 from uq.study_file import AnalysisTable
+from uq.targets import targets
 
 NO_INTERVALS = (
     "no intervals: the rows of a '{design}' design are not independent, and with replicates = 1"
@@ -35,7 +41,12 @@ NO_STATISTICS = (
 )
 
 
-def summarise(ds: xr.Dataset, analysis: AnalysisTable | None = None) -> dict[str, Any]:
+def summarise(
+    ds: xr.Dataset,
+    analysis: AnalysisTable | None = None,
+    regime: str | None = None,
+    fits: bool = False,
+) -> dict[str, Any]:
     """Describe a result in plain data, ready for JSON.
 
     Parameters
@@ -44,28 +55,38 @@ def summarise(ds: xr.Dataset, analysis: AnalysisTable | None = None) -> dict[str
         A result.
     analysis : AnalysisTable, optional
         What to show; by default what the result's own study asks for.
+    regime : str, optional
+        Describe the rows in this regime only; those that failed without one count as failed.
+    fits : bool
+        Whether each lifetime also has ``fits``, as `uq.life_fits` returns them.
 
     Returns
     -------
     dict
         ``samples`` and ``status`` count all rows. Everything else is about the ``rows_used``, the
         independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
-        element -> mean, sd, quantiles, tolerance, thresholds, counts of never, censored, undefined
-        and failed rows) and ``notes``, sentences on what could not be given. A number that does
-        not exist or is not finite is None; beside it ``never``, ``low_censored`` and the like say
-        why.
+        element -> mean, sd, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
+        ``between_regimes``: the share of its variance, or of its rate's, that lies between them,
+        counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
+        not be given. A number that does not exist or is not finite is None; beside it ``never``,
+        ``low_censored`` and the like say why.
     """
     analysis = analysis or analysis_of(ds)
+    if regime is not None:
+        ds = within_regime(ds, regime)
     rows = independent_rows(ds)
     replicate = replicates_of(rows)
     outputs = shown_outputs(ds, analysis)
+    codes = rows["regime"].values if "regime" in output_names(ds) else None
     return {
         "samples": ds.sizes["sample"],
         "rows_used": rows.sizes["sample"],
         "status": status_counts(ds),
-        "regime": regime_shares(rows) if "regime" in output_names(ds) else {},
+        "regime": {} if codes is None else regime_shares(rows),
         "outputs": {
             element.name: _describe(element, replicate, analysis)
+            | _between(element, codes, replicate)
+            | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
             for element in elements_of(rows, outputs)
         },
         "notes": _notes(ds),
@@ -120,11 +141,6 @@ def _cells(name: str, entry: Mapping[str, Any]) -> dict[str, float]:
     return cells
 
 
-def replicates_of(rows: xr.Dataset) -> Replicates:
-    """Return the replicate of each row, or None where the rows are independent."""
-    return None if rows.attrs["design"] == "monte-carlo" else rows["replicate"].values
-
-
 def status_counts(ds: xr.Dataset) -> dict[str, int]:
     """Return how many rows ended how, all rows, for each status that occurs and ``ok``."""
     codes = ds["status"].values
@@ -171,7 +187,7 @@ def _describe(element: Element, replicate: Replicates, analysis: AnalysisTable) 
         "mean_interval": {"low": _plain(mean.low), "high": _plain(mean.high)},
         "sd": _plain(values.std(ddof=1)) if moments and len(values) > 1 else None,
         "quantiles": {
-            repr(probability): _quantile(element, probability, within)
+            repr(probability): quantile_entry(element, probability, within)
             for probability in analysis.quantiles
         },
         "tolerance": _tolerance(element, replicate, analysis),
@@ -179,21 +195,8 @@ def _describe(element: Element, replicate: Replicates, analysis: AnalysisTable) 
             repr(threshold): _threshold(element, threshold, replicate)
             for threshold in analysis.thresholds.get(element.output, ())
         },
+        "b_lives": b_lives(element, replicate) if element.kind == "lifetime" else {},
     } | {count: int(getattr(element, count).sum()) for count in _COUNTS}
-
-
-def _quantile(element: Element, probability: float, replicate: Replicates) -> dict[str, Any]:
-    def estimate(values: Floats) -> tuple[float, Interval]:
-        interval = intervals.quantile_interval(values, probability, replicate)
-        return intervals.quantile(values, probability), interval
-
-    value, early = estimate(element.at_least)
-    latest, late = estimate(element.at_most) if element.censored.any() else (value, early)
-    return _entry(
-        value=(value, np.inf if value < latest else value),
-        low=(early.low, early.low),
-        high=(early.high, late.high),
-    )
 
 
 def _tolerance(
@@ -204,22 +207,23 @@ def _tolerance(
     failed = int(element.failed.sum())
     early = intervals.tolerance_bounds(element.at_least, failed, *analysis.tolerance)
     late = intervals.tolerance_bounds(element.at_most, failed, *analysis.tolerance)
-    bounds = _entry(lower=(early.low, early.low), upper=(early.high, late.high))
+    bounds = entry(lower=(early.low, early.low), upper=(early.high, late.high))
     return bounds | {"rows_needed": intervals.rows_needed(*analysis.tolerance, failed)}
 
 
-def _entry(**numbers: tuple[float, float]) -> dict[str, Any]:
-    """Return numbers that depend on the censored rows, with the reason for each that is null.
+def _fitted(element: Element, fits: bool) -> bool:
+    return fits and element.kind == "lifetime"
 
-    Each comes twice: with the censored rows ending where they were last seen, and never ending.
-    The second is given, so that a bound from above holds whenever they end.
-    """
-    entry: dict[str, Any] = {name: _plain(last) for name, (_, last) in numbers.items()}
-    for name, (first, last) in numbers.items():
-        reason = "never" if np.isposinf(first) else "censored" if np.isposinf(last) else None
-        if reason:
-            entry[reason if name == "value" else f"{name}_{reason}"] = True
-    return entry
+
+def _between(
+    element: Element, codes: NDArray[np.integer] | None, replicate: Replicates
+) -> dict[str, Any]:
+    target = next(targets([element], {}))
+    if codes is None or target.refused:
+        return {}
+    value, interval = between_share(target.values, codes, replicate)
+    ends = {"low": _plain(interval.low), "high": _plain(interval.high)}
+    return {"between_regimes": {"value": _plain(value)} | ends} if np.isfinite(value) else {}
 
 
 def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:
@@ -232,7 +236,8 @@ def _threshold(element: Element, threshold: float, replicate: Replicates) -> dic
     if unknown:
         nothing = dict.fromkeys(("value", "low", "high"))
         reason = f"{unknown} rows were censored before {threshold!r} {element.units}"
-        return {"above": nothing, "below": nothing} | undefined | {"reason": reason}
+        guess = {"kaplan_meier": ended_by(element, threshold, replicate)}
+        return {"above": nothing, "below": nothing} | undefined | {"reason": reason} | guess
     above = (values > threshold) | (censored & (values == threshold))
     within = _of(replicate, kept)
     below = (values < threshold) & ~censored

@@ -6,8 +6,10 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
-from uq.elements import Element, Floats
+from uq.elements import Element, Floats, flags
+from uq.results import failed
 
 
 @dataclass(frozen=True)
@@ -17,18 +19,23 @@ class Target:
     Attributes
     ----------
     name : str
-        That of the element; for lifetimes ``rate(element)`` and ``P(element<t)``.
-    element : Element
+        That of the element; for lifetimes ``rate(element)`` and ``P(element<t)``; for regimes
+        ``P(regime=label)``.
+    element : Element or None
+        None for a category.
     values : ndarray, shape (n,)
         NaN for rows that failed or have no value.
     refused : str
         Why there can be no index of it, or "".
+    event : bool
+        Whether the values say if something happened, 1, or not, 0.
     """
 
     name: str
-    element: Element
+    element: Element | None
     values: Floats
     refused: str = ""
+    event: bool = False
 
 
 class Index(NamedTuple):
@@ -107,4 +114,26 @@ def _event(element: Element, threshold: float) -> Target:
     unknown = int((ended & element.censored).sum())
     refused = f"{unknown} rows were censored before {threshold!r} {element.units}" * (unknown > 0)
     event = np.where(element.present, ended, np.nan)
-    return Target(f"P({element.name}<{threshold!r})", element, event, refused)
+    return Target(f"P({element.name}<{threshold!r})", element, event, refused, event=True)
+
+
+def category_targets(ds: xr.Dataset, output: str) -> Iterator[Target]:
+    """Yield whether a category, such as the regime, is each of those that occur.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or some rows of one.
+    output : str
+        An output of kind ``category`` without dimensions.
+
+    Yields
+    ------
+    Target
+        NaN for rows that failed before they had a category; a sound row of no category has none.
+    """
+    codes, lost = ds[output].values, failed(ds)
+    for code, label in flags(ds[output]):
+        if code >= 0 and (hits := codes == code).any():
+            values = np.where((codes < 0) & lost, np.nan, hits)
+            yield Target(f"P({output}={label})", None, values, event=True)

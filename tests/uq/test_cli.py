@@ -251,6 +251,28 @@ def test_too_many_failed_rows_are_an_exit_code_and_a_sentence(uq, write_study, f
     assert ended("nan", 0.9).code == 0
 
 
+def test_lives_fits_and_regimes_are_shown(uq, folder):
+    from computed import kinds, linear, with_output
+
+    life = 1e5 * linear(samples=300)["x1"].values ** 0.5
+    ds = with_output(linear(samples=300), "life", life, "lifetime")
+    ds.to_netcdf("life.nc")
+    shown = uq("summary", "life.nc", "--fits").out
+    assert "B10" in shown and "lognormal: does not fit" in shown and "variance between" not in shown
+    assert (
+        "fits" in strict_json(uq("summary", "life.nc", "--fits", "--json").out)["outputs"]["life"]
+    )
+    kinds(samples=200).to_netcdf("kinds.nc")
+    assert "variance between regimes" in uq("summary", "kinds.nc").out
+    fast = strict_json(uq("summary", "kinds.nc", "--regime", "fast", "--json").out)
+    assert fast["regime"]["slow"]["count"] == 0 < fast["regime"]["fast"]["count"]
+    regional = uq("sensitivity", "kinds.nc", "--method", "regional", "--output", "regime")
+    assert regional.code == 0 and "P(regime=fast)" in regional.out and "KS" in regional.out
+    assert "Sensitivity by delta" in uq("sensitivity", "kinds.nc", "--regime", "fast").out
+    wrong = uq("summary", "kinds.nc", "--regime", "fats")
+    assert wrong.code == 2 and "did you mean 'fast'" in wrong.err
+
+
 def test_summary_and_sensitivity_as_json(uq, write_study):
     uq("run", write_study(method="saltelli", samples=16, replicates=4), "-o", "out.nc", "--quiet")
     summary = strict_json(uq("summary", "out.nc", "--json").out)

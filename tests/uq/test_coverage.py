@@ -8,12 +8,14 @@ from math import prod
 
 import numpy as np
 import pytest
-from computed import UNIFORM, computed, study_of, with_output, with_seed
+from computed import UNIFORM, asking, computed, study_of, with_output, with_seed
 from scipy import stats
 from scipy.optimize import brentq
 
 from uq.indices import sensitivities
+from uq.life_fit import life_fits
 from uq.lifetime import survival
+from uq.regime_split import between_share
 from uq.statistics import summarise
 
 REPETITIONS = 200
@@ -257,4 +259,55 @@ def test_lifetimes_that_never_end_or_are_censored(design):
         leaving = np.random.default_rng(seed).exponential(4e6, len(life))
         seen = with_output(ds, "seen", np.minimum(life, leaving), "lifetime", leaving < life)
         tally_survival(tally, survival(seen, "seen"), cdf, (5e5, 1e6))
+    tally.check()
+
+
+@pytest.mark.parametrize("design", [("monte-carlo", 500, 1), ("latin-hypercube", 125, 8)])
+def test_b_lives_and_shares_with_censored_rows(design):
+    tally = Tally("censored: " + title("wear", design))
+    for seed, ds in enumerate(repeat("exponential-wear", design, WEAR)):
+        life = ds["life"].values
+        leaving = np.random.default_rng(seed).exponential(4e6, len(life))
+        ds = with_output(ds, "seen", np.minimum(life, leaving), "lifetime", leaving < life)
+        entry = summarise(asking(ds, thresholds={"seen": [1e6]}))["outputs"]["seen"]
+        for name, p in {"B10": 0.1, "B50": 0.5}.items():
+            found = entry["b_lives"][name]
+            tally.add(name, LIFE.ppf(p), found["low"], found["high"])
+        below = entry["thresholds"]["1000000.0"]["kaplan_meier"]["below"]
+        tally.add("P(< 1e6)", LIFE.cdf(1e6), below["low"], below["high"])
+    tally.check()
+
+
+@pytest.mark.parametrize("horizon", [np.inf, 1.2e6])
+def test_fitted_laws(horizon):
+    # Of the repetitions in which the test does not refuse the true law: 19 in 20.
+    tally = Tally(f"lognormal fit, horizon {horizon:g}")
+    refused = 0
+    for ds in repeat("exponential-wear", ("monte-carlo", 60, 1), WEAR):
+        life = ds["life"].values
+        ds = with_output(ds, "seen", np.minimum(life, horizon), "lifetime", life > horizon)
+        fit = life_fits(ds, "seen")["seen"]["lognormal"]
+        refused += "refused" in fit
+        if "refused" in fit:
+            continue
+        truth = {"median": LIFE.median(), "sigma": np.hypot(SIGMA, SPREAD)}
+        for name, found in fit["parameters"].items():
+            tally.add(name, truth[name], found["low"], found["high"])
+        for name, p in {"B1": 0.01, "B10": 0.1, "B50": 0.5}.items():
+            tally.add(name, LIFE.ppf(p), fit[name]["low"], fit[name]["high"])
+    assert stats.binomtest(refused, REPETITIONS, 0.05).pvalue > 1e-3
+    tally.check(conservative=("median", "sigma", "B1", "B10", "B50"))
+
+
+@pytest.mark.parametrize("design", [("monte-carlo", 300, 1), ("latin-hypercube", 64, 8)])
+def test_variance_between_two_regimes(design):
+    # A step of 2.0 at x4 = 0.7 on top of x1, uniform: p (1 - p) 4 of variance between.
+    tally = Tally("two regimes, " + title("linear", design))
+    between = 0.21 * 4.0
+    inputs = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
+    for ds in repeat("linear", design, inputs):
+        codes = (ds["x4"].values > 0.7).astype(int)
+        replicate = None if design[0] == "monte-carlo" else ds["replicate"].values
+        found = between_share(ds["x1"].values + 2.0 * codes, codes, replicate)[1]
+        tally.add("between", between / (between + 1 / 12), found.low, found.high)
     tally.check()

@@ -206,7 +206,8 @@ def test_names_of_lifetimes_carry_their_element():
         "rate(life[side=left,depth=0.5])",
         "P(life[side=left,depth=0.5]<1000000.0)",
     ]
-    assert names[-1] == "angle" and len(names) == 2 + 8 + 1  # a category has no indices
+    assert names[-3:] == ["angle", "P(regime=slow)", "P(regime=fast)"]
+    assert len(names) == 2 + 8 + 1 + 2
 
 
 def test_censored_lives_have_no_rate_but_may_have_a_probability():
@@ -378,12 +379,15 @@ def test_outputs_can_be_named_in_every_way():
     assert list(indices(ds, output=name)["outputs"]) == [name]
     name = "rate(life[side=right,depth=1.5])"
     assert list(indices(ds, output=name)["outputs"]) == [name]
+    both = ["P(regime=slow)", "P(regime=fast)"]
+    assert list(indices(ds, output="regime")["outputs"]) == both
+    assert list(indices(ds, output=both[1])["outputs"]) == both[1:]
     for wrong, sentence in {
         "wrok": "no such output 'wrok'; did you mean 'work'",
         "work[side=lefd]": r"no such element 'work\[side=lefd\]'; did you mean 'work\[side=left\]'",
         "rate(work[side=left])": "no such output",
         "P(life[side=left,depth=0.5]<2.0)": "no such output",
-        "regime": "'regime' is a category",
+        "P(regime=medium)": "no such output",
     }.items():
         with pytest.raises(InputError, match=sentence):
             sensitivities(ds, output=wrong)

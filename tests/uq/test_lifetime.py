@@ -121,3 +121,11 @@ def test_degenerate_results_have_a_curve_all_the_same():
 def test_what_is_not_a_lifetime_is_refused(output, sentence):
     with pytest.raises(InputError, match=sentence):
         survival(kinds(), output)
+
+
+def test_a_curve_that_ends_while_a_replicate_is_censored_has_no_band_there():
+    values = np.arange(1.0, 17.0)
+    censored = np.zeros(16)
+    censored[-2] = 1  # the last row of one replicate is censored, that of the other ends
+    curve = survival(lives(values, censored, "latin-hypercube", replicates=2), "life")
+    assert float(curve["survival"][-1]) == 0.0 and np.isnan(float(curve["high"][-1]))

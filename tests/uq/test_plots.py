@@ -29,7 +29,8 @@ def test_every_figure_of_a_study_is_written_as_png_and_svg(tmp_path):
     stems = {path.stem for path in paths}
     assert {"histogram-work", "histogram-angle", "lifetime-life"} < stems
     assert {"rbd-fast-work_side_left", "rbd-fast-angle", "pawn-angle"} < stems
-    assert not any("regime" in stem or "rate" in stem for stem in stems)  # censored: no rate
+    assert any("regime" in stem and stem.startswith("pawn") for stem in stems)
+    assert not any("rate" in stem for stem in stems)  # censored: no rate
     for path in paths:
         if path.suffix == ".png":
             assert 600 < imread(path).shape[1] < 800  # one column at 200 dots per inch
@@ -52,11 +53,11 @@ def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
     assert len(drawn) == len(paths) == 6
 
 
-def test_categories_alone_give_no_figure(tmp_path):
+def test_categories_alone_have_the_indices_of_each(tmp_path):
     ds = kinds(analysis={"outputs": ["regime"]})
-    assert plots.save_all(ds, tmp_path) == []
-    with pytest.raises(InputError, match="none of the outputs is a number"):
-        sensitivities(ds)
+    assert list(sensitivities(ds)["outputs"]) == ["P(regime=slow)", "P(regime=fast)"]
+    stems = {path.stem for path in plots.save_all(ds, tmp_path)}
+    assert len(stems) == 2 and all(stem.startswith("rbd-fast-") for stem in stems)
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):

@@ -153,6 +153,9 @@ def run(
     return studies.run(study, output, model, samples, fresh, quiet, options)
 
 
+Regime = Annotated[str | None, typer.Option(metavar="NAME", help="Only the rows in this regime.")]
+
+
 @app.command()
 def status(result: ResultFile, json: Json = False) -> None:
     """Show where a run stands, also while it runs."""
@@ -205,7 +208,14 @@ def verify(result: ResultFile, model: ModelReference = None) -> int:
 
 
 @app.command()
-def summary(result: ResultFile, json: Json = False) -> None:
+def summary(
+    result: ResultFile,
+    regime: Regime = None,
+    fits: Annotated[
+        bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
+    ] = False,
+    json: Json = False,
+) -> None:
     """Show how rows ended, and the statistics of each output."""
     from uq.cli import tables
     from uq.cli.printing import print_json
@@ -213,7 +223,8 @@ def summary(result: ResultFile, json: Json = False) -> None:
     from uq.statistics import summarise
 
     ds = open_result(result)
-    print_json(summarise(ds)) if json else tables.show_summary(ds, summarise(ds))
+    found = summarise(ds, regime=regime, fits=fits)
+    print_json(found) if json else tables.show_summary(ds, found)
 
 
 @app.command()
@@ -221,6 +232,7 @@ def sensitivity(
     result: ResultFile,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
     method: Annotated[str | None, typer.Option(metavar="M", help="Default: the study's.")] = None,
+    regime: Regime = None,
     json: Json = False,
 ) -> None:
     """Show which inputs the scatter comes from."""
@@ -229,7 +241,7 @@ def sensitivity(
     from uq.indices import sensitivities
     from uq.results import open_result
 
-    found = sensitivities(open_result(result), method=method, output=output)
+    found = sensitivities(open_result(result), method, output, regime)
     print_json(found) if json else tables.show_sensitivity(found)
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import xarray as xr
 
+from uq.b_lives import B_LIVES
 from uq.cli.printing import console, duration, grid, heading, number, paragraph
 
 Entry = Mapping[str, Any]
@@ -32,6 +33,8 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
         unit = "" if output["units"] == "1" else f" [{output['units']}]"
         heading(f"\n{name}{unit}", meaning)
         grid(_lines(output), header=("", "value", "95 % interval", ""))
+        if fits := output.get("fits"):
+            _show_fits(fits)
     for note in summary["notes"]:
         console.print()
         paragraph(note, indent=0)
@@ -51,6 +54,10 @@ def _lines(output: Entry) -> Iterator[Line]:
     yield line("sd", output, "sd")
     for probability, entry in output["quantiles"].items():
         yield line(f"quantile {probability}", entry)
+    for name, entry in output["b_lives"].items():
+        yield line(name, entry)
+    if any("assumes" in entry for entry in output["b_lives"].values()):
+        yield "", "B-lives suppose", _ASSUMES, ""
     if bounds := output["tolerance"]:
         yield line("tolerance, lower", bounds, "lower")
         yield line("tolerance, upper", bounds, "upper")
@@ -61,9 +68,28 @@ def _lines(output: Entry) -> Iterator[Line]:
         yield line(f"P(< {number(float(threshold))})", entry["below"], time=False)
         if reason := entry.get("reason"):
             yield "", reason, "", ""
+            guess = entry["kaplan_meier"]
+            yield line(f"P(< {number(float(threshold))}), if", guess["below"], time=False)
+            yield "", _ASSUMES, "", ""
+    if split := output.get("between_regimes"):
+        yield line("variance between regimes", split, time=False)
     for count in ("never", "censored", "undefined", "failed"):
         if output[count]:
             yield count, str(output[count]), "", "rows"
+
+
+_ASSUMES = "censoring says nothing of the life left"
+
+
+def _show_fits(fits: Mapping[str, Entry]) -> None:
+    """Print the laws that fit, with the lives they give, and why others do not."""
+    for law, fit in fits.items():
+        if refusal := fit.get("refused"):
+            paragraph(f"{law}: {refusal}", indent=2)
+            continue
+        numbers = fit["parameters"] | {name: fit[name] for name in B_LIVES}
+        heading(f"  {law}", f"fits {fit['rows']} rows, p = {fit['p_value']:.2g}")
+        grid([(name, number(one["value"]), _interval(one)) for name, one in numbers.items()])
 
 
 def _known(entry: Entry, key: str) -> str:

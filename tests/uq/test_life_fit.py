@@ -1,0 +1,133 @@
+import numpy as np
+import openturns as ot
+import pytest
+from computed import asking, linear, with_output
+from scipy import stats
+
+import uq
+from uq import b_lives
+from uq.errors import InputError
+from uq.intervals import rows_needed
+from uq.location_scale import FAMILIES, anderson_darling, fit
+from uq.statistics import summarise
+
+WEIBULL = stats.weibull_min(1.7, scale=3e5)
+LOGNORMAL = stats.lognorm(0.6, scale=2e5)
+
+
+def lives(values, censored=None, method="monte-carlo", **analysis):
+    ds = with_output(linear(method, samples=len(values)), "life", values, "lifetime", censored)
+    return asking(ds, outputs=["life"], **analysis)
+
+
+def sample(law, n=400, seed=1):
+    return law.rvs(n, random_state=np.random.default_rng(seed))
+
+
+@pytest.mark.parametrize("horizon", [np.inf, 2.5e5])
+@pytest.mark.parametrize(("name", "law"), [("weibull", WEIBULL), ("lognormal", LOGNORMAL)])
+def test_parameters_are_those_of_scipys_maximum_likelihood(name, law, horizon):
+    life = sample(law)
+    ended, life = life <= horizon, np.minimum(life, horizon)
+    location, scale = fit(FAMILIES[name], np.log(life)[None], ended[None])
+    data = stats.CensoredData(uncensored=life[ended], right=life[~ended])
+    shape, _, median = law.dist.fit(data, floc=0)
+    assert np.exp(location[0]) == pytest.approx(median, rel=1e-4)
+    assert scale[0] == pytest.approx(1 / shape if name == "weibull" else shape, rel=1e-4)
+
+
+def test_parameters_are_those_of_openturns():
+    life = sample(WEIBULL)
+    factory = ot.WeibullMinFactory()
+    factory.setKnownParameter([0.0], [2])
+    found = factory.build(ot.Sample(life[:, None])).getParameter()
+    parameters = uq.life_fits(lives(life), "life")["life"]["weibull"]["parameters"]
+    assert parameters["scale"]["value"] == pytest.approx(found[0], rel=1e-3)
+    assert parameters["shape"]["value"] == pytest.approx(found[1], rel=1e-3)
+
+
+def test_distance_is_that_of_anderson_and_darling():
+    z = np.sort(np.random.default_rng(0).normal(size=60))
+    z = (z - z.mean()) / z.std(ddof=1)
+    found = anderson_darling(stats.norm.cdf(z)[None], np.ones((1, 60), dtype=bool))[0]
+    expected = stats.anderson(z, "norm", method="interpolate").statistic
+    assert found == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("law", "right", "wrong"),
+    [(WEIBULL, "weibull", "lognormal"), (LOGNORMAL, "lognormal", "weibull")],
+)
+def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
+    found = uq.life_fits(lives(sample(law)), "life")["life"]
+    assert found[right]["p_value"] > 0.05 > found[wrong]["p_value"]
+    assert "does not fit" in found[wrong]["refused"] and "parameters" not in found[wrong]
+    for name, p in b_lives.B_LIVES.items():
+        b_life = found[right][name]
+        assert b_life["low"] < law.ppf(p) < b_life["high"]
+        assert b_life["value"] == pytest.approx(law.ppf(p), rel=0.25)
+    for index in found[right]["parameters"].values():
+        assert index["low"] < index["value"] < index["high"]
+
+
+def test_what_cannot_be_fitted_is_refused():
+    good = sample(WEIBULL)
+    never = np.where(np.arange(400) < 7, np.inf, good)
+    zero = np.where(np.arange(400) < 3, 0.0, good)
+    for values, censored, sentence in (
+        (never, None, "7 of 400 rows never end"),
+        (zero, None, "3 rows have no positive life"),
+        (good, np.arange(400) >= 19, "only 19 rows ended"),
+        (np.full(400, 5.0), None, "share fewer than 20 values"),
+    ):
+        found = uq.life_fits(lives(values, censored), "life")["life"]
+        assert all(sentence in one["refused"] for one in found.values())
+    for one in uq.life_fits(lives(good, method="halton"), "life")["life"].values():
+        assert "independent rows" in one["refused"]
+    with pytest.raises(InputError, match="not a lifetime"):
+        uq.life_fits(linear(), "y")
+
+
+def test_b_lives_are_plain_quantiles_while_censoring_does_not_matter():
+    life = sample(LOGNORMAL)
+    whole = summarise(lives(life, quantiles=[0.01, 0.1, 0.5]))["outputs"]["life"]
+    assert list(whole["b_lives"].values()) == list(whole["quantiles"].values())
+    late = np.minimum(life, 2.5e5)
+    cut = summarise(lives(late, life > 2.5e5))["outputs"]["life"]
+    assert cut["b_lives"] == whole["b_lives"]
+    never = np.where(life > 2.5e5, np.inf, life)
+    assert summarise(lives(never))["outputs"]["life"]["b_lives"] == whole["b_lives"]
+    most = summarise(lives(np.where(life > 1e5, np.inf, life)))["outputs"]["life"]
+    assert most["b_lives"]["B50"]["value"] is None and most["b_lives"]["B50"]["never"]
+
+
+def test_b_lives_of_censored_rows_are_those_of_kaplan_and_meier():
+    # Klein, Moeschberger, "Survival analysis", 2nd ed. (2003), section 4.5: the median remission
+    # of the 6-MP group is 23 months, from 13 on; nothing bounds it from above.
+    ended = [6, 6, 6, 7, 10, 13, 16, 22, 23]
+    left = [6, 9, 10, 11, 17, 19, 20, 25, 32, 32, 34, 35]
+    censored = np.r_[np.zeros(9), np.ones(12)]
+    found = summarise(lives(np.r_[ended, left].astype(float), censored))["outputs"]["life"]
+    b50 = found["b_lives"]["B50"]
+    assert (b50["value"], b50["low"], b50["high"]) == (23.0, 13.0, None)
+    assert "censoring" in b50["assumes"]
+
+
+def test_share_that_ended_by_a_time_with_rows_censored_before():
+    life, leaving = sample(WEIBULL, 1000), sample(stats.expon(scale=4e5), 1000, seed=2)
+    ds = lives(np.minimum(life, leaving), leaving < life, thresholds={"life": 2e5})
+    entry = summarise(ds)["outputs"]["life"]["thresholds"]["200000.0"]
+    assert entry["below"]["value"] is None and "censored before" in entry["reason"]
+    guess = entry["kaplan_meier"]
+    assert guess["below"]["low"] < guess["below"]["value"] < guess["below"]["high"]
+    assert guess["below"]["value"] == pytest.approx(WEIBULL.cdf(2e5), abs=0.06)
+    assert guess["above"]["value"] == pytest.approx(1 - guess["below"]["value"])
+    at = uq.survival(ds, "life").sel(time=2e5, method="ffill")
+    assert guess["above"]["value"] == float(at["survival"])
+
+
+@pytest.mark.parametrize(("coverage", "confidence"), [(0.95, 0.95), (0.99, 0.9), (0.9, 0.99)])
+def test_rows_that_a_bound_needs_are_those_of_openturns(coverage, confidence):
+    for failed in (0, 2):
+        expected = ot.Wilks.ComputeSampleSize(coverage, confidence, failed)
+        assert rows_needed(coverage, confidence, failed) == expected

@@ -1,0 +1,131 @@
+import numpy as np
+import pytest
+from computed import asking, kinds, linear, with_output, with_status
+from scipy import stats
+
+import uq
+from uq.contract import Status
+from uq.errors import InputError
+from uq.given_data import DUMMIES
+from uq.indices import sensitivities
+from uq.regime_split import between_share
+from uq.statistics import summarise
+
+
+def test_inputs_of_a_regime_are_told_from_those_of_the_rest():
+    # The regime is slow for x1 < 0.5, of x1 in [0.01, 0.99], and x2 plays no part.
+    ds = kinds(samples=512, analysis={"outputs": ["work", "regime"]})
+    found = uq.regimes(ds)
+    assert list(found["regime"].values) == ["slow", "fast"]
+    slow = found.sel(regime="slow")
+    assert float(slow["distance"].sel(parameter="x1")) == 1.0
+    assert float(slow["distance"].sel(parameter="x2")) < float(slow["distance_dummy"])
+    quantiles = slow["input_quantile"].sel(parameter="x1")
+    expected = 0.01 + 0.49 * quantiles["probability"].values
+    assert quantiles.values == pytest.approx(expected, abs=0.05)
+    hits = ds["x1"].values <= 0.5
+    assert int(slow["count"]) == hits.sum()
+    wilson = stats.binomtest(int(hits.sum()), 512).proportion_ci(method="wilson")
+    assert (float(slow["share_low"]), float(slow["share_high"])) == pytest.approx(tuple(wilson))
+    left = slow.sel(output="work[side=left]")
+    assert float(left["mean"]) == pytest.approx(ds["x1"].values[hits].mean())
+    assert float(left["sd"]) == pytest.approx(ds["x1"].values[hits].std(ddof=1))
+
+
+def test_regional_distance_is_scipys_and_its_dummies_share_its_null():
+    ds = kinds(samples=256, analysis={"outputs": ["regime"]})
+    entry = sensitivities(ds, "regional")["outputs"]["P(regime=fast)"]
+    hits = ds["x1"].values > 0.5
+    expected = stats.ks_2samp(ds["x2"].values[hits], ds["x2"].values[~hits]).statistic
+    assert entry["KS"]["x2"]["value"] == pytest.approx(expected)
+    # The largest of 19 lies about the 95 % quantile of the law of the distance.
+    rng, n = np.random.default_rng(3), int(hits.sum())
+    null = [
+        stats.ks_2samp(one[:n], one[n:], method="asymp").statistic for one in rng.random((400, 256))
+    ]
+    assert DUMMIES == 19
+    assert np.quantile(null, 0.6) < entry["dummy"]["KS"] < np.quantile(null, 0.999)
+
+
+def test_regional_needs_an_event():
+    with pytest.raises(InputError, match="needs an event"):
+        sensitivities(linear(samples=128), "regional")
+    refused = sensitivities(linear(samples=128), "regional", "y")["outputs"]["y"]["refused"]
+    assert "not an event" in refused
+    y = linear(samples=128)["y"].values
+    ds = asking(with_output(linear(samples=128), "life", y, "lifetime"), thresholds={"life": 5.0})
+    found = sensitivities(ds, "regional")["outputs"]
+    assert list(found) == ["P(life<5.0)"]
+    assert found["P(life<5.0)"]["KS"]["x4"]["value"] > found["P(life<5.0)"]["dummy"]["KS"]
+
+
+def test_sobol_indices_of_a_regime_are_those_of_its_indicator():
+    ds = kinds("saltelli", 128, 8)
+    entry = sensitivities(ds, output="P(regime=fast)")["outputs"]["P(regime=fast)"]
+    assert entry["ST"]["x1"]["value"] == pytest.approx(1.0, abs=0.02)
+    assert entry["ST"]["x2"]["value"] == 0.0
+
+
+def test_variance_between_regimes():
+    # Of a uniform input cut at its middle, three quarters of the variance lie between the halves.
+    for design, replicates in (("monte-carlo", 1), ("latin-hypercube", 8), ("saltelli", 8)):
+        entry = summarise(kinds(design, 128, replicates))["outputs"]["work[side=left]"]
+        split = entry["between_regimes"]
+        assert split["low"] < 0.75 < split["high"], design
+        assert split["value"] == pytest.approx(0.75, abs=0.06)
+    assert "between_regimes" not in summarise(linear())["outputs"]["y"]
+
+
+def test_variance_between_regimes_of_noise_has_no_interval():
+    rng = np.random.default_rng(0)
+    y, codes = rng.normal(size=300), rng.integers(0, 3, 300)
+    value, interval = between_share(y, codes)
+    assert abs(value) < 0.03 and np.isnan(interval).all()
+    # By hand: 1, 2 | 4, 6 has means 1.5 and 5, variance 59/16, of which 49/16 between.
+    value, _ = between_share(
+        np.array([1.0, 2.0, 4.0, 6.0]), np.array([0, 0, 1, 1]), np.zeros(4, int)
+    )
+    assert value == pytest.approx(49 / 59)
+    for y, codes in (([1.0, 1.0, 1.0, 1.0], [0, 0, 1, 1]), ([1.0, 2.0], [0, 0]), ([], [])):
+        value, interval = between_share(np.array(y), np.array(codes, dtype=int))
+        assert np.isnan(value) and np.isnan(interval).all()
+
+
+def test_statistics_within_a_regime():
+    ds = kinds(samples=400)
+    fast = ds["x1"].values > 0.5
+    found = summarise(ds, regime="fast")
+    assert found["rows_used"] == fast.sum() and found["regime"]["slow"]["count"] == 0
+    work = found["outputs"]["work[side=left]"]
+    assert work["mean"] == pytest.approx(ds["x1"].values[fast].mean())
+    # A failed row without a regime may have belonged to this one: it counts as failed.
+    ds["work"][3] = np.nan
+    ds["regime"][3] = -1
+    ds = with_status(ds, 3, Status.NON_FINITE)
+    for name in ("fast", "slow"):
+        assert summarise(ds, regime=name)["outputs"]["work[side=left]"]["failed"] == 1
+
+
+def test_indices_within_a_regime_suppose_no_independent_inputs():
+    ds = kinds(samples=400, analysis={"outputs": ["work"]})
+    found = sensitivities(ds, regime="fast")
+    assert found["method"] == "delta" and found["rows_used"] == (ds["x1"].values > 0.5).sum()
+    entry = found["outputs"]["work[side=left]"]
+    assert entry["delta"]["x1"]["value"] > entry["dummy"]["delta"] > 0
+    with pytest.raises(InputError, match="within a regime the inputs depend on each other"):
+        sensitivities(ds, "rbd-fast", regime="fast")
+    with pytest.raises(InputError, match="supposes independent inputs"):
+        sensitivities(kinds("saltelli", 64, 4), regime="fast")
+
+
+def test_regimes_that_are_not_there():
+    with pytest.raises(InputError, match="no such regime 'fats'; did you mean 'fast'"):
+        summarise(kinds(), regime="fats")
+    with pytest.raises(InputError, match="has no regimes"):
+        summarise(linear(), regime="fast")
+    with pytest.raises(InputError, match="has no regimes"):
+        uq.regimes(linear())
+    slow = kinds(samples=64)
+    slow = slow.isel(sample=slow["regime"].values == 0)
+    with pytest.raises(InputError, match="no row is in the regime 'fast'"):
+        summarise(slow, regime="fast")

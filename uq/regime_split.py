@@ -1,0 +1,86 @@
+"""The variance of an output, split into that between regimes and that within them."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Interval, Replicates, scatter_interval
+
+MIN_IN_REGIME = 2
+"""A regime with fewer rows has no variance of its own: it is left out."""
+
+
+def between_share(
+    values: Floats, codes: NDArray[np.integer], replicate: Replicates = None
+) -> tuple[float, Interval]:
+    """Estimate the share of the variance that the regime's mean explains.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where there is none.
+    codes : ndarray of int, shape (n,)
+        Regime of each row, negative for none.
+    replicate : ndarray of int, shape (n,), optional
+
+    Returns
+    -------
+    value : float
+        The correlation ratio; for independent rows less what chance makes of it (epsilon squared
+        [1]_). NaN where no two regimes have rows enough, or all values are the same.
+    interval : Interval
+        For independent rows by the normal law of the estimate's influence function, and unknown
+        where an F-test finds no difference between the regimes: there the estimate has no normal
+        law. For replicates from their scatter.
+
+    References
+    ----------
+    .. [1] T. L. Kelley, "An unbiased correlation ratio measure", Proc. Natl. Acad. Sci. 21,
+       554-559 (1935).
+    """
+    kept = np.isfinite(values) & (codes >= 0)
+    counts = np.bincount(codes[kept], minlength=1)
+    kept[kept] = counts[codes[kept]] >= MIN_IN_REGIME
+    _, regime = np.unique(codes[kept], return_inverse=True)
+    y = values[kept]
+    value, deviation, residual = _split(y, regime)
+    if not np.isfinite(value):
+        return np.nan, UNKNOWN
+    if replicate is None:
+        value, interval = _independent(value, deviation, residual, regime.max() + 1)
+    else:
+        of = replicate[kept]
+        found = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
+        interval = scatter_interval(value, found) if np.isfinite(found).all() else UNKNOWN
+    return value, Interval(max(float(interval.low), 0.0), min(float(interval.high), 1.0))
+
+
+def _independent(
+    ratio: float, deviation: Floats, residual: Floats, regimes: int
+) -> tuple[float, Interval]:
+    n = len(deviation)
+    value = 1 - (1 - ratio) * (n - 1) / (n - regimes) if n > regimes else np.nan
+    total = deviation + residual
+    influence = deviation**2 + 2 * deviation * residual - ratio * total**2
+    half = stats.norm.ppf(0.5 + CONFIDENCE / 2) * influence.std() / total.var() / np.sqrt(n)
+    freedom = regimes - 1, n - regimes
+    with np.errstate(divide="ignore", invalid="ignore"):
+        statistic = ratio / freedom[0] / ((1 - ratio) / freedom[1])
+    if not half > 0 or stats.f.sf(statistic, *freedom) > 1 - CONFIDENCE:
+        return value, UNKNOWN
+    # Fisher's transformation of the root, in which the estimate is as good as normal.
+    root = np.sqrt(value)
+    wide = half / (2 * root * (1 - value))
+    low, high = (np.tanh(np.arctanh(root) + side * wide) for side in (-1, 1))
+    return value, Interval(np.copysign(low**2, low), high**2)
+
+
+def _split(y: Floats, regime: NDArray[np.integer]) -> tuple[float, Floats, Floats]:
+    """Return the correlation ratio, and each row as regime mean plus residual, less the mean."""
+    if len(y) == 0 or np.ptp(y) == 0 or len(np.unique(regime)) < 2:
+        return np.nan, y, y
+    counts = np.bincount(regime)
+    with np.errstate(invalid="ignore"):
+        means = np.bincount(regime, weights=y) / counts
+    deviation = means[regime] - y.mean()
+    return float(np.mean(deviation**2) / y.var()), deviation, y - means[regime]
