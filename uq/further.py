@@ -106,6 +106,7 @@ def rerun_failed(
     model: str | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
+    row_limit: float | None = None,
     progress: Report | None = None,
     say: Say = lambda _: None,
 ) -> xr.Dataset:
@@ -118,7 +119,7 @@ def rerun_failed(
     settings : dict
         Numerical settings other than the study's; the result says for each row whether it was
         computed with them, in the variable ``rerun``.
-    model, workers, scheduler, progress, say
+    model, workers, scheduler, row_limit, progress, say
         As in `extend` and `uq.runner.run`.
 
     Returns
@@ -147,7 +148,7 @@ def rerun_failed(
     plain = json.loads(json.dumps(differing))  # as it will be read again
     with runner.kept(study, path, again=plain, say=say) as kept:
         work = work_of(study)._replace(settings=changed)
-        return runner.carry_out(work, workers, scheduler, None, progress, kept=kept)
+        return runner.carry_out(work, workers, scheduler, None, progress, row_limit, kept)
 
 
 def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import uq as api
+from uq import isolation
 from uq.contract import Status
 
 RAISING = '[settings]\nfail_above = 0.5\nfail_how = "raise"\n[analysis]\nmax_failed = 1.0'
@@ -92,6 +93,20 @@ def test_failed_rows_are_run_again_with_changed_settings(uq, result):
     assert "no row failed" in uq("rerun", "out.nc", "--failed").err
     assert uq("extend", "out.nc", "--samples", 300, "--quiet").code == 0
     assert np.array_equal(api.open_result("out.nc")["rerun"].values[:200], last["rerun"].values)
+
+
+def test_endless_rows_are_stopped_when_extending_and_running_again(uq, write_study, monkeypatch):
+    monkeypatch.setattr(isolation, "_FIRST_SECONDS", 0.5)
+    more = '[settings]\nfail_above = 0.85\nfail_how = "hang"'
+    path = write_study(model="linear", samples=12, uncertain=("x1",), more=more)
+    assert uq("run", path, "-o", "out.nc", "--quiet").code == 0
+    limit = ("--row-limit", "0.5", "--quiet")
+    assert uq("extend", "out.nc", "--samples", 24, *limit).code == 0
+    after = api.open_result("out.nc")
+    assert np.array_equal(after["status"].values == Status.TIMED_OUT, after["x1"].values > 0.85)
+    assert (after["status"] == Status.TIMED_OUT).sum() == 1
+    assert uq("rerun", "out.nc", "--failed", *limit).code == 0
+    assert api.open_result("out.nc").identical(after)
 
 
 def test_failed_rows_run_again_as_they_were_change_no_bit(uq, result):

@@ -204,6 +204,7 @@ def test_a_file_holds_what_memory_holds(kinds):
     study, path = kinds
     ds = runner.compute(study, workers=0)
     assert results.open_result(path).identical(ds)
-    again = Path("again.nc")
-    store.write(ds, again)
-    assert again.read_bytes() == Path(path).read_bytes()
+    # Merged from chunks or written at once: the layout may differ, nothing that is said does.
+    store.write_result(ds, Path("again.nc"))
+    with netCDF4.Dataset(path) as merged, netCDF4.Dataset("again.nc") as again:
+        assert merged.getncattr(results.CHECKSUM) == again.getncattr(results.CHECKSUM)

@@ -30,6 +30,9 @@ Workers = Annotated[
 Scheduler = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="Use a running dask cluster.")
 ]
+RowLimit = Annotated[
+    float | None, typer.Option(metavar="S", help="Stop a row after so many seconds.")
+]
 Settings = Annotated[
     list[str] | None,
     typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
@@ -134,9 +137,7 @@ def run(
     chunk_rows: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Rows per task; default: 0.5 s of work.")
     ] = None,
-    row_limit: Annotated[
-        float | None, typer.Option(metavar="S", help="Stop a row after so many seconds.")
-    ] = None,
+    row_limit: RowLimit = None,
     model: ModelReference = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Overwrite whatever OUT.nc is.")] = False,
     quiet: Quiet = False,
@@ -172,13 +173,14 @@ def extend(
     samples: Annotated[int, typer.Option(min=1, metavar="N", help="As many in all.")],
     workers: Workers = None,
     scheduler: Scheduler = None,
+    row_limit: RowLimit = None,
     model: ModelReference = None,
     quiet: Quiet = False,
 ) -> int:
     """Give a result more samples; nothing is computed again."""
     from uq.cli import keeping
 
-    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    options = {"workers": workers, "scheduler": scheduler, "row_limit": row_limit}
     return keeping.extend(result, samples, model, quiet, options)
 
 
@@ -189,19 +191,20 @@ def rerun(
     setting: Settings = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
+    row_limit: RowLimit = None,
     model: ModelReference = None,
     quiet: Quiet = False,
 ) -> int:
-    """Compute the failed rows of a result again, with other settings if so wished."""
+    """Compute the failed rows of a result again."""
     from uq.cli import keeping
 
-    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    options = {"workers": workers, "scheduler": scheduler, "row_limit": row_limit}
     return keeping.rerun(result, failed, setting or [], model, quiet, options)
 
 
 @app.command()
 def verify(result: ResultFile, model: ModelReference = None) -> int:
-    """Check the checksum of a result, and compute a few of its rows again."""
+    """Check a result, and compute a few of its rows again."""
     from uq.cli import keeping
 
     return keeping.verify(result, model)
