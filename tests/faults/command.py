@@ -13,9 +13,11 @@ import numpy as np
 from uq.cli import main
 from uq.contract import Model, Output, Parameter, Status
 
-# What the command loads when it needs it: loaded once, before the processes are forked.
+# What the command loads when it needs it: loaded once, before the processes are forked, and before
+# they become another user, who may not see where Python lives.
 for module in ("dask", "filelock", "netCDF4", "scipy.stats", "models.analytic", "uq.statistics"):
     import_module(module)
+"".encode("utf-8-sig")
 for module in ("app", "keeping", "studies"):
     import_module(f"uq.cli.{module}")
 

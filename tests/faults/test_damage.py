@@ -143,7 +143,7 @@ def test_a_read_only_folder_is_refused(study, call):
         closed.chmod(0o555)
         for output in (closed / "out.nc", closed / "new" / "out.nc"):
             code, said = call("run", closed / study.name, *MODEL, "-o", output, **as_nobody)
-            assert code == 2
+            assert code == 2, said
             assert said == f"{output}: cannot write in {closed}: Permission denied\n"
         assert [path.name for path in closed.iterdir()] == [study.name]
         closed.chmod(0o700)
