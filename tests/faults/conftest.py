@@ -4,6 +4,7 @@ import multiprocessing
 import os
 import signal
 import time
+from collections import Counter
 from pathlib import Path
 
 import command
@@ -11,6 +12,47 @@ import pytest
 
 PATIENCE = 180.0
 """How long a busy machine may take for what should take a moment [s]."""
+
+OUTCOMES = {
+    "SIGKILL of a run": "goes on, same bits",
+    "SIGKILL during the merge": "goes on, same bits",
+    "SIGKILL of an extension": "the old result stays; goes on, same bits",
+    "Ctrl-C": "says how to go on; same bits",
+    "SIGTERM": "says how to go on; same bits",
+    "lock of a living process": "refused in a sentence",
+    "lock of a dead process": "recognised, goes on, same bits",
+    "lock of another computer": "refused in a sentence",
+    "chunk file truncated": "computed again, same bits",
+    "chunk file emptied": "computed again, same bits",
+    "chunk file with one bit flipped": "computed again, same bits",
+    "chunk file missing": "computed again, same bits",
+    "journal cut": "loses the cut record only; same bits",
+    "journal record changed": "computed again, same bits",
+    "file-size limit": "one sentence, no half file; goes on, same bits",
+    "full disk": "one sentence, no half file; goes on, same bits",
+    "read-only folder": "refused in a sentence",
+    "study edited between runs": "refused, or goes on where rows stay the same",
+    "worker killed": "computed elsewhere, same bits",
+    "all workers killed": "started anew, same bits",
+    "process of a worker killed": "started anew, same bits",
+    "worker killed three times on a chunk": "chunk halved, same bits",
+    "workers killed again and again": "ends with a sentence",
+    "worker joins or leaves a cluster": "same bits",
+    "scheduler killed": "ends with a sentence",
+    "cluster loses its only worker": "ends with a sentence",
+    "cold numba cache, eight runs at once": "same bits",
+    "decimal comma, plain terminal, closed input": "same bits",
+    "row: raise": "marked raised; the others as ever",
+    "row: nan": "marked non-finite; the others as ever",
+    "row: inf": "marked non-finite; the others as ever",
+    "row: shape": "marked bad-shape; the others as ever",
+    "row: exit": "marked crashed; the others as ever",
+    "row: hang": "marked timed-out; the others as ever",
+    "row: segfault": "marked crashed; the others as ever",
+    "row: killed": "marked crashed; the others as ever",
+    "row: dtype": "the model is refused in a sentence",
+}
+"""What is done to runs, and what the tests demand then: in any case that no row is lost."""
 
 OUT = Path("results/small.nc")
 ROWS = Path("results/small.nc.rows")
@@ -82,6 +124,37 @@ def under_way(start):
         return run
 
     return begin
+
+
+@pytest.fixture
+def injected(record_property):
+    """Return a function that counts a fault: ``injected(fault, times)``."""
+
+    def count(fault, times=1):
+        assert fault in OUTCOMES
+        record_property(fault, int(times))
+
+    return count
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Print how often each fault was injected, as a table for the documentation."""
+    ended = {"passed": Counter(), "failed": Counter()}
+    for outcome, times in ended.items():
+        for report in terminalreporter.getreports(outcome):
+            if report.when == "call":
+                for fault, count in report.user_properties:
+                    times[fault] += count
+    if not any(ended.values()):
+        return
+    lines = ["| Fault | Injected | Rows lost | Outcome |", "|---|---:|---:|---|"]
+    for fault, outcome in OUTCOMES.items():
+        if times := ended["passed"][fault]:
+            lines.append(f"| {fault} | {times} | 0 | {outcome} |")
+        if times := ended["failed"][fault]:
+            lines.append(f"| {fault} | {times} | ? | TEST FAILED |")
+    terminalreporter.section("faults injected")
+    terminalreporter.write_line("\n".join(lines))
 
 
 def _lines(journal):

@@ -34,8 +34,10 @@ def one_bit_flipped(content):
 
 
 @pytest.mark.parametrize("damage", [truncated, emptied, one_bit_flipped])
-def test_a_damaged_chunk_file_is_computed_again(study, undisturbed, kept, call, damage):
+def test_a_damaged_chunk_file_is_computed_again(study, undisturbed, kept, call, injected, damage):
     kept[1].write_bytes(damage(kept[1].read_bytes()))
+    words = damage.__name__.replace("_", " ")
+    injected(f"chunk file {'with ' * (damage is one_bit_flipped)}{words}")
     first, _, stop = kept[1].stem.partition("-")[2].partition("-")
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
@@ -45,19 +47,21 @@ def test_a_damaged_chunk_file_is_computed_again(study, undisturbed, kept, call, 
     assert OUT.read_bytes() == undisturbed
 
 
-def test_a_missing_chunk_file_is_computed_again(study, undisturbed, kept, call):
+def test_a_missing_chunk_file_is_computed_again(study, undisturbed, kept, call, injected):
     kept[1].unlink()
+    injected("chunk file missing")
     assert call("run", study, *MODEL)[0] == 0
     assert OUT.read_bytes() == undisturbed
 
 
 @pytest.mark.parametrize("bytes_cut", [1, 30])
 def test_a_journal_that_was_cut_loses_its_last_record_only(
-    study, undisturbed, kept, call, bytes_cut
+    study, undisturbed, kept, call, injected, bytes_cut
 ):
     journal = ROWS / "journal"
     content = journal.read_bytes()
     journal.write_bytes(content[:-bytes_cut])
+    injected("journal cut")
     records = [json.loads(line[9:]) for line in content.splitlines()]
     last = len(records) - (bytes_cut > 1)
     blocks = [block for record in records[1:last] for block in record["blocks"]]
@@ -68,16 +72,17 @@ def test_a_journal_that_was_cut_loses_its_last_record_only(
     assert OUT.read_bytes() == undisturbed
 
 
-def test_a_record_that_was_changed_does_not_count(study, undisturbed, kept, call):
+def test_a_record_that_was_changed_does_not_count(study, undisturbed, kept, call, injected):
     journal = ROWS / "journal"
     lines = journal.read_bytes().split(b"\n")
     lines[2] = one_bit_flipped(lines[2])
     journal.write_bytes(b"\n".join(lines))
+    injected("journal record changed")
     assert call("run", study, *MODEL)[0] == 0
     assert OUT.read_bytes() == undisturbed
 
 
-def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call):
+def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call, injected):
     code, said = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE="9000")
     assert code == 1
     assert said.count("\n") == 1
@@ -85,6 +90,7 @@ def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call)
     assert said.endswith(" of 1500 rows are kept, and the same command goes on from there\n")
     assert not OUT.exists()
     assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
+    injected("file-size limit", 2)
     almost = str(len(undisturbed) - 5000)  # more than all chunk files take together
     code, said = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE=almost)
     assert code == 1
@@ -111,7 +117,7 @@ def disk(folder):
     subprocess.run(["umount", str(place)], check=True)
 
 
-def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call, disk):
+def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call, disk, injected):
     out, rows, filler = (disk / name for name in ("out.nc", "out.nc.rows", "filler"))
     filler.write_bytes(bytes(900_000))
     code, said = call("run", study, *MODEL, "-o", out)
@@ -124,6 +130,7 @@ def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call
         while True:  # meanwhile somebody else needs the disk
             file.write(bytes(1000))
     code, said = run.wait()
+    injected("full disk", 2)  # with the refusal above
     assert code == 1
     assert said.count("\n") == 1
     assert said.startswith(f"{rows}: could not be written: No space left on device; ")
@@ -135,7 +142,7 @@ def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call
     assert out.read_bytes() == undisturbed
 
 
-def test_a_read_only_folder_is_refused(study, call):
+def test_a_read_only_folder_is_refused(study, call, injected):
     as_nobody = {"UQ_TEST_USER": "65534"} if os.geteuid() == 0 else {}
     with tempfile.TemporaryDirectory() as name:
         closed = Path(name)
@@ -144,6 +151,7 @@ def test_a_read_only_folder_is_refused(study, call):
         for output in (closed / "out.nc", closed / "new" / "out.nc"):
             code, said = call("run", closed / study.name, *MODEL, "-o", output, **as_nobody)
             assert code == 2, said
+            injected("read-only folder")
             assert said == f"{output}: cannot write in {closed}: Permission denied\n"
         assert [path.name for path in closed.iterdir()] == [study.name]
         closed.chmod(0o700)

@@ -12,10 +12,13 @@ from conftest import MODEL, OUT, ROWS, until
         ("x2 =", "# x2 =", '[uncertain.x2] distribution = "uniform", now nothing'),
     ],
 )
-def test_another_study_is_refused_with_what_changed(study, under_way, call, old, new, sentence):
+def test_another_study_is_refused_with_what_changed(
+    study, under_way, call, injected, old, new, sentence
+):
     under_way(study).kill()
     before = {path.name for path in ROWS.iterdir()} - {"lock"}
     study.write_text(study.read_text().replace(old, new, 1))
+    injected("study edited between runs")
     code, said = call("run", study, *MODEL)
     assert code == 2
     assert said == (
@@ -26,8 +29,9 @@ def test_another_study_is_refused_with_what_changed(study, under_way, call, old,
     assert call("run", study, *MODEL, "--fresh")[0] == 0
 
 
-def test_comments_and_analysis_may_change(study, undisturbed, under_way, call):
+def test_comments_and_analysis_may_change(study, undisturbed, under_way, call, injected):
     under_way(study).kill()
+    injected("study edited between runs", 2)
     study.write_text(study.read_text() + "# a comment\nquantiles = [0.5]\n")
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
@@ -38,13 +42,14 @@ def test_comments_and_analysis_may_change(study, undisturbed, under_way, call):
     assert call("verify", OUT, *MODEL[:2])[0] == 0
 
 
-def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, under_way, call):
+def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, under_way, call, injected):
     few = study.read_text().replace("samples = 1500", "samples = 900")
     many = study.read_text()
     study.write_text(few)
     under_way(study).kill()
     study.write_text(many)
     under_way(study).kill()  # it went on, with more
+    injected("study edited between runs", 3)
     study.write_text(few)
     code, said = call("run", study, *MODEL)
     assert code == 2
@@ -56,25 +61,27 @@ def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, under_w
     assert OUT.read_bytes() == undisturbed
 
 
-def test_an_extension_may_be_killed(study, undisturbed, start, call):
+def test_an_extension_may_be_killed(study, undisturbed, start, call, injected):
     assert call("run", study, *MODEL, "--samples", "600")[0] == 0
     before = OUT.read_bytes()
     extend = ("extend", OUT, "--samples", "1500", *MODEL)
     run = start(*extend, UQ_TEST_SECONDS="0.01")
     until(lambda: len(list(ROWS.glob("*.rows"))) > 1)
     run.kill()
+    injected("SIGKILL of an extension")
     assert OUT.read_bytes() == before
     assert "stays" in call("status", OUT)[1]
     assert call(*extend)[0] == 0
     assert OUT.read_bytes() == undisturbed
 
 
-def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call):
+def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call, injected):
     study = write_study(
         model="patient", uncertain=("x1", "x2"), method="latin-hypercube", samples=800
     )
     under_way(study).kill()
     study.write_text(study.read_text().replace("samples = 800", "samples = 900"))
+    injected("study edited between runs")
     code, said = call("run", study, *MODEL)
     assert code == 2
     assert "a 'latin-hypercube' design cannot be extended: all its rows change" in said

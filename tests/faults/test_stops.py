@@ -13,7 +13,7 @@ RANDOM = random.Random(2026)
 
 
 @pytest.mark.parametrize("kills", [4, pytest.param(30, marks=pytest.mark.slow)])
-def test_kills_at_random_moments(study, undisturbed, start, call, kills):
+def test_kills_at_random_moments(study, undisturbed, start, call, injected, kills):
     done = [0]
     while len(done) <= kills:
         run = start("run", study, *MODEL, "--chunk-rows", "3", UQ_TEST_SECONDS="0.003")
@@ -21,6 +21,7 @@ def test_kills_at_random_moments(study, undisturbed, start, call, kills):
         run.process.join(RANDOM.uniform(0.0, 0.6))
         assert run.process.is_alive(), "ended before it was killed often enough"
         run.kill()
+        injected("SIGKILL of a run")
         assert not OUT.exists()
         if (ROWS / "journal").exists() and (ROWS / "journal").read_bytes():
             standing = json.loads(call("status", OUT, "--json")[1])
@@ -35,7 +36,7 @@ def test_kills_at_random_moments(study, undisturbed, start, call, kills):
 
 
 @pytest.mark.parametrize("kills", [3, pytest.param(10, marks=pytest.mark.slow)])
-def test_kills_during_the_merge(write_study, start, call, kills):
+def test_kills_during_the_merge(write_study, start, call, injected, kills):
     study = write_study(model="linear", uncertain=("x1", "x2", "x3"), samples=200_000)
     options = ("--workers", "0", "--quiet", "--chunk-rows", "2000")
     assert call("run", study, *options, "-o", "undisturbed.nc")[0] == 0
@@ -48,6 +49,7 @@ def test_kills_during_the_merge(write_study, start, call, kills):
         caught += not OUT.exists() and bool(list(ROWS.glob(".*.part")))
         if OUT.exists():  # too late: once more
             OUT.unlink()
+    injected("SIGKILL during the merge", caught)
     shutil.copytree(ROWS, "copy")
     code, said = call("run", study, *options[:2])
     assert code == 0
@@ -61,12 +63,13 @@ def test_kills_during_the_merge(write_study, start, call, kills):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
-    study, undisturbed, start, call, number
+    study, undisturbed, start, call, injected, number
 ):
     run = start("run", study, *MODEL[:-1], "--chunk-rows", "7", UQ_TEST_SECONDS="0.002")
     until(lambda: list(ROWS.glob("*.rows")))
     run.process.join(0.3)
     run.send(number)
+    injected("Ctrl-C" if number == signal.SIGINT else "SIGTERM")
     code, said = run.wait()
     assert code == 128 + number
     told = re.fullmatch(
@@ -82,7 +85,7 @@ def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     assert OUT.read_bytes() == undisturbed
 
 
-def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_way, call):
+def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_way, call, injected):
     run = under_way(study)
     standing = json.loads(call("status", OUT, "--json")[1])
     assert standing["state"] == "running"
@@ -93,17 +96,20 @@ def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_w
     assert standing["rate"] > 0
     code, said = call("run", study, *MODEL)
     assert code == 2
+    injected("lock of a living process")
     host = standing["process"]["host"]
     assert said == f"{ROWS}: in use by process {run.process.pid} on {host}\n"
     run.kill()
     assert (ROWS / "lock").exists()  # stale, and recognised as such
+    injected("lock of a dead process")
     assert call("run", study, *MODEL)[0] == 0
     assert OUT.read_bytes() == undisturbed
 
 
-def test_a_lock_of_another_host_is_respected(study, under_way, call):
+def test_a_lock_of_another_host_is_respected(study, under_way, call, injected):
     under_way(study).kill()
     (ROWS / "lock").write_text("1\nelsewhere\n")
+    injected("lock of another computer")
     code, said = call("run", study, *MODEL)
     assert code == 2
     assert said == (
@@ -117,11 +123,14 @@ def test_a_lock_of_another_host_is_respected(study, under_way, call):
 @pytest.mark.parametrize(
     "workers", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in (1, 2, 4))]
 )
-def test_kills_with_workers_and_any_chunks(study, undisturbed, start, call, workers, chunk_rows):
+def test_kills_with_workers_and_any_chunks(
+    study, undisturbed, start, call, injected, workers, chunk_rows
+):
     options = (*MODEL[:2], "--workers", workers, "--quiet", "--chunk-rows", chunk_rows)
     run = start("run", study, *options, UQ_TEST_SECONDS="0.002")
     until(lambda: list(ROWS.glob("*.rows")) or not run.process.is_alive())
     run.process.join(0.5)
     run.kill()
+    injected("SIGKILL of a run")
     assert call("run", study, *options)[0] == 0
     assert OUT.read_bytes() == undisturbed

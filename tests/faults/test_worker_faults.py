@@ -77,20 +77,26 @@ class Killer:
 
 
 @pytest.mark.parametrize(
-    ("module", "times", "all_of_them"),
-    [("uq.worker", 3, False), ("uq.worker", 2, True), ("uq.child", 4, True)],
-    ids=["one worker", "all workers", "all that compute"],
+    ("fault", "module", "times", "all_of_them"),
+    [
+        ("worker killed", "uq.worker", 3, False),
+        ("all workers killed", "uq.worker", 2, True),
+        ("process of a worker killed", "uq.child", 4, True),
+    ],
 )
-def test_killed_processes_leave_no_trace(study_of, undisturbed, module, times, all_of_them):
+def test_killed_processes_leave_no_trace(
+    study_of, undisturbed, injected, fault, module, times, all_of_them
+):
     study = study_of(seconds=0.02)
     killer = Killer(module, times, all_of_them)
     ds = runner.compute(study, workers=2, chunk_rows=5, progress=killer)
     assert killer.times == 0
+    injected(fault, times)
     assert ds.identical(undisturbed(study))
 
 
 @pytest.mark.slow
-def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monkeypatch):
+def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monkeypatch, injected):
     study = study_of(seconds=0.1, samples=60)
     failed = []
     real = flight.Flight._failed
@@ -114,6 +120,7 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monke
     ds = runner.compute(study, workers=1, chunk_rows=20)
     thread.join()
     assert "KilledWorker" in failed
+    injected("worker killed three times on a chunk")
     assert ds.identical(undisturbed(study))
 
 
@@ -132,7 +139,7 @@ FAULTS = {
 @pytest.mark.parametrize("workers", [None, pytest.param(2, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("fault", FAULTS)
 def test_guilty_rows_get_their_status_and_the_others_their_values(
-    study_of, undisturbed, monkeypatch, fault, workers
+    study_of, undisturbed, monkeypatch, injected, fault, workers
 ):
     monkeypatch.setattr(isolation, "_FIRST_SECONDS", 0.5)
     model, settings, status, words = FAULTS[fault]
@@ -143,6 +150,7 @@ def test_guilty_rows_get_their_status_and_the_others_their_values(
     )
     guilty = ds["x1"].values > 0.98
     assert 0 < guilty.sum() < 5
+    injected(f"row: {fault}", guilty.sum())
     assert np.array_equal(ds["status"].values, np.where(guilty, status, Status.OK))
     first = np.flatnonzero(guilty)[0]
     example = ds["status"].attrs[f"example_{status.name.lower()}"]
@@ -153,9 +161,10 @@ def test_guilty_rows_get_their_status_and_the_others_their_values(
     assert np.isnan(ds["y"].values[guilty]).all()
 
 
-def test_a_wrong_dtype_refuses_the_model(study_of):
+def test_a_wrong_dtype_refuses_the_model(study_of, injected):
     study = study_of(above=0.98, how="dtype")
     for workers in (0, 1):
+        injected("row: dtype")
         with pytest.raises(KernelError, match="'y' is float32, expected float64"):
             runner.compute(study, workers=workers, chunk_rows=10)
 
@@ -198,7 +207,7 @@ def test_too_many_failed_rows_are_an_exit_code_after_the_result(uq, study_of, fo
 
 
 @pytest.mark.slow
-def test_processes_with_a_cold_cache_agree(study_of, folder):
+def test_processes_with_a_cold_cache_agree(study_of, folder, injected):
     model = "faulty_models:COMPILED"
     study = study_of(model, samples=20)
     environment = os.environ | {
@@ -218,6 +227,7 @@ def test_processes_with_a_cold_cache_agree(study_of, folder):
     ]
     ended = [(*process.communicate(timeout=240), process.returncode) for process in started]
     assert [(err, code) for _, err, code in ended] == [("", 0)] * 8
+    injected("cold numba cache, eight runs at once")
     results = [(folder / f"{i}.nc").read_bytes() for i in range(8)]
     assert len(set(results)) == 1
     assert list((folder / "cache").rglob("*.nbi"))
@@ -231,7 +241,7 @@ SURROUNDINGS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("surroundings", SURROUNDINGS)
-def test_surroundings_change_no_bit(study_of, undisturbed, folder, surroundings):
+def test_surroundings_change_no_bit(study_of, undisturbed, folder, injected, surroundings):
     study = study_of("linear", samples=40, fail_how="nan", fail_above=0.95)
     expected = undisturbed(study)
     environment = os.environ | SURROUNDINGS[surroundings]
@@ -245,6 +255,7 @@ def test_surroundings_change_no_bit(study_of, undisturbed, folder, surroundings)
         capture_output=True,
         timeout=PATIENCE,
     )
+    injected("decimal comma, plain terminal, closed input")
     assert ended.returncode == 0, ended.stderr
     assert b"\x1b" not in ended.stdout + ended.stderr
     assert max(map(len, ended.stdout.decode().splitlines())) <= 80
@@ -264,7 +275,7 @@ def test_everything_listens_on_this_computer_alone(study_of):
     assert listening == {"127.0.0.1"}
 
 
-def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch):
+def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
     monkeypatch.setattr(cluster, "_DEATHS_AT_MOST", 3)
     stop = threading.Event()
 
@@ -273,6 +284,7 @@ def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch):
             for process in processes("uq.worker"):
                 process.send_signal(signal.SIGKILL)
 
+    injected("workers killed again and again")
     thread = threading.Thread(target=kill_on)
     thread.start()
     try:

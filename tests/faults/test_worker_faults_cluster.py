@@ -112,7 +112,7 @@ def patiently(address, *arguments, **options):
 pytestmark = pytest.mark.slow
 
 
-def test_workers_come_and_go(start, study):
+def test_workers_come_and_go(start, study, injected):
     there = start()
     seen = []
 
@@ -124,11 +124,12 @@ def test_workers_come_and_go(start, study):
             there.end(there.started[1])
 
     ds = patiently(there.address, study, chunk_rows=2, progress=change)
+    injected("worker joins or leaves a cluster", 2)
     assert ds.identical(runner.compute(study, workers=0))
     assert there.scheduler.poll() is None
 
 
-def test_a_scheduler_that_dies_ends_the_run(start, study, monkeypatch):
+def test_a_scheduler_that_dies_ends_the_run(start, study, monkeypatch, injected):
     monkeypatch.setattr(cluster, "_REMOTE_SECONDS", 2)
     there = start()
 
@@ -138,9 +139,10 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, monkeypatch):
 
     with pytest.raises(RunError, match=rf"^--scheduler {there.address}: the scheduler is gone$"):
         patiently(there.address, study, chunk_rows=2, progress=kill)
+    injected("scheduler killed")
 
 
-def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch):
+def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch, injected):
     monkeypatch.setattr(cluster, "_WORKERLESS_SECONDS", 2.0)
     there = start()
 
@@ -150,6 +152,7 @@ def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch):
 
     with pytest.raises(RunError, match="the cluster has had no workers for 2 s"):
         patiently(there.address, study, chunk_rows=2, progress=kill)
+    injected("cluster loses its only worker")
 
 
 def self_signed(stem):
