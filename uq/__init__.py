@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from uq.attraction import basins
     from uq.indices import sensitivity
     from uq.lifetime import survival
+    from uq.reliability import rare_event
     from uq.results import open_result
     from uq.runner import run
     from uq.simulation import simulate
@@ -20,6 +21,7 @@ __all__ = [
     "basins",
     "load_study",
     "open_result",
+    "rare_event",
     "run",
     "sensitivity",
     "simulate",
@@ -31,6 +33,7 @@ _MODULES = {
     "basins": "attraction",
     "load_study": "study",
     "open_result": "results",
+    "rare_event": "reliability",
     "run": "runner",
     "sensitivity": "indices",
     "simulate": "simulation",

@@ -83,20 +83,37 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
     offset = first * per_group
     unit = cube.reshape(-1, cube.shape[-1])[start - offset : stop - offset]
 
-    names = study.model.parameter_names
-    x = np.empty((stop - start, len(names)))
-    x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
-    for column, (name, law) in zip(unit.T, study.uncertain.items(), strict=True):
-        bounds = study.model.parameter(name).bounds
-        # A contiguous copy: on strided data numpy may take another path, with other last bits.
-        x[:, names.index(name)] = ppf_within(law, np.ascontiguousarray(column), bounds)
     return Rows(
-        x,
+        physical(study, unit),
         row_seeds(table.seed, replicate, group, block),
         replicate.astype(np.int32),
         group,
         block.astype(np.int16),
     )
+
+
+def physical(study: "Study", unit: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Map points of the unit cube to all parameters of the model.
+
+    Parameters
+    ----------
+    study : Study
+    unit : ndarray, shape (n, len(study.uncertain))
+        Inside the open unit cube.
+
+    Returns
+    -------
+    ndarray, shape (n, d)
+        In declared order, each in its unit; C-contiguous.
+    """
+    names = study.model.parameter_names
+    x = np.empty((len(unit), len(names)))
+    x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
+    for column, (name, law) in zip(unit.T, study.uncertain.items(), strict=True):
+        bounds = study.model.parameter(name).bounds
+        # A contiguous copy: on strided data numpy may take another path, with other last bits.
+        x[:, names.index(name)] = ppf_within(law, np.ascontiguousarray(column), bounds)
+    return x
 
 
 def row_seeds(seed: int, *keys: NDArray[np.int64]) -> NDArray[np.uint64]:

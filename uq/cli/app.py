@@ -155,6 +155,44 @@ def sensitivity(
 
 
 @app.command()
+def rare_event(
+    study: StudyFile,
+    output: Annotated[str, typer.Option(metavar="NAME", help="Output, or element of one.")],
+    above: Annotated[
+        float | None, typer.Option(metavar="T", help="Probability of lying above.")
+    ] = None,
+    below: Annotated[
+        float | None, typer.Option(metavar="T", help="Probability of lying below.")
+    ] = None,
+    method: Annotated[
+        str, typer.Option(metavar="M", help="subset, or importance (FORM; smooth outputs).")
+    ] = "subset",
+    samples: Annotated[int, typer.Option(metavar="N", help="Rows of each level.")] = 1000,
+    replicates: Annotated[int, typer.Option(metavar="R", help="Repetitions of it all.")] = 8,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=0, metavar="N", help="Worker processes; 0: compute in this process."),
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Use a running dask cluster.")
+    ] = None,
+    model: ModelReference = None,
+    json: Json = False,
+) -> int:
+    """Estimate the probability of a rare event, down to 1e-6 and less."""
+    from uq.cli import estimates
+
+    options: dict[str, Any] = {
+        "method": method,
+        "samples": samples,
+        "replicates": replicates,
+        "workers": workers,
+        "scheduler": scheduler,
+    }
+    return estimates.rare_event(study, model, output, above, below, json, options)
+
+
+@app.command()
 def plot(
     result: ResultFile,
     folder: Annotated[
