@@ -52,6 +52,7 @@ LAYERS = {
         "worker",
     },
     "analysis": {
+        "control_variate",
         "elements",
         "given_data",
         "indices",
@@ -59,6 +60,7 @@ LAYERS = {
         "sobol",
         "statistics",
         "targets",
+        "twin",
     },
     "drawing": {"figure", "index_plot", "plots"},
     "command": {"cli"},

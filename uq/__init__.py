@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from uq.simulation import simulate
     from uq.statistics import summary
     from uq.study import load_study
+    from uq.twin import two_fidelities
 
 __all__ = [
     "basins",
@@ -27,6 +28,7 @@ __all__ = [
     "simulate",
     "summary",
     "survival",
+    "two_fidelities",
 ]
 
 _MODULES = {
@@ -39,6 +41,7 @@ _MODULES = {
     "simulate": "simulation",
     "summary": "statistics",
     "survival": "lifetime",
+    "two_fidelities": "twin",
 }
 
 

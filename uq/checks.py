@@ -6,6 +6,7 @@ from typing import Any
 from uq.conditioning import law_problem
 from uq.contract import Model
 from uq.designs import DESIGNS
+from uq.errors import nearest
 from uq.faults import Fault
 from uq.study_file import LAW
 from uq.values import parameter_problem, read_settings, unknown_name
@@ -67,6 +68,13 @@ def _output_faults(model: Model, analysis: Mapping[str, Any]) -> Iterator[Fault]
         if name not in known:
             problem = unknown_name("output", name, model, known)
             yield Fault(("analysis", "outputs"), problem, name)
+    twin = analysis.get("twin", "")
+    if twin and twin not in model.cheap:
+        cheap = tuple(model.cheap)
+        listed = f" ({', '.join(cheap)})" if cheap else ""
+        problem = f"model '{model.name}' cannot compute it alone at a small part of the cost"
+        remedy = f"; choose one that it can{listed}" if cheap else "; it has no such output"
+        yield Fault(("analysis", "twin"), f"{problem}{remedy}{nearest(twin, cheap)}", twin)
     for name, value in analysis.get("thresholds", {}).items():
         path = ("analysis", "thresholds", name)
         if name not in known:
@@ -94,6 +102,13 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
             f"refused: its confidence holds for independent rows, and those of '{method}' are not;"
             f" use method = {able}, or leave the bound out",
             analysis["tolerance"],
+        )
+    if analysis.get("twin") and not design.independent:
+        able = _names(name for name, other in DESIGNS.items() if other.independent)
+        yield Fault(
+            ("analysis", "twin"),
+            f"needs independent rows, and those of '{method}' are not; use method = {able}",
+            analysis["twin"],
         )
     for name in analysis.get("sensitivity", ()):
         if name not in design.feeds:

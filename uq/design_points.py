@@ -15,6 +15,7 @@ LimitState = Callable[[Floats], Floats]
 
 _STARTS = 8
 _ITERATIONS = 100
+_CALLS = 250  # of the model, in one search
 _SAME_WAY = 0.7  # cosine between a start and a point found: the search would find it again
 _APART = 0.5  # standard deviations between design points that are two
 
@@ -52,7 +53,13 @@ def design_points(margin: LimitState, u: Floats, margins: Floats) -> Floats:
     ot = _openturns()
     refused: list[Exception] = []
 
+    calls = 0
+
     def sample(points: Any) -> Floats:
+        nonlocal calls
+        calls += 1
+        if calls > _CALLS:
+            raise ValueError("too long a search")
         try:
             there = margin(np.array(points))
         except Exception as error:  # OpenTURNS would make a text of it
@@ -74,11 +81,12 @@ def design_points(margin: LimitState, u: Floats, margins: Floats) -> Floats:
             if any(_cosine(u[start], point) > _SAME_WAY for point in found):
                 continue
             searches += 1
+            calls = 0
             solver = ot.AbdoRackwitz()
             solver.setMaximumIterationNumber(_ITERATIONS)
             solver.setStartingPoint(u[start])
             search = ot.FORM(solver, event)
-            with suppress(TypeError, RuntimeError, ValueError):  # no gradient, no value
+            with suppress(TypeError, RuntimeError, ValueError):  # no gradient, no value, no end
                 search.run()
                 point = np.array(search.getResult().getStandardSpaceDesignPoint())
                 if solver.getResult().getConstraintError() < 1e-3 * (1 + np.ptp(margins)):

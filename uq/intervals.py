@@ -102,8 +102,13 @@ def share_interval(hits: Mask, replicate: Replicates = None) -> Interval:
     if len(hits) == 0:
         return UNKNOWN
     if replicate is None:
-        return _floats(_wilson(hits.mean(), len(hits), stats.norm.ppf(_UPPER_TAIL)))
+        return wilson_interval(hits.mean(), len(hits))
     return _floats(scattered_share_interval(hits.mean(), _means(hits, replicate)))
+
+
+def wilson_interval(share: float, rows: float) -> Interval:
+    """Return the interval of a share that is known as well as from so many independent rows."""
+    return _floats(_wilson(share, rows, stats.norm.ppf(_UPPER_TAIL)))
 
 
 def scattered_share_interval(

@@ -90,6 +90,7 @@ def _model_schema(model: Model) -> dict[str, Schema]:
             "properties": {
                 "outputs": {"items": known_outputs},
                 "thresholds": {"propertyNames": known_outputs},
+                "twin": {"enum": ["", *model.cheap]},
             }
         },
     }
@@ -104,6 +105,7 @@ def _design_schema(design: Design) -> dict[str, Schema]:
         table["second_order"] = {"const": False}
     if not design.independent:
         analysis["tolerance"] = {"not": {}}
+        analysis["twin"] = {"const": ""}
     return {"design": {"properties": table}, "analysis": {"properties": analysis}}
 
 

@@ -218,19 +218,39 @@ def _entry(**numbers: tuple[float, float]) -> dict[str, Any]:
 
 def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:
     kept = ~element.failed
-    values, censored = element.values[kept], element.censored[kept]
-    if element.kind == "angle":
-        values = np.abs(values)
     undefined = {"undefined": _plain(element.undefined[kept].mean()) if kept.any() else None}
-    unknown = int((censored & (values < threshold)).sum())
-    if unknown:
+    sides = event(element, threshold)
+    if sides is None:
+        unknown = int((element.censored & (element.values < threshold)).sum())
         nothing = dict.fromkeys(("value", "low", "high"))
         reason = f"{unknown} rows were censored before {threshold!r} {element.units}"
         return {"above": nothing, "below": nothing} | undefined | {"reason": reason}
-    above = (values > threshold) | (censored & (values == threshold))
     within = _of(replicate, kept)
-    below = (values < threshold) & ~censored
-    return {"above": _share(above, within), "below": _share(below, within)} | undefined
+    above, below = (_share(side[kept], within) for side in sides)
+    return {"above": above, "below": below} | undefined
+
+
+def event(element: Element, threshold: float) -> tuple[Mask, Mask] | None:
+    """Return which rows lie above and which below a threshold, by magnitude for an angle.
+
+    Parameters
+    ----------
+    element : Element
+    threshold : float
+
+    Returns
+    -------
+    tuple of ndarray of bool, or None
+        Rows without a value lie on neither side. None where rows were censored before the
+        threshold, so that nobody knows.
+    """
+    values, censored = element.values, element.censored
+    if (censored & (values < threshold)).any():
+        return None
+    if element.kind == "angle":
+        values = np.abs(values)
+    above = (values > threshold) | (censored & (values == threshold))
+    return above, (values < threshold) & ~censored
 
 
 def _share(hits: Mask, replicate: Replicates) -> dict[str, Any]:

@@ -43,7 +43,7 @@ class Study:
         An instance of ``model.settings``.
     analysis : AnalysisTable
         outputs (all of them if the file names none), quantiles, max_failed, tolerance,
-        thresholds, sensitivity.
+        thresholds, twin, sensitivity.
     text : str
         The whole study file.
     path : str

@@ -144,6 +144,9 @@ class AnalysisTable(_Table):
             _DISTINCT,
         ],
     ] = Field({}, description="output = t: probability of lying above and below t")
+    twin: str = Field(
+        "", description="cheap output whose many rows sharpen the estimates, monte-carlo only"
+    )
     sensitivity: Annotated[
         tuple[Annotated[str, _one_of("method", METHODS)], ...], _LIST, _DISTINCT
     ] = Field(
