@@ -84,7 +84,7 @@ def with_twin(ds: xr.Dataset, model: str | None = None) -> dict[str, Any]:
             "the study names no twin: [analysis] twin = NAME of an output that model"
             f" '{study.model.name}' can compute alone ({cheap})"
         )
-    study = study.with_samples(ds.attrs["samples"])
+    study = study.with_samples(int(ds.attrs["samples"]))
     here = _twin_of(study, _inputs(ds, study), _seeds(ds, study))
     many = _many(study, ds.sizes["sample"])
     outputs = [name for name in shown_outputs(ds, study.analysis) if name != study.analysis.twin]

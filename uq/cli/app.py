@@ -155,6 +155,14 @@ def sensitivity(
 
 
 @app.command()
+def twin(result: ResultFile, model: ModelReference = None, json: Json = False) -> None:
+    """Sharpen means and probabilities by many rows of a cheap output."""
+    from uq.cli import estimates
+
+    estimates.twin(result, model, json)
+
+
+@app.command()
 def rare_event(
     study: StudyFile,
     output: Annotated[str, typer.Option(metavar="NAME", help="Output, or element of one.")],

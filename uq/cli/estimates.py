@@ -1,4 +1,4 @@
-"""What ``uq rare-event`` prints."""
+"""What ``uq rare-event`` and ``uq twin`` print."""
 
 import sys
 from pathlib import Path
@@ -97,3 +97,36 @@ def _show(ds: xr.Dataset) -> None:
     for note in found["notes"]:
         console.print()
         paragraph(note, indent=0)
+
+
+def twin(result: Path, model: str | None, json: bool) -> None:
+    """Show means and probabilities sharpened by the study's cheap output."""
+    from uq.results import open_result
+    from uq.twin import with_twin
+
+    found = with_twin(open_result(result), model)
+    if json:
+        print_json(found)
+        return
+    heading(
+        f"With {found['twin']} as twin",
+        f"{found['rows']} rows, and {found['cheap_rows']} of the twin alone",
+    )
+    for name, estimates in found["outputs"].items():
+        heading(f"\n{name}")
+        grid(
+            [
+                (label, number(entry["value"]), _interval(entry), _interval(entry["plain"]), times)
+                for label, entry in estimates.items()
+                for times in [f"{entry['reduction']:.3g}"]
+            ],
+            header=("", "value", "95 % interval", "without twin", "worth"),
+        )
+    console.print()
+    paragraph("worth: how many times more rows without twin would do the same", indent=0)
+
+
+def _interval(entry: dict[str, Any]) -> str:
+    if entry["low"] is None:
+        return ""
+    return f"{number(entry['low'])} to {number(entry['high'])}"
