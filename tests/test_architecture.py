@@ -36,7 +36,17 @@ LAYERS = {
         "template",
         "values",
     },
-    "rows": {"attractors", "evaluate", "grid", "results", "sampling", "store", "work"},
+    "rows": {
+        "attractors",
+        "elements",
+        "evaluate",
+        "grid",
+        "results",
+        "sampling",
+        "stopping",
+        "store",
+        "work",
+    },
     "running": {
         "attraction",
         "cluster",
@@ -53,7 +63,7 @@ LAYERS = {
     },
     "analysis": {
         "control_variate",
-        "elements",
+        "convergence",
         "given_data",
         "indices",
         "lifetime",

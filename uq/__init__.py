@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from uq.attraction import basins
+    from uq.convergence import enough, running_estimates
     from uq.indices import sensitivity
     from uq.lifetime import survival
     from uq.reliability import rare_event
@@ -20,10 +21,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "basins",
+    "enough",
     "load_study",
     "open_result",
     "rare_event",
     "run",
+    "running_estimates",
     "sensitivity",
     "simulate",
     "summary",
@@ -33,10 +36,12 @@ __all__ = [
 
 _MODULES = {
     "basins": "attraction",
+    "enough": "convergence",
     "load_study": "study",
     "open_result": "results",
     "rare_event": "reliability",
     "run": "runner",
+    "running_estimates": "convergence",
     "sensitivity": "indices",
     "simulate": "simulation",
     "summary": "statistics",

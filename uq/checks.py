@@ -43,6 +43,13 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     for name, text in read_settings(model, given)[1].items():
         yield Fault(("settings", name), text, given[name]) if name else Fault(("settings",), text)
     yield from _output_faults(model, tables["analysis"])
+    if until := tables["design"].get("until"):
+        name = until["output"].partition("[")[0]
+        if name not in model.outputs:
+            problem = unknown_name("output", name, model, tuple(model.outputs))
+            yield Fault(("design", "until", "output"), problem, until["output"])
+        elif model.outputs[name].kind == "category":
+            yield Fault(("design", "until", "output"), "is a category: it has no numbers", name)
 
 
 def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -103,6 +110,14 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
             f" use method = {able}, or leave the bound out",
             analysis["tolerance"],
         )
+    if table.get("until") and not design.append_only:
+        able = _names(name for name, other in DESIGNS.items() if other.append_only)
+        yield Fault(
+            ("design", "until"), f"a '{method}' design cannot grow; use method = {able}", True
+        )
+    elif table.get("until") and not design.independent and table.get("replicates", 1) < 2:
+        problem = f"nothing shows how well a '{method}' design knows anything; set replicates = 8"
+        yield Fault(("design", "until"), problem, True)
     if analysis.get("twin") and not design.independent:
         able = _names(name for name, other in DESIGNS.items() if other.independent)
         yield Fault(

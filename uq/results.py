@@ -102,6 +102,32 @@ def build_rows(
     return xr.Dataset(inputs | outputs, _coordinates(model, settings), attrs)
 
 
+def appended(before: xr.Dataset, more: xr.Dataset) -> xr.Dataset:
+    """Return the rows of one result with further rows of the same study behind them.
+
+    Parameters
+    ----------
+    before, more : xarray.Dataset
+        What they share is taken from `more`; the example of a failure is the first one.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    joined: dict[Any, xr.Variable] = {}
+    for name, variable in more.variables.items():
+        if "sample" in variable.dims:
+            both = [before[name].variable.to_base_variable(), variable.to_base_variable()]
+            joined[name] = xr.Variable.concat(both, "sample")
+            joined[name].attrs = dict(variable.attrs)
+            joined[name].encoding["_FillValue"] = None
+    joined["sample"] = joined["sample"].copy(data=np.arange(len(joined["sample"])))
+    joined["status"].attrs |= before["status"].attrs
+    variables = dict(more.variables) | joined
+    data = {name: variables[name] for name in more.data_vars}
+    return xr.Dataset(data, {name: variables[name] for name in more.coords}, more.attrs)
+
+
 def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
     """Yield name and values of each element of an output: ``work_rate[site=left]``.
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import xarray as xr
 
-from uq import results, store
+from uq import results, stopping, store
 from uq.errors import InputError
 from uq.job import Job, Report
 from uq.sampling import rows
 from uq.study import Study, load_study
-from uq.work import Work, work_of
+from uq.work import Work, more_of, work_of
 
 IN_PROCESS_SECONDS = 4.0
 """A study whose remaining work is shorter than this is not worth starting workers."""
@@ -97,7 +97,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
         raise InputError(f"{error}; {remedy}") from None
     if ds.attrs["study_identity"] != study.identity:
         raise InputError(f"{path}: holds the result of another study; {remedy}")
-    if ds.attrs["samples"] != study.design.samples:
+    if ds.attrs["samples"] != study.design.samples and not stopping.ended(study.design, ds):
         raise InputError(
             f"{path}: holds this study with samples = {ds.attrs['samples']}, "
             f"not {study.design.samples}; {remedy}"
@@ -115,8 +115,21 @@ def compute(
     chunk_rows: int | None = None,
     progress: Report | None = None,
 ) -> xr.Dataset:
-    """Run a study without writing anything; parameters as in `run`."""
-    return carry_out(work_of(study), workers, scheduler, chunk_rows, progress)
+    """Run a study without writing anything; parameters as in `run`.
+
+    One with [design] until is run look by look, until it has seen enough or spent its budget.
+    """
+    if study.design.until is None:
+        return carry_out(work_of(study), workers, scheduler, chunk_rows, progress)
+    ds = None
+    for samples in stopping.looks(study.design):
+        so_far = study.with_samples(samples)
+        work = work_of(so_far) if ds is None else more_of(so_far, ds)
+        ds = carry_out(work, workers, scheduler, chunk_rows, progress)
+        if stopping.look(study.design, ds).reached:
+            break
+    assert ds is not None
+    return ds
 
 
 def carry_out(

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from uq import intervals
+from uq import intervals, stopping
 from uq.contract import Status
 from uq.elements import (
     Element,
@@ -21,6 +21,7 @@ from uq.elements import (
     shown_outputs,
 )
 from uq.intervals import Interval, Replicates
+from uq.reading import read_study_text
 from uq.study_file import AnalysisTable
 
 NO_INTERVALS = (
@@ -268,6 +269,10 @@ def _plain(number: float) -> float | None:
 
 
 def _notes(ds: xr.Dataset) -> list[str]:
-    if ds.attrs["design"] == "monte-carlo" or ds.attrs["replicates"] > 1:
-        return []
-    return [NO_INTERVALS.format(design=ds.attrs["design"])]
+    study = read_study_text(ds.attrs["study"], "study of this result")
+    notes = []
+    if study.design.until is not None:
+        notes.append(stopping.sentence(study.design, ds))
+    if ds.attrs["design"] != "monte-carlo" and ds.attrs["replicates"] == 1:
+        notes.append(NO_INTERVALS.format(design=ds.attrs["design"]))
+    return notes

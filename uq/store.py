@@ -93,7 +93,10 @@ class Store:
 
     def dataset(self) -> xr.Dataset:
         """Return the result of a run whose rows have all arrived."""
-        examples = {label: f"row {row}: {text}" for label, (row, text) in self._failures.items()}
+        examples = {
+            label: f"row {self.work.first + row}: {text}"
+            for label, (row, text) in self._failures.items()
+        }
         return self.work.finish(self._rows, self._columns, self._status, examples)
 
 

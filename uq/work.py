@@ -38,6 +38,8 @@ class Work(NamedTuple):
         ``block(start, stop)`` -> those `Rows`, the same bits for any start and stop.
     finish : callable
         ``finish(rows, columns, status, failures)`` -> Dataset, once all rows are there.
+    first : int
+        Number of the first row, for messages.
     """
 
     model: Model
@@ -47,6 +49,7 @@ class Work(NamedTuple):
     group: int
     block: Callable[[int, int], Rows]
     finish: Finish
+    first: int = 0
 
 
 def work_of(study: "Study") -> Work:
@@ -60,3 +63,28 @@ def work_of(study: "Study") -> Work:
         partial(row_block, study),
         partial(results.build, study),
     )
+
+
+def more_of(study: "Study", before: xr.Dataset) -> Work:
+    """Return the rows that a study has beyond a result of fewer samples.
+
+    Parameters
+    ----------
+    study : Study
+        Its design appends.
+    before : xarray.Dataset
+
+    Returns
+    -------
+    Work
+        What finishes as the result of all rows.
+    """
+    whole, first = work_of(study), before.sizes["sample"]
+
+    def block(start: int, stop: int) -> Rows:
+        return whole.block(first + start, first + stop)
+
+    def finish(*parts: Any) -> xr.Dataset:
+        return results.appended(before, whole.finish(*parts))
+
+    return whole._replace(total=whole.total - first, block=block, finish=finish, first=first)

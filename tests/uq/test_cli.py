@@ -30,7 +30,9 @@ def strict_json(text):
 def test_no_argument_is_a_call_for_help(uq):
     ended = uq()
     assert ended.code == 0
-    verbs = "models simulate init check schema run summary sensitivity twin rare-event plot".split()
+    verbs = (
+        "models simulate init check schema run summary sensitivity convergence twin rare-event plot"
+    ).split()
     listed = ended.out.partition("Commands:\n")[2]
     assert [line.split()[0] for line in listed.splitlines() if line.strip()] == verbs
     assert "..." not in listed

@@ -155,6 +155,18 @@ def sensitivity(
 
 
 @app.command()
+def convergence(
+    result: ResultFile,
+    output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    json: Json = False,
+) -> None:
+    """Show whether it is enough: estimates as the rows came in, and other errors."""
+    from uq.cli import estimates
+
+    estimates.convergence(result, output, json)
+
+
+@app.command()
 def twin(result: ResultFile, model: ModelReference = None, json: Json = False) -> None:
     """Sharpen means and probabilities by many rows of a cheap output."""
     from uq.cli import estimates

@@ -1,4 +1,4 @@
-"""What ``uq rare-event`` and ``uq twin`` print."""
+"""What ``uq rare-event``, ``uq twin`` and ``uq convergence`` print."""
 
 import sys
 from pathlib import Path
@@ -11,6 +11,8 @@ from uq.cli import say_when_interrupted
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.errors import InputError
 from uq.study import load_study
+
+_SHOWN = 6  # sizes of each estimate on a terminal
 
 
 def rare_event(
@@ -127,6 +129,48 @@ def twin(result: Path, model: str | None, json: bool) -> None:
 
 
 def _interval(entry: dict[str, Any]) -> str:
-    if entry["low"] is None:
+    if None in (entry["low"], entry["high"]):
         return ""
     return f"{number(entry['low'])} to {number(entry['high'])}"
+
+
+def convergence(result: Path, output: str | None, json: bool) -> None:
+    """Show estimates as the rows came in, and whether sampling is still the largest error."""
+    from uq.convergence import enough, running_estimates
+    from uq.results import open_result
+
+    ds = open_result(result)
+    running, errors = running_estimates(ds, output), enough(ds, output)
+    found: dict[str, Any] = {}
+    for line in running.to_dict("records"):
+        entry = found.setdefault(line["output"], {"estimates": {}})
+        numbers = {end: _finite(line[end]) for end in ("value", "low", "high")}
+        lines = entry["estimates"].setdefault(line["estimate"], [])
+        lines.append({"samples": line["samples"]} | numbers)
+    for name, errors_of in errors.to_dict("index").items():
+        if entry := found.get(str(name)):
+            entry["sampling_error"] = _finite(errors_of["sampling"])
+            entry["own_error"] = _finite(errors_of["own"])
+            entry["warning"] = errors_of["warning"]
+    print_json({"outputs": found}) if json else _show_convergence(found)
+
+
+def _show_convergence(found: dict[str, Any]) -> None:
+    for name, entry in found.items():
+        heading(f"\n{name}")
+        for label, lines in entry["estimates"].items():
+            grid(
+                [
+                    (str(line["samples"]), number(line["value"]), _interval(line))
+                    for line in lines[-_SHOWN:]
+                ],
+                header=("samples", label, "95 % interval"),
+            )
+        if entry.get("own_error") is not None:
+            paragraph(
+                f"error of sampling {number(entry['sampling_error'])}, of the rows themselves"
+                f" {number(entry['own_error'])}",
+                indent=2,
+            )
+        if entry.get("warning"):
+            paragraph(entry["warning"], indent=2)

@@ -1,0 +1,131 @@
+"""A run that stops when it has seen enough, and intervals that stay honest for it."""
+
+import numpy as np
+import pytest
+from computed import UNIFORM, as_text, computed, study_of, with_seed
+
+from uq import runner, stopping
+from uq.errors import InputError
+from uq.statistics import summarise
+from uq.study import study_from_text
+from uq.work import work_of
+
+INPUTS = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
+
+
+def tables(until, samples=4096, method="monte-carlo", replicates=1, settings=None):
+    design = {"method": method, "samples": samples, "replicates": replicates, "until": until}
+    return {
+        "study": {"name": "until", "model": "linear"},
+        "design": design,
+        "uncertain": INPUTS,
+        "settings": settings or {},
+    }
+
+
+def study(half_width, **more):
+    estimate = {key: more.pop(key) for key in ("above", "below", "quantile") if key in more}
+    return study_of(tables({"output": "y", "half_width": half_width} | estimate, **more))
+
+
+def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
+    assert stopping.looks(study(0.1, samples=1000).design) == (32, 63, 125, 250, 500, 1000)
+    assert stopping.looks(study(0.1, samples=20).design) == (20,)
+    assert stopping.confidence(study(0.1, samples=1000).design) == pytest.approx(1 - 0.05 / 6)
+
+
+@pytest.mark.parametrize(
+    ("method", "replicates"),
+    [("monte-carlo", 1), ("monte-carlo", 3), ("halton", 8), ("saltelli", 8)],
+)
+@pytest.mark.parametrize("estimate", [{}, {"above": 7.0}, {"below": 4.0}, {"quantile": 0.5}])
+def test_a_run_stops_at_the_first_look_that_knows_enough(method, replicates, estimate):
+    samples = 4096 // replicates if method == "monte-carlo" else 512
+    half_width = 0.3 if "quantile" in estimate else 0.1
+    of = study(half_width, samples=samples, method=method, replicates=replicates, **estimate)
+    ds = runner.compute(of, workers=0)
+    sizes, stopped = stopping.looks(of.design), ds.attrs["samples"]
+    assert stopping.look(of.design, ds).reached
+    assert stopped < samples
+    earlier = [computed(of.with_samples(size)) for size in sizes if size < stopped]
+    assert not any(stopping.look(of.design, one).reached for one in earlier)
+
+
+def test_a_stopped_run_is_that_of_fewer_samples_to_the_bit(tmp_path):
+    from uq import store
+    from uq.results import open_result
+
+    of = study(0.1, samples=500, settings={"fail_above": 0.98, "fail_how": "raise"})
+    ds = runner.compute(of, workers=0)
+    assert ds.identical(runner.carry_out(work_of(of.with_samples(ds.attrs["samples"])), 0))
+    assert ds["status"].attrs["example_raised"].startswith("row ")
+    store.write(ds, tmp_path / "out.nc")
+    assert open_result(tmp_path / "out.nc").identical(ds)
+
+
+def test_a_budget_that_is_spent_is_said():
+    of = study(1e-6, samples=100)
+    ds = runner.compute(of, workers=0)
+    assert ds.attrs["samples"] == 100
+    (note,) = summarise(ds)["notes"]
+    assert "budget of 100 samples is spent" in note and "1e-06 was asked for" in note
+
+
+def test_a_stopped_run_is_complete(folder):
+    of = study(0.2)
+    first = runner.run(of, "out.nc")
+    assert first.attrs["samples"] < of.design.samples
+    (note,) = summarise(first)["notes"]
+    assert "mean of y is" in note and "99.38% at each look" in note
+    again = runner.run(of, "out.nc", progress=pytest.fail)
+    assert again.identical(first)
+    with pytest.raises(InputError, match="holds this study with samples"):
+        runner.run(study(0.001), "out.nc")
+
+
+def test_a_lifetime_that_never_ends_and_failed_rows_do_not_stop_a_run_early():
+    failing = study(10.0, samples=64, settings={"fail_above": -1.0})
+    assert runner.compute(failing, workers=0).attrs["samples"] == 64
+    wear = {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}
+    table = tables({"output": "life", "half_width": 1e9}, samples=64)
+    table |= {"uncertain": {"rate": wear}, "fixed": {"threshold": 2.5e-10}}
+    assert runner.compute(study_of(table, "exponential-wear"), 0).attrs["samples"] == 64
+
+
+@pytest.mark.parametrize(
+    ("until", "more", "words"),
+    [
+        ({"output": "z", "half_width": 0.1}, {}, r"\[design.until\] output = 'z'|no such output"),
+        ({"output": "y", "half_width": 0.0}, {}, "half_width"),
+        ({"output": "y"}, {}, "half_width"),
+        ({"output": "y", "half_width": 1.0, "above": 1.0, "quantile": 0.5}, {}, "at most one of"),
+        ({"output": "y", "half_width": 1.0}, {"method": "latin-hypercube"}, "cannot grow"),
+        ({"output": "y", "half_width": 1.0}, {"method": "halton"}, "set replicates = 8"),
+    ],
+)
+def test_mistakes_are_refused_with_the_study(until, more, words):
+    with pytest.raises(InputError, match=words) as refused:
+        study_from_text(as_text(tables(until, **more)))
+    assert len(refused.value.lines) == 1
+
+
+def test_until_is_no_part_of_a_studys_identity():
+    assert study(0.1).identity == study(0.2, above=3.0).identity
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("estimate", "half_width", "truth"), [({}, 0.2, 5.0), ({"above": 9.0}, 0.005, 1 / 576)]
+)
+def test_intervals_stay_honest_under_stopping(estimate, half_width, truth):
+    of = study(half_width, samples=2048, **estimate)
+    held, stopped = [], []
+    for seed in range(1000):
+        one = with_seed(of, seed)
+        ds = runner.compute(one, workers=0, chunk_rows=4096)
+        low, high = stopping.look(one.design, ds).interval
+        held.append(low <= truth <= high)
+        stopped.append(ds.attrs["samples"])
+    print(f"\n{estimate or 'mean'}: {np.mean(held):.1%}, {np.mean(stopped):.0f} samples")
+    assert np.mean(held) >= 0.94
+    assert len(set(stopped)) > 1
