@@ -103,6 +103,8 @@ def _design_schema(design: Design) -> dict[str, Schema]:
         table["samples"] = {"enum": [2**k for k in range(MAX_SAMPLES.bit_length())]}
     if not design.crossed:
         table["second_order"] = {"const": False}
+    if not design.append_only:
+        table["until"] = {"not": {}}
     if not design.independent:
         analysis["tolerance"] = {"not": {}}
         analysis["twin"] = {"const": ""}

@@ -48,6 +48,7 @@ def test_every_entry_arrives(tmp_path):
         "replicates": 3,
         "second_order": False,
         "seed": 11,
+        "until": None,
     }
     assert study.fixed == {"x4": 1.0, "x2": 0.25}
     assert list(study.uncertain) == ["x3", "x1"]

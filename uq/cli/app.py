@@ -160,7 +160,7 @@ def convergence(
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
     json: Json = False,
 ) -> None:
-    """Show whether it is enough: estimates as the rows came in, and other errors."""
+    """Show whether it is enough: running estimates."""
     from uq.cli import estimates
 
     estimates.convergence(result, output, json)
@@ -168,7 +168,7 @@ def convergence(
 
 @app.command()
 def twin(result: ResultFile, model: ModelReference = None, json: Json = False) -> None:
-    """Sharpen means and probabilities by many rows of a cheap output."""
+    """Sharpen estimates by many rows of a cheap output."""
     from uq.cli import estimates
 
     estimates.twin(result, model, json)
@@ -199,7 +199,7 @@ def rare_event(
     model: ModelReference = None,
     json: Json = False,
 ) -> int:
-    """Estimate the probability of a rare event, down to 1e-6 and less."""
+    """Estimate the probability of a rare event."""
     from uq.cli import estimates
 
     options: dict[str, Any] = {
