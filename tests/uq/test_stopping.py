@@ -55,10 +55,11 @@ def test_a_stopped_run_is_that_of_fewer_samples_to_the_bit(tmp_path):
     from uq import store
     from uq.results import open_result
 
-    of = study(0.1, samples=500, settings={"fail_above": 0.98, "fail_how": "raise"})
+    of = study(0.1, samples=500, settings={"fail_above": 0.995, "fail_how": "raise"})
     ds = runner.compute(of, workers=0)
     assert ds.identical(runner.carry_out(work_of(of.with_samples(ds.attrs["samples"])), 0))
-    assert ds["status"].attrs["example_raised"].startswith("row ")
+    example = ds["status"].attrs["example_raised"]
+    assert int(example.removeprefix("row ").partition(":")[0]) >= 32  # after the first look
     store.write(ds, tmp_path / "out.nc")
     assert open_result(tmp_path / "out.nc").identical(ds)
 

@@ -93,8 +93,8 @@ def test_a_twin_that_agrees_in_every_row_is_not_taken_for_the_truth():
     table = two_fidelities(sound(100, twin="same"), PAIRED)
     line = table.loc[("y", "P(>1.5)")]
     # One row in a hundred might still disagree.
-    assert line["high"] - line["low"] > 0.01
-    assert line["reduction"] < 101
+    assert line["high"] - line["low"] > 0.025
+    assert line["reduction"] < 60
     # The mean is that of the many rows, and as uncertain as they are.
     assert table.loc[("y", "mean"), "reduction"] == pytest.approx(101, rel=1e-6)
 
