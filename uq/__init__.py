@@ -8,40 +8,51 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from uq.attraction import basins
+    from uq.convergence import enough, running_estimates
     from uq.indices import sensitivity
     from uq.life_fit import life_fits
     from uq.lifetime import survival
     from uq.regime_table import regimes
+    from uq.reliability import rare_event
     from uq.results import open_result
     from uq.runner import run
     from uq.simulation import simulate
     from uq.statistics import summary
     from uq.study import load_study
+    from uq.twin import two_fidelities
 
 __all__ = [
     "basins",
+    "enough",
     "life_fits",
     "load_study",
     "open_result",
+    "rare_event",
     "regimes",
     "run",
+    "running_estimates",
     "sensitivity",
     "simulate",
     "summary",
     "survival",
+    "two_fidelities",
 ]
 
 _MODULES = {
     "basins": "attraction",
+    "enough": "convergence",
     "life_fits": "life_fit",
     "load_study": "study",
     "open_result": "results",
+    "rare_event": "reliability",
     "regimes": "regime_table",
     "run": "runner",
+    "running_estimates": "convergence",
     "sensitivity": "indices",
     "simulate": "simulation",
     "summary": "statistics",
     "survival": "lifetime",
+    "two_fidelities": "twin",
 }
 
 

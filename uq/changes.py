@@ -8,7 +8,12 @@ from uq.designs import DESIGNS
 from uq.literals import shown
 from uq.study import Study
 
-_FREE = {("study", "name"), ("study", "description"), ("design", "samples")}
+_FREE = {
+    ("study", "name"),
+    ("study", "description"),
+    ("design", "samples"),
+    ("design", "until"),
+}
 """Entries that decide no row."""
 
 
@@ -65,7 +70,7 @@ def _entries(table: dict[str, Any], path: tuple[str, ...] = ()) -> Iterator[tupl
         place = (*path, name)
         if (
             place[0] == "analysis"
-            or place in _FREE
+            or place[:2] in _FREE
             or (path[:1] == ("uncertain",) and name == "source")
         ):
             continue

@@ -5,6 +5,7 @@ from typing import Any
 
 from uq.contract import Model
 from uq.designs import DESIGNS
+from uq.errors import nearest
 from uq.faults import Fault
 from uq.values import parameter_problem, read_settings, unknown_name
 
@@ -35,6 +36,13 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     for name, text in read_settings(model, given)[1].items():
         yield Fault(("settings", name), text, given[name]) if name else Fault(("settings",), text)
     yield from _output_faults(model, tables["analysis"])
+    if until := tables["design"].get("until"):
+        name = until["output"].partition("[")[0]
+        if name not in model.outputs:
+            problem = unknown_name("output", name, model, tuple(model.outputs))
+            yield Fault(("design", "until", "output"), problem, until["output"])
+        elif model.outputs[name].kind == "category":
+            yield Fault(("design", "until", "output"), "is a category: it has no numbers", name)
 
 
 def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -60,6 +68,13 @@ def _output_faults(model: Model, analysis: Mapping[str, Any]) -> Iterator[Fault]
         if name not in known:
             problem = unknown_name("output", name, model, known)
             yield Fault(("analysis", "outputs"), problem, name)
+    twin = analysis.get("twin", "")
+    if twin and twin not in model.cheap:
+        cheap = tuple(model.cheap)
+        listed = f" ({', '.join(cheap)})" if cheap else ""
+        problem = f"model '{model.name}' cannot compute it alone at a small part of the cost"
+        remedy = f"; choose one that it can{listed}" if cheap else "; it has no such output"
+        yield Fault(("analysis", "twin"), f"{problem}{remedy}{nearest(twin, cheap)}", twin)
     for name, value in analysis.get("thresholds", {}).items():
         path = ("analysis", "thresholds", name)
         if name not in known:
@@ -87,6 +102,21 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
             f"refused: its confidence holds for independent rows, and those of '{method}' are not;"
             f" use method = {able}, or leave the bound out",
             analysis["tolerance"],
+        )
+    if table.get("until") and not design.append_only:
+        able = _names(name for name, other in DESIGNS.items() if other.append_only)
+        yield Fault(
+            ("design", "until"), f"a '{method}' design cannot grow; use method = {able}", True
+        )
+    elif table.get("until") and not design.independent and table.get("replicates", 1) < 2:
+        problem = f"nothing shows how well a '{method}' design knows anything; set replicates = 8"
+        yield Fault(("design", "until"), problem, True)
+    if analysis.get("twin") and not design.independent:
+        able = _names(name for name, other in DESIGNS.items() if other.independent)
+        yield Fault(
+            ("analysis", "twin"),
+            f"needs independent rows, and those of '{method}' are not; use method = {able}",
+            analysis["twin"],
         )
     dependent = bool(tables["dependence"])
     if dependent and not design.feeds_with(dependent):

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.contract import Model
 from uq.errors import InputError
 from uq.evaluate import evaluate
 from uq.registry import find_model
@@ -29,11 +30,19 @@ class Task(NamedTuple):
         Which version of it is wanted.
     settings : tuple of (str, object)
         Names and values.
+    output : str
+        The cheap output that it computes alone; "" for all outputs.
     """
 
     model: str
     version: str
     settings: tuple[tuple[str, Any], ...]
+    output: str = ""
+
+    def find_model(self) -> Model:
+        """Return the model, as far as it is wanted."""
+        model = find_model(self.model)
+        return model.alone(self.output) if self.output else model
 
 
 class Request(NamedTuple):
@@ -70,7 +79,7 @@ def main(handle: str) -> None:
     connection = Connection(int(handle))
     task: Task = connection.recv()
     try:
-        model = find_model(task.model)
+        model = task.find_model()
         if model.version != task.version:
             raise InputError(
                 f"a worker has version {model.version} of model '{model.name}', "

@@ -8,7 +8,7 @@ settings), a dict of `Output` and two functions, ``batch`` and ``simulate``; put
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from enum import IntEnum
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
@@ -184,6 +184,9 @@ class Model:
         ``coordinates(settings) -> {dimension: values}`` for every dimension the outputs name.
     dimensions : dict of str to tuple
         Dimension -> (unit, meaning), for coordinates that are quantities.
+    cheap : dict of str to Batch
+        Outputs that can be computed alone at a small part of a row's cost -> a batch that returns
+        just this output, with the same bits.
     block : int
         Rows that the kernel advances together; a chunk shorter than this wastes work.
     references : tuple of str
@@ -200,8 +203,15 @@ class Model:
     simulate: Callable[..., Trajectory] | None = None
     coordinates: Callable[[Any], Mapping[str, Sequence[Any]]] = field(default=_no_coordinates)
     dimensions: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    cheap: Mapping[str, Batch] = field(default_factory=dict)
     block: int = 1
     references: tuple[str, ...] = ()
+
+    def alone(self, output: str) -> "Model":
+        """Return a model that computes nothing but one of the `cheap` outputs."""
+        return replace(
+            self, outputs={output: self.outputs[output]}, batch=self.cheap[output], cheap={}
+        )
 
     @property
     def parameter_names(self) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -97,7 +97,10 @@ def extend(path: Path, samples: int, model: str | None = None, **options: Any) -
     problem = refusal_to_extend(study)
     if samples > there and problem:
         raise InputError(f"{path}: {problem}")
-    return runner.run(study.with_samples(samples), path, **options)
+    study = study.with_samples(samples)
+    # So many are wanted, whatever is known: [design] until has no say.
+    design = study.design.model_copy(update={"until": None})
+    return runner.run(replace(study, design=design), path, **options)
 
 
 def rerun_failed(

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy import stats
 
 CONFIDENCE = 0.95
-_UPPER_TAIL = 0.5 + CONFIDENCE / 2
 _ROUNDING = 64 * np.finfo(float).eps
 
 Floats = NDArray[np.float64]
@@ -38,7 +37,7 @@ def is_constant(values: Floats) -> bool:
     return bool(np.ptp(values) <= _ROUNDING * np.abs(values).max())
 
 
-def scatter_interval(value: float, estimates: Floats) -> Interval:
+def scatter_interval(value: float, estimates: Floats, confidence: float = CONFIDENCE) -> Interval:
     """Return ``value`` +- t s / sqrt(R) from independent estimates of the same number.
 
     Parameters
@@ -47,6 +46,7 @@ def scatter_interval(value: float, estimates: Floats) -> Interval:
         The estimate from all rows together.
     estimates : ndarray, shape (R,)
         One estimate per replicate.
+    confidence : float, optional
 
     Returns
     -------
@@ -55,11 +55,13 @@ def scatter_interval(value: float, estimates: Floats) -> Interval:
     count = len(estimates)
     if count < 2 or is_constant(estimates):
         return UNKNOWN
-    half = stats.t.ppf(_UPPER_TAIL, count - 1) * stats.sem(estimates)
+    half = stats.t.ppf(_upper_tail(confidence), count - 1) * stats.sem(estimates)
     return Interval(float(value - half), float(value + half))
 
 
-def mean_interval(values: Floats, replicate: Replicates = None) -> Interval:
+def mean_interval(
+    values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
+) -> Interval:
     """Return the interval of the mean.
 
     Parameters
@@ -67,6 +69,7 @@ def mean_interval(values: Floats, replicate: Replicates = None) -> Interval:
     values : ndarray, shape (n,)
         Finite.
     replicate : ndarray of int, shape (n,), optional
+    confidence : float, optional
 
     Returns
     -------
@@ -75,16 +78,19 @@ def mean_interval(values: Floats, replicate: Replicates = None) -> Interval:
     if len(values) < 2 or is_constant(values):
         return UNKNOWN
     estimates = values if replicate is None else _means(values, replicate)
-    return scatter_interval(values.mean(), estimates)
+    return scatter_interval(values.mean(), estimates, confidence)
 
 
-def share_interval(hits: Mask, replicate: Replicates = None) -> Interval:
+def share_interval(
+    hits: Mask, replicate: Replicates = None, confidence: float = CONFIDENCE
+) -> Interval:
     """Return the interval of a share of rows.
 
     Parameters
     ----------
     hits : ndarray of bool, shape (n,)
     replicate : ndarray of int, shape (n,), optional
+    confidence : float, optional
 
     Returns
     -------
@@ -102,12 +108,22 @@ def share_interval(hits: Mask, replicate: Replicates = None) -> Interval:
     if len(hits) == 0:
         return UNKNOWN
     if replicate is None:
-        return _floats(_wilson(hits.mean(), len(hits), stats.norm.ppf(_UPPER_TAIL)))
-    return _floats(scattered_share_interval(hits.mean(), _means(hits, replicate)))
+        return wilson_interval(hits.mean(), len(hits), confidence)
+    return _floats(
+        scattered_share_interval(hits.mean(), _means(hits, replicate), confidence=confidence)
+    )
+
+
+def wilson_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Interval:
+    """Return the interval of a share that is known as well as from so many independent rows."""
+    return _floats(_wilson(share, rows, stats.norm.ppf(_upper_tail(confidence))))
 
 
 def scattered_share_interval(
-    share: Floats | float, estimates: Floats, scatter_at: Floats | float | None = None
+    share: Floats | float,
+    estimates: Floats,
+    scatter_at: Floats | float | None = None,
+    confidence: float = CONFIDENCE,
 ) -> Interval:
     """Return the interval of a share, or of several, from estimates by replicates.
 
@@ -119,6 +135,7 @@ def scattered_share_interval(
         By replicate.
     scatter_at : float or ndarray, optional
         The share whose scatter `estimates` show, if it is not exactly `share`.
+    confidence : float, optional
 
     Returns
     -------
@@ -133,7 +150,7 @@ def scattered_share_interval(
     # A curve of survival may reach 0 as a whole while a replicate's, censored, does not.
     known = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
     variance = np.where(known, variance, np.nan)
-    return _wilson(share, at * (1 - at) / variance, stats.t.ppf(_UPPER_TAIL, count - 1))
+    return _wilson(share, at * (1 - at) / variance, stats.t.ppf(_upper_tail(confidence), count - 1))
 
 
 def quantile(values: Floats, probability: float) -> float:
@@ -164,7 +181,9 @@ def quantile(values: Floats, probability: float) -> float:
     return float(found) if found <= finite.max() else np.inf
 
 
-def quantile_interval(values: Floats, probability: float, replicate: Replicates = None) -> Interval:
+def quantile_interval(
+    values: Floats, probability: float, replicate: Replicates = None, confidence: float = CONFIDENCE
+) -> Interval:
     """Return the interval of a quantile.
 
     Parameters
@@ -173,6 +192,7 @@ def quantile_interval(values: Floats, probability: float, replicate: Replicates 
         Finite or +inf.
     probability : float
     replicate : ndarray of int, shape (n,), optional
+    confidence : float, optional
 
     Returns
     -------
@@ -190,14 +210,16 @@ def quantile_interval(values: Floats, probability: float, replicate: Replicates 
     if n == 0:
         return UNKNOWN
     if replicate is None:
-        law = stats.binom(n, probability)
+        law, upper = stats.binom(n, probability), _upper_tail(confidence)
         return Interval(
-            order_statistic(values, int(law.ppf(1 - _UPPER_TAIL))),
-            order_statistic(values, int(law.isf(1 - _UPPER_TAIL)) + 1),
+            order_statistic(values, int(law.ppf(1 - upper))),
+            order_statistic(values, int(law.isf(1 - upper)) + 1),
         )
     value = quantile(values, probability)
     below = values <= value if np.isfinite(value) else values < value
-    low, high = scattered_share_interval(probability, _means(below, replicate), below.mean())
+    low, high = scattered_share_interval(
+        probability, _means(below, replicate), below.mean(), confidence
+    )
     return Interval(
         quantile(values, low) if low * n >= 1 else np.nan,
         quantile(values, high) if (1 - high) * n >= 1 else np.nan,
@@ -263,6 +285,10 @@ def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Interval:
     high = (share + w / 2 + np.sqrt(w * share * (1 - share) + w**2 / 4)) / (1 + w)
     low = share**2 / (1 + w) / high
     return Interval(low, 1 - (1 - share) ** 2 / (1 + w) / (1 - low))
+
+
+def _upper_tail(confidence: float) -> float:
+    return 0.5 + confidence / 2
 
 
 def _floats(interval: Interval) -> Interval:

@@ -24,7 +24,6 @@ from uq.environment import command, inherited
 from uq.errors import RunError
 from uq.evaluate import Chunk, Fault, joined, lost_rows
 from uq.interrupts import undone
-from uq.registry import find_model
 
 if TYPE_CHECKING:
     from uq.work import Work
@@ -44,7 +43,7 @@ Evaluate = Callable[[NDArray[np.float64], NDArray[np.uint64], int], Chunk]
 def task_of(work: "Work") -> child.Task:
     """Return what a process that computes rows of some work is told beforehand."""
     settings = tuple(asdict(work.settings).items())
-    return child.Task(work.model_reference, work.model.version, settings)
+    return child.Task(work.model_reference, work.model.version, settings, work.output)
 
 
 @contextmanager
@@ -114,7 +113,7 @@ class Isolated:
                 return outcome
             if outcome.status is not Status.CRASHED:
                 break
-        model = find_model(self.task.model)
+        model = self.task.find_model()
         settings = model.settings(**dict(self.task.settings))
         return lost_rows(model, settings, 1, cast(Fault, outcome), start)
 

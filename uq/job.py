@@ -69,6 +69,8 @@ class Job:
         Computes rows on this computer.
     row_limit : float or None
         Longest time for one row [s].
+    stop : int, optional
+        Number behind the last row that is wanted; by default all are.
 
     Attributes
     ----------
@@ -84,6 +86,7 @@ class Job:
         store: MemoryStore | DiskStore,
         evaluate: Evaluate,
         row_limit: float | None = None,
+        stop: int | None = None,
     ) -> None:
         self.work = work
         self.report = report
@@ -91,19 +94,26 @@ class Job:
         self._wish = chunk_rows
         self._evaluate = evaluate
         self._row_limit = row_limit
-        self._todo = deque(store.missing)
-        self._untaken = store.total - store.done
+        stop = store.total if stop is None else stop
+        self._todo = deque((a, min(b, stop)) for a, b in store.missing if a < stop)
+        self._rows = sum(b - a for a, b in self._todo)
+        self._untaken = self._left = self._rows
         self._row_seconds = 0.0
 
     @property
     def complete(self) -> bool:
         """Whether all rows have arrived."""
-        return self.store.done == self.store.total
+        return self._left == 0
+
+    @property
+    def seconds(self) -> float:
+        """Work of all rows that were to be computed, by the cost of the latest."""
+        return self._row_seconds * self._rows
 
     @property
     def seconds_left(self) -> float:
         """Work that is left, by the cost of the latest rows computed here."""
-        return self._row_seconds * (self.store.total - self.store.done)
+        return self._row_seconds * self._left
 
     @property
     def groups(self) -> int:
@@ -168,6 +178,7 @@ class Job:
 
     def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
         self.store.add(start, some, chunk)
+        self._left -= len(some.x)
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
             raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")

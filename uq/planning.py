@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from uq import results, runner
+from uq import computing, results
 from uq.errors import InputError
 from uq.evaluate import Chunk, joined
 from uq.interrupts import undone
@@ -94,7 +94,7 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
     constants = len(study.model.parameter_names) - len(study.uncertain)
     size = _FILE_BYTES + kept - 8 * constants * work.total  # a constant is one number in the result
     alone = row_seconds * work.total
-    if workers is None and alone < runner.SHORT_SECONDS:
+    if workers is None and alone < computing.SHORT_SECONDS:
         processes = 1
     starts = _RUN_STARTS + (_WORKERS_STARTS if workers or processes > 1 else 0.0)
     seconds = alone / processes + starts * start_seconds

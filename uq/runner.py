@@ -7,27 +7,21 @@ computes them, so that a row may crash it, unless the user wants all in one proc
 
 import os
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from uq import results, store
+from uq import results, stopping, store
 from uq.changes import refusal_to_extend, what_changed
+from uq.computing import Computing
 from uq.errors import InputError
-from uq.evaluate import Chunk, evaluate
-from uq.interrupts import in_background
-from uq.isolation import Evaluate, isolated
 from uq.job import Job, Report
+from uq.reading import read_study_text
 from uq.sampling import rows
 from uq.study import Study, load_study
 from uq.work import Work, work_of
-
-SHORT_SECONDS = 4.0
-"""A study whose remaining work is shorter than this is not worth starting workers."""
 
 
 def run(
@@ -44,7 +38,8 @@ def run(
     """Run a study and write its result, or return the result that is already there.
 
     Rows are kept on disk as they arrive: a run that was stopped goes on where it was, and a result
-    with fewer samples is extended, where the design allows it.
+    with fewer samples is extended, where the design allows it. A study with [design] until is
+    looked at on the way, and ends when enough is known or its samples are spent.
 
     Parameters
     ----------
@@ -84,11 +79,12 @@ def run(
     """
     if not isinstance(study, Study):
         study = load_study(study)
-    path = output_path(study, output)
+    path, until = output_path(study, output), _until(study)
     if not fresh and (found := finished(study, path)) is not None:
         return found
     with kept(study, path, fresh, say=say) as there:
-        return carry_out(work_of(study), workers, scheduler, chunk_rows, progress, row_limit, there)
+        options = (workers, scheduler, chunk_rows, progress, row_limit)
+        return carry_out(work_of(study), *options, there, until)
 
 
 @contextmanager
@@ -115,7 +111,8 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     """Return the result of this very study, if `path` holds it.
 
     Its [analysis], comments and sources may have changed since: then the file gets the new text.
-    None also where it holds fewer samples, and more can be appended.
+    None also where it holds fewer samples, and more can be appended; a study that may end early is
+    complete where enough is known.
 
     Raises
     ------
@@ -132,15 +129,16 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     if ds.attrs["study_identity"] != study.identity:
         change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
         raise InputError(f"{path}: holds the result of another study ({change}); {remedy}")
-    there, wanted = ds.attrs["samples"], study.design.samples
-    if there != wanted:
+    there, wanted = int(ds.attrs["samples"]), study.design.samples
+    enough = there < wanted and stopping.ended(study.design, ds)
+    if there != wanted and not enough:
         problem = remedy if there > wanted else refusal_to_extend(study)
         if problem:
             sizes = f"samples = {there}, not {wanted}"
             raise InputError(f"{path}: holds this study with {sizes}; {problem}")
         return None
     if ds.attrs["study"] != study.text:
-        store.write_result(results.relabel(ds, study), path)
+        store.write_result(results.relabel(ds, study.with_samples(there)), path)
         ds = results.open_result(path)
     store.drop_leftovers(path)
     return ds
@@ -155,7 +153,8 @@ def compute(
     row_limit: float | None = None,
 ) -> xr.Dataset:
     """Run a study without writing anything; parameters as in `run`."""
-    return carry_out(work_of(study), workers, scheduler, chunk_rows, progress, row_limit)
+    options = (workers, scheduler, chunk_rows, progress, row_limit)
+    return carry_out(work_of(study), *options, until=_until(study))
 
 
 def carry_out(
@@ -166,56 +165,58 @@ def carry_out(
     progress: Report | None = None,
     row_limit: float | None = None,
     kept: store.DiskStore | None = None,
+    until: Study | None = None,
 ) -> xr.Dataset:
-    """Compute the rows of some work, in memory or to be kept; other parameters as in `run`."""
-    if workers is not None and scheduler is not None:
-        raise InputError("workers and scheduler exclude each other")
-    if workers is not None and workers < 0:
-        raise InputError(f"workers must not be negative: {workers}")
+    """Compute the rows of some work, in memory or to be kept.
+
+    Parameters
+    ----------
+    work : Work
+    workers, scheduler, chunk_rows, progress, row_limit
+        As in `run`.
+    kept : DiskStore, optional
+        Where the rows are kept.
+    until : Study, optional
+        The study that the work is, if it is to be looked at on the way, and may end early.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
     if chunk_rows is not None and chunk_rows < 1:
         raise InputError(f"chunk_rows must be at least 1: {chunk_rows}")
-    if row_limit is not None and not row_limit > 0:
-        raise InputError(f"the time limit of a row must be positive: {row_limit:g} s")
-    if row_limit is not None and workers == 0:
-        raise InputError(
-            "a time limit for rows needs another process that can be stopped: "
-            "workers = 0 has none (leave it out, or take 1)"
-        )
-    where = kept or store.MemoryStore(work)
-    place = nullcontext(_in_process(work)) if workers == 0 else isolated(work, row_limit)
-    with place as evaluate_here:
-        job = Job(work, chunk_rows, progress or (lambda _: None), where, evaluate_here, row_limit)
-        if where.found:
-            job.tell()
-        _finish(job, workers, scheduler)
+    report = progress or (lambda _: None)
+    with Computing(work, workers, scheduler, row_limit) as computing:
+        where = kept or store.MemoryStore(work)
+        for part in (*_looks(until, where.reach), None):
+            stop = work.total if part is None else rows(part)
+            job = Job(work, chunk_rows, report, where, computing.evaluate, row_limit, stop)
+            if where.found:
+                job.tell()
+            computing.finish(job)
+            if part and until and stopping.look(until.design, where.first(part)).reached:
+                where.cut(part)
+                job.tell()
+                break
     return where.dataset()
 
 
-def _finish(job: Job, workers: int | None, scheduler: str | None) -> None:
-    if scheduler is not None:
-        from uq import cluster
-
-        with cluster.remote(scheduler) as crew:  # before anything is computed
-            job.pilot(share=1 / 8)
-            job.finish_on(crew)
-        return
-    if not workers:
-        job.pilot(share=1)
-    if workers == 0 or (workers is None and job.seconds_left < SHORT_SECONDS):
-        job.finish_here()
-    elif not job.complete:
-        from uq import cluster
-
-        with cluster.local(min(workers or cluster.CORES, job.groups)) as crew:
-            if workers:
-                job.pilot(share=1 / 8)  # while they start
-            job.finish_on(crew)
+def _until(study: Study) -> Study | None:
+    """Return the study, if it may end early; looks and intervals are those of its file's budget."""
+    if study.design.until is None:
+        return None
+    budget = read_study_text(study.text, study.path).design.samples
+    if study.design.samples != budget:
+        raise InputError(
+            f"--samples {study.design.samples}: a study with [design] until spends at most the"
+            f" samples of its file, {budget}: change them there"
+        )
+    return study
 
 
-def _in_process(work: Work) -> Evaluate:
-    """Return what computes rows in this process: nothing protects it from them."""
-
-    def call(x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
-        return in_background(lambda: evaluate(work.model, work.settings, x, seed, start))
-
-    return call
+def _looks(until: Study | None, reach: int) -> list[Study]:
+    """Return what to look at before the budget is spent: a run that goes on looks where it was."""
+    if until is None:
+        return []
+    parts = [until.with_samples(samples) for samples in stopping.looks(until.design)]
+    return [part for part in parts[:-1] if rows(part) >= reach]

@@ -102,12 +102,31 @@ def _drawn(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
     )
     offset = first * per_group
     unit = cube.reshape(-1, cube.shape[-1])[start - offset : stop - offset]
+    return physical(study, unit)
+
+
+def physical(study: "Study", unit: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Map points of the unit cube to all parameters of the model.
+
+    Parameters
+    ----------
+    study : Study
+        Its rows are not imported.
+    unit : ndarray, shape (n, len(study.uncertain))
+        Inside the open unit cube; independent coordinates.
+
+    Returns
+    -------
+    ndarray, shape (n, d)
+        In declared order, each in its unit, with dependence, scaled and tied inputs as the study
+        has them; C-contiguous.
+    """
     if study.dependence is not None:
         columns = [list(study.uncertain).index(name) for name in study.dependence.parameters]
         unit = unit.copy()
         unit[:, columns] = correlated(unit[:, columns], study.dependence.rank_correlation)
 
-    x = _constants(study, stop - start)
+    x = _constants(study, len(unit))
     names = study.model.parameter_names
     scaled = []
     for column, (name, law) in zip(unit.T, study.uncertain.items(), strict=True):

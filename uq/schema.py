@@ -92,6 +92,7 @@ def _model_schema(model: Model) -> dict[str, Schema]:
             "properties": {
                 "outputs": {"items": known_outputs},
                 "thresholds": {"propertyNames": known_outputs},
+                "twin": {"enum": ["", *model.cheap]},
             }
         },
     }
@@ -110,8 +111,11 @@ def _design_schema(design: Design) -> dict[str, Schema]:
         table["replicates"] = {"const": 1}
     else:
         table["file"] = {"not": {}}
+    if not design.append_only:
+        table["until"] = {"not": {}}
     if not design.independent:
         analysis["tolerance"] = {"not": {}}
+        analysis["twin"] = {"const": ""}
     return {"design": {"properties": table}, "analysis": {"properties": analysis}}
 
 

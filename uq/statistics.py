@@ -8,7 +8,7 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq import intervals
+from uq import intervals, stopping
 from uq.b_lives import b_lives, ended_by, entry, quantile_entry
 from uq.contract import Status
 from uq.designs import DESIGNS
@@ -22,6 +22,7 @@ from uq.elements import (
     output_names,
     replicates_of,
     shown_outputs,
+    study_file_of,
 )
 from uq.intervals import Replicates
 from uq.life_fit import fits_of
@@ -72,6 +73,7 @@ def summarise(
         ``low_censored`` and the like say why.
     """
     analysis = analysis or analysis_of(ds)
+    notes = _notes(ds)
     if regime is not None:
         ds = within_regime(ds, regime)
     rows = independent_rows(ds)
@@ -89,7 +91,7 @@ def summarise(
             | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
             for element in elements_of(rows, outputs)
         },
-        "notes": _notes(ds),
+        "notes": notes,
     }
 
 
@@ -228,20 +230,40 @@ def _between(
 
 def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:
     kept = ~element.failed
-    values, censored = element.values[kept], element.censored[kept]
-    if element.kind == "angle":
-        values = np.abs(values)
     undefined = {"undefined": _plain(element.undefined[kept].mean()) if kept.any() else None}
-    unknown = int((censored & (values < threshold)).sum())
-    if unknown:
+    sides = event(element, threshold)
+    if sides is None:
+        unknown = int((element.censored & (element.values < threshold)).sum())
         nothing = dict.fromkeys(("value", "low", "high"))
         reason = f"{unknown} rows were censored before {threshold!r} {element.units}"
         guess = {"kaplan_meier": ended_by(element, threshold, replicate)}
         return {"above": nothing, "below": nothing} | undefined | {"reason": reason} | guess
-    above = (values > threshold) | (censored & (values == threshold))
     within = _of(replicate, kept)
-    below = (values < threshold) & ~censored
-    return {"above": _share(above, within), "below": _share(below, within)} | undefined
+    above, below = (_share(side[kept], within) for side in sides)
+    return {"above": above, "below": below} | undefined
+
+
+def event(element: Element, threshold: float) -> tuple[Mask, Mask] | None:
+    """Return which rows lie above and which below a threshold, by magnitude for an angle.
+
+    Parameters
+    ----------
+    element : Element
+    threshold : float
+
+    Returns
+    -------
+    tuple of ndarray of bool, or None
+        Rows without a value lie on neither side. None where rows were censored before the
+        threshold, so that nobody knows.
+    """
+    values, censored = element.values, element.censored
+    if (censored & (values < threshold)).any():
+        return None
+    if element.kind == "angle":
+        values = np.abs(values)
+    above = (values > threshold) | (censored & (values == threshold))
+    return above, (values < threshold) & ~censored
 
 
 def _share(hits: Mask, replicate: Replicates) -> dict[str, Any]:
@@ -261,6 +283,10 @@ def _plain(number: float) -> float | None:
 def _notes(ds: xr.Dataset) -> list[str]:
     if not DESIGNS[ds.attrs["design"]].follows_laws:
         return [NO_STATISTICS.format(design=ds.attrs["design"])]
-    if ds.attrs["design"] == "monte-carlo" or ds.attrs["replicates"] > 1:
-        return []
-    return [NO_INTERVALS.format(design=ds.attrs["design"])]
+    design = study_file_of(ds).design
+    notes = []
+    if design.until is not None:
+        notes.append(stopping.sentence(design, ds))
+    if ds.attrs["design"] != "monte-carlo" and ds.attrs["replicates"] == 1:
+        notes.append(NO_INTERVALS.format(design=ds.attrs["design"]))
+    return notes

@@ -38,7 +38,7 @@ class Study:
         What `uq.registry.find_model` finds the model by, in another process too.
     description : str
     design : DesignTable
-        method, samples, replicates, second_order, seed.
+        method, samples, replicates, second_order, seed, until.
     fixed : dict of str to float
         Parameters that override their nominal values.
     uncertain : dict of str to Law
@@ -48,7 +48,7 @@ class Study:
         An instance of ``model.settings``.
     analysis : AnalysisTable
         outputs (all of them if the file names none), quantiles, max_failed, tolerance,
-        thresholds, sensitivity.
+        thresholds, twin, sensitivity.
     text : str
         The whole study file, with the numbers of the files that it names.
     path : str
@@ -83,8 +83,8 @@ class Study:
 
     @property
     def identity(self) -> str:
-        """SHA-256 of what decides the rows: not the number of samples, comments or [analysis]."""
-        design = self.design.model_dump(exclude={"samples", "file"})
+        """SHA-256 of what decides the rows: not how many, comments or [analysis]."""
+        design = self.design.model_dump(exclude={"samples", "file", "until"})
         constants = {
             name: self.fixed.get(name, nominal)
             for name, nominal in self.model.nominal.items()

@@ -4,7 +4,7 @@ Pydantic checks files against these classes (`uq.reading`), and the JSON Schema 
 from them (`uq.schema`).
 """
 
-from typing import Annotated, Any, NamedTuple, get_args
+from typing import Annotated, Any, NamedTuple, Self, get_args
 
 from pydantic import (
     AfterValidator,
@@ -16,6 +16,7 @@ from pydantic import (
     Tag,
     TypeAdapter,
     WithJsonSchema,
+    model_validator,
 )
 
 from uq.designs import DESIGNS, MAX_SAMPLES
@@ -86,6 +87,36 @@ class StudyTable(_Table):
     description: str = Field("", description="one line for whoever reads the result")
 
 
+class Until(_Table):
+    """What must be known how well for a run to stop before its budget is spent."""
+
+    output: str = Field(description="an output, all its elements, or one element of it")
+    half_width: float = Field(gt=0, description="of the interval, in the estimate's unit")
+    above: float | None = Field(None, description="of the probability of lying above this")
+    below: float | None = Field(None, description="of the probability of lying below this")
+    quantile: Share | None = Field(None, description="of this quantile; if nothing, of the mean")
+
+    @model_validator(mode="after")
+    def _check_one(self) -> Self:
+        if len({"above", "below", "quantile"} & self.model_fields_set) > 1:
+            raise ValueError("takes at most one of above, below and quantile")
+        return self
+
+    @property
+    def threshold(self) -> float | None:
+        """The limit of a probability, if one is meant."""
+        return self.below if self.above is None else self.above
+
+    @property
+    def estimate(self) -> str:
+        """What is estimated, as tables call it."""
+        if self.quantile is not None:
+            return f"quantile {self.quantile}"
+        if self.threshold is not None:
+            return f"P({'<' if self.above is None else '>'}{self.threshold!r})"
+        return "mean"
+
+
 class DesignTable(_Table):
     """Which rows are computed."""
 
@@ -105,6 +136,9 @@ class DesignTable(_Table):
     seed: int = Field(0, ge=0, lt=2**63, description="the same seed gives the same rows")
     file: str | None = Field(
         None, description="imported only: CSV or netCDF with a column for each uncertain parameter"
+    )
+    until: Until | None = Field(
+        None, description="stop as soon as this is known well enough; samples is then the budget"
     )
 
 
@@ -183,6 +217,9 @@ class AnalysisTable(_Table):
             _DISTINCT,
         ],
     ] = Field({}, description="output = t: probability of lying above and below t")
+    twin: str = Field(
+        "", description="cheap output whose many rows sharpen the estimates, monte-carlo only"
+    )
     sensitivity: Annotated[
         tuple[Annotated[str, _one_of("method", METHODS)], ...], _LIST, _DISTINCT
     ] = Field(

@@ -17,6 +17,7 @@ from uq.observed import Empirical
 from uq.study_file import LAWS, AnalysisTable, DesignTable
 from uq.values import bounds_of
 
+_DESIGN = {"method": "monte-carlo", "samples": 1000, "seed": 1}
 _UNCERTAIN = 3
 
 
@@ -49,7 +50,11 @@ def template(model: Model) -> str:
             "",
             "[design]",
             *(f"# {name}: {design.meaning}" for name, design in DESIGNS.items()),
-            *_entries(DesignTable, {"method": "monte-carlo", "samples": 1000, "seed": 1}),
+            *_entries(
+                DesignTable,
+                {"method": "monte-carlo", "samples": 1000, "seed": 1},
+                {"until": {"output": _numbers(model)[0], "half_width": 1.0}},
+            ),
             "",
             "[fixed]",
             "# Parameters that keep one value; the nominal one unless given here.",
@@ -148,12 +153,19 @@ def _settings(model: Model) -> Iterator[str]:
         yield f"#{name} = {toml(getattr(default, name))}"
 
 
+def _numbers(model: Model) -> list[str]:
+    return [name for name, output in model.outputs.items() if output.kind != "category"]
+
+
+def _design_examples(model: Model) -> dict[str, Any]:
+    return {"until": {"output": _numbers(model)[0], "half_width": 1.0}}
+
+
 def _analysis_examples(model: Model) -> dict[str, Any]:
-    numbers = [name for name, output in model.outputs.items() if output.kind != "category"]
     return {
         "outputs": list(model.outputs),
         "tolerance": {"coverage": 0.95, "confidence": 0.95},
-        "thresholds": {name: 1.0 for name in numbers[:1]},
+        "thresholds": {name: 1.0 for name in _numbers(model)[:1]},
         "sensitivity": ["rbd-fast"],
     }
 

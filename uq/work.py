@@ -37,7 +37,10 @@ class Work(NamedTuple):
     block : callable
         ``block(start, stop)`` -> those `Rows`, the same bits for any start and stop.
     finish : callable
-        ``finish(rows, columns, status, failures)`` -> Dataset, once all rows are there.
+        ``finish(rows, columns, status, failures)`` -> Dataset, once all rows are there; None where
+        nobody wants one.
+    output : str
+        The only output, where a cheap one is computed alone; see `uq.contract.Model.cheap`.
     """
 
     model: Model
@@ -46,7 +49,8 @@ class Work(NamedTuple):
     total: int
     group: int
     block: Callable[[int, int], Rows]
-    finish: Finish
+    finish: Finish | None = None
+    output: str = ""
 
 
 def work_of(study: "Study") -> Work:

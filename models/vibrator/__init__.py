@@ -16,6 +16,12 @@ def _batch(x: Any, seed: Any, settings: Settings) -> Any:
     return batch(x, seed, settings)
 
 
+def _theory_batch(x: Any, seed: Any, settings: Settings) -> Any:
+    from models.vibrator.batch import theory_batch
+
+    return theory_batch(x, seed, settings)
+
+
 def _simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     from models.vibrator.trajectory import simulate
 
@@ -32,6 +38,7 @@ MODEL = Model(
     batch=_batch,
     simulate=_simulate,
     coordinates=coordinates,
+    cheap={"theory_disphasing_angle": _theory_batch},
     block=256,
     references=(
         "J. Michalczyk, G. Cieplok, Disturbances in self-synchronisation of vibrators in vibratory "

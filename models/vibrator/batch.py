@@ -38,10 +38,9 @@ def batch(
     # The exact propagator also follows what is too stiff for fixed steps.
     slow = ~fast | (status == Status.NON_FINITE)
     _run(exact_start.outcomes, p, np.flatnonzero(slow), settings, outcome, status)
-    theirs = theory.disphasing(p)
     return {
         "disphasing_angle": outcome.disphasing,
-        "theory_disphasing_angle": np.where(theirs.stable, theirs.angle, np.nan),
+        "theory_disphasing_angle": _theory_angle(p),
         "angular_amplitude": outcome.angular_amplitude,
         "stroke_left": outcome.stroke_left,
         "stroke_right": outcome.stroke_right,
@@ -54,6 +53,19 @@ def batch(
         "max_excursion": outcome.max_excursion,
         "regime": outcome.regime,
     }, status
+
+
+def theory_batch(
+    x: NDArray[np.float64], seed: NDArray[np.uint64], settings: Settings
+) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
+    """Compute the angle of the averaged theory alone, a thousand times faster; see `batch`."""
+    p: Rows = Params._make(np.ascontiguousarray(x.T))
+    return {"theory_disphasing_angle": _theory_angle(p)}, np.full(len(x), Status.OK, np.int8)
+
+
+def _theory_angle(p: Rows) -> NDArray[np.float64]:
+    found = theory.disphasing(p)
+    return np.where(found.stable, found.angle, np.nan)
 
 
 def _run(

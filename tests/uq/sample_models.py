@@ -214,3 +214,47 @@ MOUNTED = _simple(
     "mounted", _sag, parameters=Mounting, outputs={"sag": Output("m", "deflection of the mount")}
 )
 """Has a parameter that is infinite unless given."""
+
+
+def _near(x, seed, settings):
+    return {"near": np.where(x[:, 1] < 0.1, np.nan, x[:, 0])}, ok(len(x))
+
+
+def _far(x, seed, settings):
+    return {"far": (seed % 997) / 997.0}, ok(len(x))
+
+
+def _same(x, seed, settings):
+    return {"same": _paired_y(x)}, ok(len(x))
+
+
+def _paired_y(x):
+    return np.exp(x[:, 0]) + 0.3 * x[:, 1]
+
+
+def _paired(x, seed, settings):
+    y = _paired_y(x)
+    outputs = {
+        "y": np.where(x[:, 1] > 0.9, np.inf, y),
+        "patchy": np.where(x[:, 0] < 0.2, np.nan, y),
+        "life": np.where(x[:, 0] < 0.5, np.inf, 1 / x[:, 0]),
+    }
+    for cheap in (_near, _far, _same):
+        outputs |= cheap(x, seed, settings)[0]
+    return outputs, ok(len(x))
+
+
+PAIRED = _simple(
+    "paired",
+    _paired,
+    outputs={
+        "y": Output("1", "exp(x1) + 0.3 x2, failing at large x2"),
+        "patchy": Output("1", "y, without meaning at small x1", may_be_undefined=True),
+        "life": Output("s", "1/x1, never at small x1", "lifetime", may_be_censored=False),
+        "near": Output("1", "x1, without meaning at small x2", may_be_undefined=True),
+        "far": Output("1", "has nothing to do with y"),
+        "same": Output("1", "y again"),
+    },
+    cheap={"near": _near, "far": _far, "same": _same},
+)
+"""Outputs that a cheap one of the same model tells much of, nothing of, or all of."""

@@ -24,6 +24,10 @@ def test_everything_promised_is_there():
             "summary",
             "sensitivity",
             "survival",
+            "rare_event",
+            "two_fidelities",
+            "running_estimates",
+            "enough",
         }
     )
     for name in uq.__all__:

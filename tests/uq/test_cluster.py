@@ -72,7 +72,7 @@ def test_workers_are_started_for_longer_studies_only(
     write_study, tidy, monkeypatch, seconds, processes
 ):
     monkeypatch.setattr(job, "CHUNK_SECONDS", 0.05)
-    monkeypatch.setattr(runner, "SHORT_SECONDS", seconds)
+    monkeypatch.setattr("uq.computing.SHORT_SECONDS", seconds)
     monkeypatch.setattr(cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = runner.compute(load_study(path, "sample_models:PROCESS"))

@@ -33,6 +33,8 @@ def faults(validator, changes=None, text=None):
 
 def test_a_good_study_is_valid(validator):
     assert faults(validator) == set()
+    until = {"output": "y", "half_width": 0.1, "above": 3}
+    assert faults(validator, {"design": {"until": until}}) == set()
 
 
 @pytest.mark.parametrize("name", model_names())
@@ -53,6 +55,13 @@ def test_the_template_of_every_model_is_valid(validator, name):
         ({"design": {"samples": 1.5}}, "design/samples"),
         ({"design": {"samples": True}}, "design/samples"),
         ({"design": {"second_order": True}}, "design/second_order"),
+        ({"design": {"until": {"output": "y", "half_width": 0}}}, "design/until/half_width"),
+        ({"design": {"until": {"output": "y"}}}, "design/until"),
+        (
+            {"design": {"method": "latin-hypercube", "until": {"output": "y", "half_width": 1}}},
+            "design/until",
+        ),
+        ({"analysis": {"twin": "y"}}, "analysis/twin"),
         ({"uncertain": {"x4": UNIFORM}}, "uncertain"),
         ({"uncertain": {"x3": {**UNIFORM, "meen": 1}}}, "uncertain/x3"),
         ({"uncertain": {"x3": {"distribution": "normal", "mean": 0}}}, "uncertain/x3"),

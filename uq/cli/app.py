@@ -249,6 +249,64 @@ def sensitivity(
 
 
 @app.command()
+def convergence(
+    result: ResultFile,
+    output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    json: Json = False,
+) -> None:
+    """Show whether it is enough: running estimates."""
+    from uq.cli import estimates
+
+    estimates.convergence(result, output, json)
+
+
+@app.command()
+def twin(result: ResultFile, model: ModelReference = None, json: Json = False) -> None:
+    """Sharpen estimates by many rows of a cheap output."""
+    from uq.cli import estimates
+
+    estimates.twin(result, model, json)
+
+
+@app.command()
+def rare_event(
+    study: StudyFile,
+    output: Annotated[str, typer.Option(metavar="NAME", help="Output, or element of one.")],
+    above: Annotated[
+        float | None, typer.Option(metavar="T", help="Probability of lying above.")
+    ] = None,
+    below: Annotated[
+        float | None, typer.Option(metavar="T", help="Probability of lying below.")
+    ] = None,
+    method: Annotated[
+        str, typer.Option(metavar="M", help="subset, or importance (FORM; smooth outputs).")
+    ] = "subset",
+    samples: Annotated[int, typer.Option(metavar="N", help="Rows of each level.")] = 1000,
+    replicates: Annotated[int, typer.Option(metavar="R", help="Repetitions of it all.")] = 8,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=0, metavar="N", help="Worker processes; 0: compute in this process."),
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Use a running dask cluster.")
+    ] = None,
+    model: ModelReference = None,
+    json: Json = False,
+) -> int:
+    """Estimate the probability of a rare event."""
+    from uq.cli import estimates
+
+    options: dict[str, Any] = {
+        "method": method,
+        "samples": samples,
+        "replicates": replicates,
+        "workers": workers,
+        "scheduler": scheduler,
+    }
+    return estimates.rare_event(study, model, output, above, below, json, options)
+
+
+@app.command()
 def plot(
     result: ResultFile,
     folder: Annotated[

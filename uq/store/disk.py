@@ -6,6 +6,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
@@ -14,7 +15,7 @@ from uq.columns import columns_of
 from uq.errors import RunError
 from uq.evaluate import Chunk
 from uq.provenance import provenance
-from uq.sampling import Rows
+from uq.sampling import Rows, rows
 from uq.store.chunk_file import Block, Piece, joined, load, pack, row_type, save, unpack
 from uq.store.files import reason
 from uq.store.folder import JOURNAL, clear, folder_of
@@ -70,6 +71,11 @@ class DiskStore(Tally):
         return missing(self._records, self.total)
 
     @property
+    def reach(self) -> int:
+        """Number behind the last row that is there."""
+        return max((record.blocks[-1][1] for record in self._records), default=0)
+
+    @property
     def made(self) -> list[dict[str, str]]:
         """Processors and versions that computed the rows that were found, each once."""
         return [dict(pairs) for pairs in {tuple(record.made.items()) for record in self._records}]
@@ -86,9 +92,28 @@ class DiskStore(Tally):
         return damaged
 
     def note(self, record: RunRecord) -> None:
-        """Write down that a run begins."""
+        """Write down that a run begins, or where it ends early."""
         with self._told():
             self._journal.append(record.model_dump(mode="json"))
+        self._run = record
+
+    def first(self, study: "Study") -> xr.Dataset:
+        """Return the rows of a study of fewer samples, which are all that have arrived."""
+        self._write()
+        whole = np.empty(rows(study), self.row_type)
+        for record, data in self._loaded():
+            done = 0
+            for start, stop in record.blocks:
+                whole[start:stop] = data[done : done + stop - start]
+                done += stop - start
+        return results.build(study, *unpack(whole), self.examples)
+
+    def cut(self, study: "Study") -> None:
+        """End with the rows of a study of fewer samples, which are all that have arrived."""
+        self._study, self.work = study, work_of(study)
+        self.total = self.work.total
+        size = {"samples": study.design.samples, "rows": self.total}
+        self.note(self._run.model_copy(update=size | {"time": time.time()}))
 
     def add(self, start: int, rows: Rows, chunk: Chunk) -> None:
         """Count the rows from `start` on; `keep_up` writes them.

@@ -5,13 +5,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from uq import results
 from uq.columns import blank_rows, columns_of
-from uq.sampling import Rows
+from uq.evaluate import Chunk
+from uq.sampling import Rows, rows
 from uq.store.tally import Tally, ended
-from uq.work import Work
+from uq.work import Work, work_of
 
 if TYPE_CHECKING:
-    from uq.evaluate import Chunk
+    from uq.study import Study
 
 
 class MemoryStore(Tally):
@@ -40,7 +42,7 @@ class MemoryStore(Tally):
         """Blocks of rows that are not there at the start."""
         return [(0, self.total)]
 
-    def add(self, start: int, rows: Rows, chunk: "Chunk") -> None:
+    def add(self, start: int, rows: Rows, chunk: Chunk) -> None:
         """Keep the rows from `start` on.
 
         Parameters
@@ -57,9 +59,33 @@ class MemoryStore(Tally):
         self._status[start:stop] = chunk.status
         self.count(stop - start, self.failed_in(chunk), ended(chunk.status), chunk.failures)
 
+    @property
+    def reach(self) -> int:
+        """Number behind the last row that is there at the start."""
+        return 0
+
+    def first(self, study: "Study") -> xr.Dataset:
+        """Return the result of a study of fewer samples, whose rows have all arrived."""
+        n = rows(study)
+        columns = {name: whole[:n] for name, whole in self._columns.items()}
+        parts = self._rows.part(0, n), columns, self._status[:n]
+        return results.build(study, *parts, self.examples)
+
+    def cut(self, study: "Study") -> None:
+        """End with the rows of a study of fewer samples, which are all that have arrived."""
+        self.work = work_of(study)
+        n = self.total = self.work.total
+        self._rows, self._status = self._rows.part(0, n), self._status[:n]
+        self._columns = {name: whole[:n] for name, whole in self._columns.items()}
+
     def keep_up(self) -> None:
         """Nothing: what is here is kept nowhere else."""
 
+    def chunk(self) -> Chunk:
+        """Return what became of the rows of a run that have all arrived."""
+        return Chunk(self._columns, self._status, self.failures)
+
     def dataset(self) -> xr.Dataset:
         """Return the result of a run whose rows have all arrived."""
+        assert self.work.finish is not None
         return self.work.finish(self._rows, self._columns, self._status, self.examples)

@@ -1,0 +1,123 @@
+"""Subset simulation: a rare event as a chain of likely ones, several replicates abreast.
+
+Written here because OpenTURNS 1.27 asks for a hundred rows at a time, one replicate after the
+other, and ends one run in some dozens with "The variance estimate must be >= 0".
+"""
+
+from collections.abc import Callable, Generator
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+LimitState = Callable[[Floats], Floats]
+"""``margin(u)``: points of standard normal space (n, d) -> distance beyond the limit (n,), positive
+within the event; a row without a value has -inf."""
+
+LEVEL_SHARE = 0.1
+"""Share of a level's rows from which the next level grows."""
+
+SMALLEST = 1e-12
+"""A probability below which a replicate gives up."""
+
+_ACCEPTED = 0.44  # share of moves accepted at which chains forget fastest
+_FIRST_STEP = 0.6
+
+
+class Found(NamedTuple):
+    """What one replicate found.
+
+    Attributes
+    ----------
+    probability : float
+        0 if no row ever lay within the event.
+    levels : int
+        Levels sampled.
+    inside : ndarray, shape (k, d)
+        Its rows within the event, in standard normal space, equally likely.
+    """
+
+    probability: float
+    levels: int
+    inside: Floats
+
+
+def subset_simulation(
+    margin: LimitState, d: int, samples: int, generators: list[np.random.Generator]
+) -> list[Found]:
+    """Estimate the probability that the margin is positive, once per generator.
+
+    Parameters
+    ----------
+    margin : callable
+        See `LimitState`. Called with the rows of all replicates together.
+    d : int
+        Dimension of standard normal space.
+    samples : int
+        Rows of each level and replicate.
+    generators : list of numpy.random.Generator
+        One per replicate.
+
+    Returns
+    -------
+    list of Found
+        One per replicate, independent of each other.
+
+    Notes
+    -----
+    Levels as in [1]_; chains move by conditional sampling with a step adapted to the share of moves
+    accepted [2]_. A margin with random numbers of its own, drawn afresh in each call, is sampled
+    rightly too: they are part of the state and proposed independently. Levels respect ties: where
+    many rows share one value, a level is what lies strictly above it.
+
+    References
+    ----------
+    .. [1] S. K. Au, J. L. Beck, "Estimation of small failure probabilities in high dimensions by
+       subset simulation", Probab. Eng. Mech. 16, 263-277 (2001).
+    .. [2] I. Papaioannou, W. Betz, K. Zwirglmaier, D. Straub, "MCMC algorithms for subset
+       simulation", Probab. Eng. Mech. 41, 89-103 (2015).
+    """
+    walks = [_walk(d, samples, rng) for rng in generators]
+    asked = {number: next(walk) for number, walk in enumerate(walks)}
+    found: dict[int, Found] = {}
+    while asked:
+        margins = margin(np.concatenate(list(asked.values())))
+        parts = np.split(margins, np.cumsum([len(u) for u in asked.values()])[:-1])
+        for number, part in zip(list(asked), parts, strict=True):
+            try:
+                asked[number] = walks[number].send(part)
+            except StopIteration as ended:
+                found[number] = ended.value
+                del asked[number]
+    return [found[number] for number in range(len(walks))]
+
+
+def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, Floats, Found]:
+    """Yield the points of one replicate, be sent their margins, return what it found."""
+    u = rng.standard_normal((samples, d))
+    g = yield u
+    top = ceil(LEVEL_SHARE * samples)
+    probability, level, levels, step = 1.0, -np.inf, 1, _FIRST_STEP
+    while True:
+        limit = np.partition(g, -top)[-top]
+        if limit <= level:  # a tie: go on from the few rows above it, if there are any
+            limit = g[g > level].min(initial=np.inf)
+        if limit > 0:
+            return Found(probability * float(np.mean(g > 0)), levels, u[g > 0])
+        probability *= float(np.mean(g >= limit))
+        if probability < SMALLEST:
+            return Found(0.0, levels, u[:0])
+        inside = np.flatnonzero(g >= limit)
+        chosen = rng.choice(inside, top, replace=len(inside) < top)
+        chain, margins = [u[chosen]], [g[chosen]]
+        for k in range(1, ceil(samples / top)):
+            move = np.sqrt(1 - step**2) * chain[-1] + step * rng.standard_normal((top, d))
+            there = yield move
+            accepted = there >= limit
+            chain.append(np.where(accepted[:, None], move, chain[-1]))
+            margins.append(np.where(accepted, there, margins[-1]))
+            step = min(1.0, step * np.exp((accepted.mean() - _ACCEPTED) / np.sqrt(k)))
+        u, g = np.concatenate(chain), np.concatenate(margins)
+        level, levels = limit, levels + 1
