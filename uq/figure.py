@@ -30,6 +30,7 @@ LINES = ("-", "--", "-.", ":")
 _STYLE: Any = {
     "font.size": 8,
     "axes.titlesize": 8,
+    "axes.formatter.limits": (-4, 5),
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.fontsize": 7,
@@ -59,7 +60,14 @@ def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure
     tuple of Figure and list of Axes
     """
     figure = Figure(figsize=(WIDTH, height + 0.15 * entries), layout="constrained")
-    return figure, list(figure.subplots(panels, sharex=True, squeeze=False)[:, 0])
+    found = list(figure.subplots(panels, sharex=True, squeeze=False)[:, 0])
+    roomy(found[0])
+    return figure, found
+
+
+def roomy(axes: Axes) -> None:
+    """Have so few ticks on a horizontal axis, not yet logarithmic, that long numbers have room."""
+    axes.locator_params(axis="x", nbins=6)
 
 
 def legend(axes: Axes) -> None:

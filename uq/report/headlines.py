@@ -37,7 +37,7 @@ def _regimes(summary: Mapping[str, Any]) -> Iterator[str]:
     seen = [(label, one) for label, one in summary["regime"].items() if one["count"]]
     seen.sort(key=lambda pair: -pair[1]["count"])
     if seen:
-        shares = (f"{label} {one['share']:.1%}" for label, one in seen)
+        shares = (f"{label} {100 * one['share']:.1f} %" for label, one in seen)
         yield f"Regimes: {', '.join(shares)}."
 
 

@@ -25,7 +25,7 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
     for label, found in summary["status"].items():
         example = str(ds["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
         share = found / max(summary["samples"], 1)
-        cells = (Cell(str(found), key=float(found)), Cell(f"{share:.2%}", key=share))
+        cells = (Cell(str(found), key=float(found)), Cell(f"{100 * share:.2f} %", key=share))
         rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
     header = ("status", "rows", "share", "meaning", "the first such row said")
     return without_empty_columns(Table("Status of all rows", header, rows))
@@ -57,7 +57,11 @@ class Outcome:
         found = [one["value"] for one in entry["quantiles"].values() if one["value"] is not None]
         typical = abs(found[len(found) // 2]) if found else 0.0
         is_time = entry["units"] == "s"
-        self.unit = time_unit(typical) if is_time else TimeUnit(powers(entry["units"]), 1.0, 0.0)
+        self.unit = (
+            time_unit(typical)
+            if is_time
+            else TimeUnit(powers(entry["units"]).replace(" ", "\u00a0"), 1.0, 0.0)
+        )
 
     @property
     def label(self) -> Cell:

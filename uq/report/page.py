@@ -1,10 +1,12 @@
 """The page itself: what is in it, laid out by the template beside this file."""
 
+import re
 import shlex
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
+from markupsafe import Markup, escape
 
 from uq.designs import DESIGNS
 from uq.elements import independent_rows, study_file_of
@@ -84,7 +86,13 @@ def page(ds: xr.Dataset, name: str) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["breakable"] = _breakable
     return environment.get_template("page.html").render(_content(ds, name))
+
+
+def _breakable(text: str) -> Markup:
+    """Return text that may go on in a new line inside of long names."""
+    return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", escape(plain(text))))
 
 
 def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
@@ -133,7 +141,7 @@ def _facts(ds: xr.Dataset, summary: dict[str, Any]) -> list[tuple[str, str]]:
         ("Design", f"{design}: {DESIGNS[design].meaning}{replicates}"),
         ("Rows", rows),
         ("Seed", f"{ds.attrs['seed']}"),
-        ("Study", f"SHA-256 {ds.attrs['study_sha256']}"),
+        ("Hash", f"SHA-256 {ds.attrs['study_sha256']}"),
     ]
 
 
