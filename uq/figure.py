@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter
+from matplotlib.ticker import EngFormatter, LogFormatter
 
 from uq.elements import Element, Floats
 from uq.literals import plain
@@ -68,6 +68,13 @@ def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure
 def roomy(axes: Axes) -> None:
     """Have so few ticks on a horizontal axis, not yet logarithmic, that long numbers have room."""
     axes.locator_params(axis="x", nbins=6)
+
+
+def logarithmic(axes: Axes) -> None:
+    """Make a horizontal axis logarithmic, its numbers in plain text: dollar signs mean nothing."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(LogFormatter())
+    axes.xaxis.set_minor_formatter(LogFormatter())
 
 
 def legend(axes: Axes) -> None:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from uq.conditioning import cdf_within
 from uq.distributions import Law
 from uq.elements import Floats
-from uq.figure import COLOURS, WIDTH, is_wide, roomy, sentence, styled
+from uq.figure import COLOURS, WIDTH, is_wide, logarithmic, roomy, sentence, styled
 from uq.realised import EVERYWHERE, stated_and_realised
 
 
@@ -60,4 +60,4 @@ def _panel(axes: Axes, law: Law, values: Floats) -> None:
     axes.set_ylim(0, None)
     roomy(axes)
     if wide:
-        axes.set_xscale("log")
+        logarithmic(axes)

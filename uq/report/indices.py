@@ -68,7 +68,9 @@ def _method(ds: xr.Dataset, name: str) -> Method:
         return Method(name, refused=str(error))
     used = f"{found['rows_used']} rows used"
     if found["groups_dropped"]:
-        used += f", {found['groups_dropped']} groups of rows dropped because one of them failed"
+        used += (
+            f", {found['groups_dropped']} groups dropped for lack of a value in some of their rows"
+        )
     subjects = (_subject(ds, target, entry) for target, entry in found["outputs"].items())
     return Method(name, used=used, subjects=tuple(subjects))
 

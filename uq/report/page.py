@@ -92,7 +92,7 @@ def page(ds: xr.Dataset, name: str) -> str:
 
 def _breakable(text: str) -> Markup:
     """Return text that may go on in a new line inside of long names."""
-    return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", escape(plain(text))))
+    return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", str(escape(plain(text)))))
 
 
 def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
