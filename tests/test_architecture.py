@@ -22,6 +22,7 @@ LAYERS = {
         "provenance",
         "threads",
         "time_units",
+        "wording",
     },
     "study": {
         "changes",
@@ -107,11 +108,17 @@ LAYERS = {
         "widths",
     },
     "drawing": {"figure", "index_plot", "input_plot", "plots"},
+    "telling": {"report"},
     "command": {"cli"},
 }
 """The modules of ``uq``, from the ground up: a layer may use itself and what lies below it."""
 
-STRANGERS = {("running", "analysis"), ("analysis", "running"), ("drawing", "running")}
+STRANGERS = {
+    ("running", "analysis"),
+    ("analysis", "running"),
+    ("drawing", "running"),
+    ("telling", "running"),
+}
 """Layers side by side: neither may use the other."""
 
 

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter
+from matplotlib.ticker import EngFormatter, LogFormatter
 
 from uq.elements import Element, Floats
 from uq.literals import plain
@@ -30,6 +30,7 @@ LINES = ("-", "--", "-.", ":")
 _STYLE: Any = {
     "font.size": 8,
     "axes.titlesize": 8,
+    "axes.formatter.limits": (-4, 5),
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.fontsize": 7,
@@ -59,7 +60,21 @@ def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure
     tuple of Figure and list of Axes
     """
     figure = Figure(figsize=(WIDTH, height + 0.15 * entries), layout="constrained")
-    return figure, list(figure.subplots(panels, sharex=True, squeeze=False)[:, 0])
+    found = list(figure.subplots(panels, sharex=True, squeeze=False)[:, 0])
+    roomy(found[0])
+    return figure, found
+
+
+def roomy(axes: Axes) -> None:
+    """Have so few ticks on a horizontal axis, not yet logarithmic, that long numbers have room."""
+    axes.locator_params(axis="x", nbins=6)
+
+
+def logarithmic(axes: Axes) -> None:
+    """Make a horizontal axis logarithmic, its numbers in plain text: dollar signs mean nothing."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(LogFormatter())
+    axes.xaxis.set_minor_formatter(LogFormatter())
 
 
 def legend(axes: Axes) -> None:

@@ -13,7 +13,7 @@ from uq.figure import COLOURS, legend, new_figure, place_in_words, sentence, sty
 from uq.indices import sensitivities
 from uq.time_units import time_unit
 
-_MEANING = {
+MEANING = {
     "S1": "alone (S1)",
     "ST": "with all interactions (ST)",
     "delta": "Borgonovo's delta",
@@ -85,7 +85,7 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
         found = [entry[kind][parameter] for parameter in parameters]
         table = np.array([(one["value"], one["low"], one["high"]) for one in found], dtype=float)
         value, ends = table[:, 0], table[:, 1:].T
-        axes.barh(y, value, thickness, color=COLOURS[i], label=_MEANING.get(kind, kind))
+        axes.barh(y, value, thickness, color=COLOURS[i], label=MEANING.get(kind, kind))
         axes.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
     for limit in entry.get("dummy", {}).values():
         label = "largest of inputs that play no part"
@@ -98,9 +98,9 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
         axes.set_xlim(max(low, -0.25), min(high, 1.25))
     axes.set_yticks(range(len(labels)), labels)
     known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
-    subject = "Sensitivity index [1]" if shares else "Effect, in the unit of the output"
-    axes.set_xlabel(subject + known * ",\nwith 95 % interval")
-    figure.suptitle(_subject(ds, name), x=0.01, ha="left", fontsize=8)
+    axis = "Sensitivity index [1]" if shares else "Effect, in the unit of the output"
+    axes.set_xlabel(axis + known * ",\nwith 95 % interval")
+    figure.suptitle(subject(ds, name), x=0.01, ha="left", fontsize=8)
     legend(axes)
     return figure
 
@@ -110,8 +110,8 @@ def _named(parameter: xr.DataArray) -> str:
     return sentence(f"{parameter.attrs['long_name']} ({parameter.attrs['symbol']})", width=30)
 
 
-def _subject(ds: xr.Dataset, name: str) -> str:
-    """Return in words what the indices are about."""
+def subject(ds: xr.Dataset, name: str) -> str:
+    """Return in words what the indices of a name of `uq.indices.sensitivities` are about."""
     inside = name.removeprefix("rate(").removeprefix("P(").removesuffix(")")
     category, _, label = inside.partition("=")
     if category in ds and ds[category].attrs.get("kind") == "category":

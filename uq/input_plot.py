@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from uq.conditioning import cdf_within
 from uq.distributions import Law
 from uq.elements import Floats
-from uq.figure import COLOURS, WIDTH, is_wide, sentence, styled
+from uq.figure import COLOURS, WIDTH, is_wide, logarithmic, roomy, sentence, styled
 from uq.realised import EVERYWHERE, stated_and_realised
 
 
@@ -58,5 +58,6 @@ def _panel(axes: Axes, law: Law, values: Floats) -> None:
     axes.stairs(rows, edges, fill=True, color=COLOURS[4])
     axes.stairs(stated, edges, color=COLOURS[1], lw=1.2)
     axes.set_ylim(0, None)
+    roomy(axes)
     if wide:
-        axes.set_xscale("log")
+        logarithmic(axes)

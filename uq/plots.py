@@ -23,6 +23,7 @@ from uq.figure import (
     file_name,
     is_wide,
     legend,
+    logarithmic,
     new_figure,
     place_in_words,
     sentence,
@@ -117,7 +118,7 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
     axes.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
     axes.set_xlabel(sentence(chosen[0].meaning, unit.name))
     if is_wide(ends):
-        axes.set_xscale("log")
+        logarithmic(axes)
     _explain(axes, chosen, *["pointwise 95 % band"] * bool(axes.collections))
     return figure
 
@@ -158,7 +159,7 @@ def histogram(ds: xr.Dataset, output: str) -> Figure:
     axes.set(ylim=(0, None), ylabel="Share of rows per bin")
     axes.set_xlabel(sentence(chosen[0].meaning, chosen[0].units))
     if wide:
-        axes.set_xscale("log")
+        logarithmic(axes)
     _explain(axes, chosen)
     return figure
 

@@ -15,7 +15,8 @@ from uq.contract import Model, Output, Parameter, Status
 
 # What the command loads when it needs it: loaded once, before the processes are forked, and before
 # they become another user, who may not see where Python lives.
-for module in ("dask.array", "filelock", "netCDF4", "scipy.stats", "models.analytic", "uq.statistics"):
+MODULES = ("dask.array", "filelock", "netCDF4", "scipy.stats", "models.analytic", "uq.statistics")
+for module in MODULES:
     import_module(module)
 "".encode("utf-8-sig")
 for module in ("app", "keeping", "studies"):

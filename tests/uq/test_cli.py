@@ -32,7 +32,7 @@ def test_no_argument_is_a_call_for_help(uq):
     assert ended.code == 0
     verbs = (
         "models simulate init check schema plan run status extend rerun verify summary "
-        "sensitivity convergence twin rare-event plot"
+        "sensitivity convergence twin rare-event plot report"
     ).split()
     listed = ended.out.partition("Commands:\n")[2]
     assert [line.split()[0] for line in listed.splitlines() if line.strip()] == verbs

@@ -3,10 +3,14 @@
 Heavy modules are imported inside the verbs, so that ``uq --help`` answers at once.
 """
 
+import sys
+import webbrowser
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+
+from uq.literals import plain_line
 
 app = typer.Typer(
     help="Probabilistic lifetime and sensitivity studies of vibro-impact machines.",
@@ -320,3 +324,22 @@ def plot(
 
     for path in save_all(open_result(result), folder or result.with_suffix("")):
         print(path)
+
+
+@app.command()
+def report(
+    result: ResultFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="Default: OUT.html beside OUT.nc."),
+    ] = None,
+    show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
+) -> None:
+    """Write all that a result says into one page for a browser."""
+    from uq.report import write_report
+
+    path = output or result.with_suffix(".html")
+    write_report(result, path)
+    print(plain_line(str(path)))
+    if show and not webbrowser.open(path.resolve().as_uri()):
+        print("no browser was found; open this file yourself", file=sys.stderr)

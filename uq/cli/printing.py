@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Iterable, Sequence
-from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -11,7 +10,8 @@ from rich.table import Table
 from rich.text import Text
 
 from uq.literals import plain
-from uq.time_units import time_unit
+from uq.wording import duration as duration
+from uq.wording import number as number
 
 if TYPE_CHECKING:
     from rich.console import JustifyMethod
@@ -65,29 +65,6 @@ def grid(rows: Iterable[Sequence[str]], header: Sequence[str] = (), indent: int 
     for row in zip(*(columns[i] for i in kept), strict=True):
         table.add_row(*(Text(plain(cell)) for cell in row))
     console.print(Padding(table, (0, 0, 0, indent), expand=False))
-
-
-def number(value: float | None) -> str:
-    """Return a number for a table; a dash for none."""
-    return "-" if value is None else f"{value:.5g}"
-
-
-def duration(seconds: float | None) -> str:
-    """Return a time in hours, days or years; nothing for less than an hour.
-
-    Parameters
-    ----------
-    seconds : float or None
-        [s]
-
-    Returns
-    -------
-    str
-    """
-    if seconds is None or not isfinite(seconds):
-        return ""
-    unit = time_unit(abs(seconds))
-    return "" if unit.name == "seconds" else f"{seconds / unit.seconds:.3g} {unit.name}"
 
 
 def _looks_numeric(cell: str) -> bool:

@@ -18,10 +18,11 @@ from uq.cli.printing import console, grid, heading, number
 from uq.contract import Status
 from uq.designs import DESIGNS
 from uq.job import Progress
-from uq.literals import plain_line, shown
+from uq.literals import plain_line
 from uq.sampling import group_size, rows
 from uq.store import folder_of
 from uq.study import Study, load_study
+from uq.wording import law
 
 
 def check(path: str, model: str | None) -> None:
@@ -45,23 +46,15 @@ def check(path: str, model: str | None) -> None:
         ]
     )
     heading("\nUncertain inputs")
-    laws = [(name, _law(law), _unit(study, name)) for name, law in study.uncertain.items()]
+    laws = [(name, law(stated), _unit(study, name)) for name, stated in study.uncertain.items()]
     ties = [(name, f"equals {tied.equals}", "") for name, tied in study.tied.items()]
     grid(laws + ties, header=("parameter", "distribution", "unit"))
     _show_realised(study)
 
 
 def _unit(study: Study, name: str) -> str:
-    law = study.uncertain[name]
-    return study.model.parameter(name).unit if law.times is None else f"x {law.times}"
-
-
-def _law(law: Any) -> str:
-    given = law.model_dump(exclude={"distribution", "source", "times"}, exclude_none=True)
-    if given.get("file") is not None:
-        del given["values"]
-    arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
-    return f"{law.distribution}({arguments})"
+    times = study.uncertain[name].times
+    return study.model.parameter(name).unit if times is None else f"x {times}"
 
 
 def _show_realised(study: Study) -> None:

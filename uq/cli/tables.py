@@ -6,9 +6,8 @@ from typing import Any
 import xarray as xr
 
 from uq.b_lives import B_LIVES
-from uq.cli.printing import console, duration, grid, heading, number, paragraph
-
-Entry = Mapping[str, Any]
+from uq.cli.printing import console, grid, heading, paragraph
+from uq.wording import Entry, duration, interval, known, number
 
 
 def show_summary(ds: xr.Dataset, summary: Entry) -> None:
@@ -23,7 +22,7 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
         shares = summary["regime"].items()
         grid(
             [
-                (label, number(one["share"]), _interval(one), str(one["count"]))
+                (label, number(one["share"]), interval(one), str(one["count"]))
                 for label, one in shares
             ],
             header=("", "share", "95 % interval", "rows"),
@@ -48,7 +47,7 @@ def _lines(output: Entry) -> Iterator[Line]:
 
     def line(label: str, entry: Entry, key: str = "value", time: bool = True) -> Line:
         in_words = duration(entry[key]) if time and output["units"] == "s" else ""
-        return label, _known(entry, key), _interval(entry), in_words
+        return label, known(entry, key), interval(entry), in_words
 
     yield line("mean", {"value": output["mean"], **output["mean_interval"]})
     yield line("sd", output, "sd")
@@ -89,22 +88,7 @@ def _show_fits(fits: Mapping[str, Entry]) -> None:
             continue
         numbers = fit["parameters"] | {name: fit[name] for name in B_LIVES}
         heading(f"  {law}", f"fits {fit['rows']} rows, p = {fit['p_value']:.2g}")
-        grid([(name, number(one["value"]), _interval(one)) for name, one in numbers.items()])
-
-
-def _known(entry: Entry, key: str) -> str:
-    """Return a number, or why there is none."""
-    if entry[key] is not None:
-        return number(entry[key])
-    prefix = "" if key == "value" else f"{key}_"
-    if entry.get(f"{prefix}never"):
-        return "never"
-    return "beyond the horizon" if entry.get(f"{prefix}censored") else "-"
-
-
-def _interval(entry: Entry) -> str:
-    ends = [_known(entry, end) if end in entry else "-" for end in ("low", "high")]
-    return "" if ends == ["-", "-"] else " to ".join(ends)
+        grid([(name, number(one["value"]), interval(one)) for name, one in numbers.items()])
 
 
 def _example(ds: xr.Dataset, status: str) -> str:

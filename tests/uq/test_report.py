@@ -1,0 +1,224 @@
+"""The report: what is in it, that nothing in a file can act in it, that it needs no other file."""
+
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from computed import asking, kinds, linear, with_output, with_status
+from matplotlib.figure import Figure
+
+from uq import results
+from uq.contract import Status
+from uq.report import page
+from uq.report.inputs import mark
+from uq.report.pictures import HEAVIEST_SVG, picture
+from uq.store.files import write_result
+
+HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>&amp;'
+
+
+class Page(HTMLParser):
+    """The tags, attributes and visible words of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.attributes, self.words, self.inside = [], [], "", None
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.attributes += attrs
+        self.inside = tag if tag in ("script", "style") else None
+        self.words += "" if tag == "wbr" else " "
+
+    def handle_endtag(self, tag):
+        self.inside = None
+
+    def handle_data(self, data):
+        self.words += "" if self.inside else data
+
+    @property
+    def plain_words(self):
+        return " ".join(self.words.split())
+
+
+def read(ds):
+    return Page(page(ds, "OUT.nc"))
+
+
+ASKED = {
+    "thresholds": {"life": 1.0},
+    "tolerance": {"coverage": 0.9, "confidence": 0.9},
+    "sensitivity": ["rbd-fast", "pawn"],
+}
+
+
+def test_a_report_says_all_there_is_to_say():
+    ds = kinds(samples=200, analysis=ASKED)
+    found = read(ds)
+    words = found.plain_words
+    for expected in (
+        "kinds, version 1",
+        "monte-carlo: independent rows",
+        "x_1: first input",
+        "uniform(lower = 0.01, upper = 0.99) m",
+        "made up",
+        "out-of-budget",
+        "slow",
+        "Statistics, with 95 % intervals",
+        "Tolerance bounds",
+        "life[side=left,depth=0.5]",
+        "B10 is the time by which 10 % have ended",
+        "rows never ending",
+        "rbd-fast",
+        "pawn",
+        "lifetimes are censored",
+        "uq run kinds.toml",
+        "uq verify OUT.nc",
+        ds.attrs["study_sha256"],
+        ds.attrs["cpu"],
+        ds.attrs["numpy"],
+        "vibrolife 0.1.0",
+        "ask its authors what to cite",  # the model of this test is not installed
+    ):
+        assert expected in words, expected
+    summary = re.search(r"angle an angle rad ([0-9.]+)", words)
+    assert float(summary[1]) == pytest.approx(np.nanmean(ds["angle"]), rel=1e-4)
+    drawn = found.tags.count("svg")
+    assert drawn == 4 + 2 * len([1 for name in ("left", "right", "P", "angle", "slow", "fast")]) + 2
+
+
+def test_links_lead_somewhere_and_names_are_unique():
+    found = read(kinds(samples=200, analysis=ASKED))
+    ids = [value for name, value in found.attributes if name == "id"]
+    assert len(ids) == len(set(ids))
+    assert {value[1:] for name, value in found.attributes if name == "href"} <= set(ids)
+    used = re.findall(r"url\(#([^)]+)\)", str(found.attributes))
+    assert used and set(used) <= set(ids)
+
+
+def test_a_report_needs_no_network_and_no_other_file():
+    text = page(kinds(samples=100, analysis=ASKED), "OUT.nc")
+    assert "://" not in text and "@import" not in text
+    loaded = [(n, v) for n, v in Page(text).attributes if n in ("src", "href", "data", "srcset")]
+    assert all(value.startswith(("#", "data:image/png")) for _, value in loaded)
+    assert "link" not in Page(text).tags
+
+
+def test_names_from_a_file_are_text():
+    ds = with_output(linear(samples=64), "odd", np.arange(64.0))
+    ds["odd"].attrs["long_name"] = HOSTILE
+    ds["x1"].attrs |= {"long_name": HOSTILE, "source": HOSTILE, "symbol": HOSTILE}
+    ds["status"].attrs["example_raised"] = f"{HOSTILE}\x1b[31m"
+    ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)
+    found = Page(page(ds, f"{HOSTILE}.nc"))
+    assert found.tags.count("script") == 1 and "img" not in found.tags
+    assert not [name for name, _ in found.attributes if name.startswith("on")]
+    assert found.words.count(HOSTILE) >= 6
+    assert "\\u001b[31m" in found.words and "\x1b" not in found.words
+
+
+def test_the_same_result_gives_the_same_text():
+    ds = kinds(samples=64)
+    assert page(ds, "a.nc") == page(ds, "a.nc")
+
+
+def test_where_all_rows_failed_the_report_says_why():
+    ds = kinds(samples=20)
+    lost = {name: ds[name] * np.nan for name in ("work", "life", "angle")}
+    lost |= {"regime": ds["regime"] * 0 - 1, "life_censored": ds["life_censored"] * 0}
+    ds = ds.assign({name: ds[name].copy(data=values) for name, values in lost.items()})
+    ds = with_status(ds, slice(None), Status.RAISED)
+    ds["status"].attrs["example_raised"] = "ValueError: no such thing"
+    words = read(ds).plain_words
+    assert "20 of 20 rows failed." in words and "ValueError: no such thing" in words
+    assert "uq rerun --failed" in words
+
+
+@pytest.mark.parametrize(
+    "ds",
+    [
+        linear(samples=1),
+        kinds(samples=1),
+        linear("morris", samples=8, replicates=2),
+        linear("saltelli", samples=16, replicates=4, second_order=True),
+        linear("sobol", samples=16),
+        asking(kinds(samples=50), outputs=["regime"]),
+        asking(with_output(linear(), "odd", np.full(64, np.inf), "lifetime"), outputs=["odd"]),
+    ],
+    ids=["one-row", "one-of-every-kind", "morris", "saltelli", "sobol", "categories", "never"],
+)
+def test_what_is_missing_is_left_out_or_said(ds):
+    found = read(ds)
+    assert found.tags.count("section") >= 8
+    assert ("Regimes, with" in found.plain_words) == ("regime" in ds)
+    for strange in ("nan", "None", "[]", "inf "):
+        assert not re.search(
+            rf"(?<![a-z]){re.escape(strange)}(?![a-z])", found.words.split("cpu")[0]
+        )
+
+
+def test_a_crowded_figure_becomes_an_image():
+    figure = Figure(figsize=(3.4, 2.0))
+    rng = np.random.default_rng(1)
+    figure.subplots().plot(*rng.normal(size=(2, 100_000)), ".")
+    drawn = picture(figure, 'a "cloud"')
+    assert drawn.is_image and len(drawn.html) < HEAVIEST_SVG
+    assert dict(Page(drawn.html).attributes)["alt"] == 'a "cloud"'
+
+
+@pytest.mark.parametrize(
+    ("source", "known"),
+    [
+        ("Knudsen & Massih 2002, Table 1: given, its exponent inferred", "given"),
+        ("assumed: area 7.1e-5 m2 given, density 1e4 kg m-3 assumed", "assumed"),
+        ("fitted to the published frequencies", "fitted"),
+        ("no random force, assumed: the next step", "assumed"),
+        ("Ho, Nguyen & Woo 2011: 58 V RMS given", "given"),
+        ("the paper's value is not given", ""),
+        ("misgiven, unassumed", ""),
+        ("scatter of the values given in Table 1", ""),
+        ("", ""),
+    ],
+)
+def test_how_well_a_number_is_known_stands_in_its_source(source, known):
+    assert mark(source) == known
+
+
+@pytest.mark.slow
+def test_a_large_study_makes_a_small_page():
+    assert len(page(linear(samples=100_000), "OUT.nc")) < 10e6
+
+
+def test_report_on_the_command_line(uq, folder, monkeypatch):
+    write_result(kinds(samples=50), folder / "out.nc")
+    ended = uq("report", "out.nc")
+    assert (ended.code, ended.out, ended.err) == (0, "out.html\n", "")
+    text = (folder / "out.html").read_text()
+    assert text.startswith("<!DOCTYPE html>") and text.endswith("</html>")
+    opened = []
+    monkeypatch.setattr("webbrowser.open", lambda address: bool(opened.append(address)))
+    ended = uq("report", "out.nc", "-o", "new/my report.html", "--open")
+    assert ended.code == 0 and "no browser was found" in ended.err
+    assert opened == [(folder / "new" / "my report.html").as_uri()]
+    assert (folder / "new" / "my report.html").read_text() == text
+
+
+def test_reports_that_cannot_be_made_are_refused_in_a_line(uq, folder):
+    path = folder / "out.nc"
+    write_result(linear(samples=8), path)
+    before = path.read_bytes()
+    for arguments, line in (
+        (("none.nc",), "none.nc: no such file\n"),
+        (
+            ("out.nc", "-o", "out.nc"),
+            "out.nc: is the result itself; give the report another name\n",
+        ),
+        (("out.nc", "-o", "."), ".: is a folder; give the name of a file in it\n"),
+        (("out.nc", "-o", "out.nc/a.html"), "out.nc/a.html: {0}/out.nc is a file, not a folder\n"),
+    ):
+        ended = uq("report", *arguments)
+        assert (ended.code, ended.out, ended.err) == (2, "", line.format(folder))
+    assert [entry.name for entry in folder.iterdir()] == ["out.nc"] and path.read_bytes() == before
+    assert results.open_result(path).sizes["sample"] == 8

@@ -1,0 +1,61 @@
+"""The few sentences at the top of a report: what a reader must know before any table."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from uq.report.indices import Method
+from uq.report.outcomes import Outcome
+from uq.wording import interval, known
+
+_MOST = 6
+"""Outputs, and targets, of which there is a sentence."""
+
+
+def headlines(
+    summary: Mapping[str, Any], failed: int, found: Sequence[Outcome], methods: Sequence[Method]
+) -> list[str]:
+    """Return the sentences.
+
+    Parameters
+    ----------
+    summary : dict
+        What `uq.statistics.summarise` returns.
+    failed : int
+        Rows.
+    found : sequence of Outcome
+    methods : sequence of Method
+
+    Returns
+    -------
+    list of str
+    """
+    ended = f"{failed} of {summary['samples']} rows failed." if failed else "No row failed."
+    return [ended, *_regimes(summary), *_outputs(found), *_leading(methods)]
+
+
+def _regimes(summary: Mapping[str, Any]) -> Iterator[str]:
+    seen = [(label, one) for label, one in summary["regime"].items() if one["count"]]
+    seen.sort(key=lambda pair: -pair[1]["count"])
+    if seen:
+        shares = (f"{label} {100 * one['share']:.1f} %" for label, one in seen)
+        yield f"Regimes: {', '.join(shares)}."
+
+
+def _outputs(found: Sequence[Outcome]) -> Iterator[str]:
+    """Yield the median of each output, where the study asks for it."""
+    for one in found[:_MOST]:
+        median = one.entry["quantiles"].get("0.5")
+        if median is None or known(median) == "-":
+            continue
+        unit = one.unit_cell.text
+        ends = interval(median, one.unit.seconds)
+        words = f"{one.words[:1].upper()}{one.words[1:]}: median"
+        value = known(median, per=one.unit.seconds)
+        told = value if value in ("never", "beyond the horizon") else f"{value} {unit}".strip()
+        yield f"{words} {told}{f' (95 % interval {ends})' if ends else ''}."
+
+
+def _leading(methods: Sequence[Method]) -> Iterator[str]:
+    subjects = [one for method in methods[:1] for one in method.subjects if one.leading]
+    for one in subjects[:_MOST]:
+        yield f"{one.name}: {one.leading} matters most ({methods[0].name})."

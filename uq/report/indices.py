@@ -1,0 +1,116 @@
+"""What a report says of sensitivities: one table for each target of each method."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import xarray as xr
+
+from uq.errors import InputError
+from uq.index_plot import bars, subject
+from uq.indices import methods, sensitivities
+from uq.report.pictures import Picture, picture
+from uq.report.table import Cell, Table, estimate
+
+
+class Subject(NamedTuple):
+    """The indices of one target by one method.
+
+    Attributes
+    ----------
+    name : str
+    words : str
+    refused : str
+        Why there are none, or "".
+    tables : list of Table
+    picture : Picture or None
+    notes : list of str
+    leading : str
+        The input with the largest index, or "".
+    """
+
+    name: str
+    words: str
+    refused: str = ""
+    tables: tuple[Table, ...] = ()
+    picture: Picture | None = None
+    notes: tuple[str, ...] = ()
+    leading: str = ""
+
+
+class Method(NamedTuple):
+    """What one method has to say; where it has nothing at all, ``refused`` says why."""
+
+    name: str
+    refused: str = ""
+    used: str = ""
+    subjects: tuple[Subject, ...] = ()
+
+
+def sensitivity_of(ds: xr.Dataset) -> list[Method]:
+    """Return the indices by every method that the study asks for.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    list of Method
+    """
+    return [_method(ds, name) for name in methods(ds)]
+
+
+def _method(ds: xr.Dataset, name: str) -> Method:
+    try:
+        found = sensitivities(ds, name)
+    except InputError as error:
+        return Method(name, refused=str(error))
+    used = f"{found['rows_used']} rows used"
+    if found["groups_dropped"]:
+        used += (
+            f", {found['groups_dropped']} groups dropped for lack of a value in some of their rows"
+        )
+    subjects = (_subject(ds, target, entry) for target, entry in found["outputs"].items())
+    return Method(name, used=used, subjects=tuple(subjects))
+
+
+def _subject(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Subject:
+    words = " ".join(subject(ds, name).split())
+    if "refused" in entry:
+        return Subject(name, words, refused=entry["refused"])
+    kinds = {kind: value for kind, value in entry.items() if _is_index(value)}
+    pairs = {"S2": kinds.pop("S2")} if "S2" in kinds else {}
+    dummy = entry.get("dummy", {})
+    told: tuple[tuple[str, Mapping[str, Any], Mapping[str, float]], ...] = (
+        (f"Indices of {name}", kinds, dummy),
+        (f"Second order, of {name}", pairs, {}),
+    )
+    tables = tuple(_table(*one) for one in told if one[1])
+    drawn = picture(bars(ds, name, entry), f"Sensitivity indices of {name}") if kinds else None
+    leading = _ranking(kinds)[0] if kinds else ""
+    return Subject(name, words, "", tables, drawn, tuple(entry["notes"]), leading)
+
+
+def _is_index(value: Any) -> bool:
+    return (
+        isinstance(value, Mapping)
+        and bool(value)
+        and all(isinstance(one, Mapping) for one in value.values())
+    )
+
+
+def _ranking(kinds: Mapping[str, Any]) -> list[str]:
+    last = list(kinds.values())[-1]
+    return sorted(last, key=lambda label: -(last[label]["value"] or 0.0))
+
+
+def _table(caption: str, kinds: Mapping[str, Any], dummy: Mapping[str, float]) -> Table:
+    rows = [
+        (Cell(label), *(estimate(one[label]) for one in kinds.values()))
+        for label in _ranking(kinds)
+    ]
+    if dummy:
+        limits = (estimate({"value": dummy.get(kind)}) for kind in kinds)
+        rows.append((Cell("(an input without effect)"), *limits))
+    return Table(caption, ("input", *kinds), rows)

@@ -1,0 +1,108 @@
+"""What a report says of the inputs: laws, sources, and how well each number is known."""
+
+import re
+from collections.abc import Iterator
+
+import xarray as xr
+
+from uq.distributions import Law
+from uq.elements import study_file_of
+from uq.figure import powers
+from uq.realised import compare, stated_and_realised
+from uq.report.table import Cell, Table, without_empty_columns
+from uq.study_file import Tied
+from uq.wording import law, number
+
+_MARK = re.compile(
+    r"(?:^|[:;,] )(given|inferred|fitted|assumed)\b|(?<!\bnot )\b(given|inferred|fitted|assumed)$"
+)
+
+
+def mark(source: str) -> str:
+    """Return how well the number is known, as the sentence on its source says, or "".
+
+    Parameters
+    ----------
+    source : str
+        Such as ``"Knudsen & Massih 2002, Table 1: given, its exponent inferred"``.
+
+    Returns
+    -------
+    str
+        ``given``, ``inferred``, ``fitted`` or ``assumed``: the first that stands at the head of
+        the sentence or of a part of it, or ends it.
+    """
+    found = _MARK.search(source)
+    return (found[1] or found[2]) if found else ""
+
+
+def input_tables(ds: xr.Dataset) -> Iterator[Table]:
+    """Yield the tables of uncertain and fixed inputs, and of rank correlations.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Yields
+    ------
+    Table
+    """
+    yield _uncertain(ds)
+    study = study_file_of(ds)
+    if study.dependence is not None:
+        names, matrix = study.dependence.parameters, study.dependence.rank_correlation
+        rows = [
+            (Cell(f"{first}, {second}"), Cell(f"{matrix[i][j]:g}", key=matrix[i][j]))
+            for i, first in enumerate(names)
+            for j, second in enumerate(names[:i])
+        ]
+        source = study.dependence.source
+        caption = f"Rank correlations{': ' if source else ''}{source}"
+        yield Table(caption, ("pair", "stated"), rows)
+    fixed = [name for name in ds.data_vars if ds[name].attrs["role"] == "fixed"]
+    if fixed:
+        told = [_fixed(ds, str(name)) for name in fixed]
+        yield Table("Fixed inputs", ("input", "value", "known", "source"), told)
+
+
+def _fixed(ds: xr.Dataset, name: str) -> tuple[Cell, ...]:
+    value = ds[name].item()
+    return (_name(ds, name), Cell(_with_unit(ds, name, value), key=value), *_source(ds, name))
+
+
+def _uncertain(ds: xr.Dataset) -> Table:
+    realised = stated_and_realised(ds)
+    rows = []
+    for name, entry in study_file_of(ds).uncertain.items():
+        quantiles = [Cell("")] * 3
+        if name in realised:
+            found = compare(*realised[name]).realised
+            quantiles = [Cell(number(value), key=float(value)) for value in found]
+        rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
+    header = ("input", "law", "5 % of rows", "50 %", "95 %", "known", "source")
+    return without_empty_columns(Table("Uncertain inputs", header, rows))
+
+
+def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
+    if isinstance(entry, Tied):
+        return f"equals {entry.equals}"
+    if entry.times is not None:
+        return f"{entry.times} times {law(entry)}"
+    return _with_unit(ds, name, law(entry))
+
+
+def _with_unit(ds: xr.Dataset, name: str, value: float | str) -> str:
+    unit = powers(ds[name].attrs["units"])
+    text = value if isinstance(value, str) else f"{value!r}"
+    return text if unit == "1" else f"{text} {unit}"
+
+
+def _name(ds: xr.Dataset, name: str) -> Cell:
+    attrs = ds[name].attrs
+    return Cell(name, f"{attrs['symbol']}: {attrs['long_name']}")
+
+
+def _source(ds: xr.Dataset, name: str) -> tuple[Cell, Cell]:
+    source = str(ds[name].attrs["source"])
+    return Cell(mark(source)), Cell(source)

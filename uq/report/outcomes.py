@@ -1,0 +1,154 @@
+"""What a report says of the rows: how they ended, and the statistics of the outputs."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import xarray as xr
+
+from uq.contract import Status
+from uq.elements import elements_of, independent_rows
+from uq.figure import place_in_words, powers
+from uq.report.table import Cell, Table, count, estimate, without_empty_columns
+from uq.time_units import TimeUnit, time_unit
+from uq.wording import number
+
+Summary = Mapping[str, Any]
+"""What `uq.statistics.summarise` returns."""
+
+_COUNTS = ("never", "censored", "undefined", "failed")
+
+
+def status_table(ds: xr.Dataset, summary: Summary) -> Table:
+    """Return how many rows ended how, what that means, and what the first of them said."""
+    meaning = {status.label: status.meaning for status in Status}
+    rows = []
+    for label, found in summary["status"].items():
+        example = str(ds["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
+        share = found / max(summary["samples"], 1)
+        cells = (Cell(str(found), key=float(found)), Cell(f"{100 * share:.2f} %", key=share))
+        rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
+    header = ("status", "rows", "share", "meaning", "the first such row said")
+    return without_empty_columns(Table("Status of all rows", header, rows))
+
+
+def regime_table(summary: Summary) -> Table:
+    """Return the share of each regime among the independent rows."""
+    rows = [
+        (Cell(label), count(one["count"]), estimate(one, key="share"))
+        for label, one in summary["regime"].items()
+    ]
+    return Table("Regimes, with 95 % intervals", ("regime", "rows", "share"), rows)
+
+
+class Outcome:
+    """An element of an output: its entry in the summary, its words, the unit it is told in.
+
+    Parameters
+    ----------
+    name : str
+    words : str
+        Which element it is: ``time to wear depth, left, 250 µm``.
+    entry : dict
+        Of ``outputs`` in what `uq.statistics.summarise` returns.
+    """
+
+    def __init__(self, name: str, words: str, entry: Mapping[str, Any]):
+        self.name, self.words, self.entry = name, words, entry
+        found = [one["value"] for one in entry["quantiles"].values() if one["value"] is not None]
+        typical = abs(found[len(found) // 2]) if found else 0.0
+        is_time = entry["units"] == "s"
+        self.unit = (
+            time_unit(typical)
+            if is_time
+            else TimeUnit(powers(entry["units"]).replace(" ", "\u00a0"), 1.0, 0.0)
+        )
+
+    @property
+    def label(self) -> Cell:
+        """The name, with its words below."""
+        return Cell(self.name, self.words)
+
+    @property
+    def unit_cell(self) -> Cell:
+        """The unit of the other cells; nothing for a pure number."""
+        return Cell("" if self.unit.name == "1" else self.unit.name)
+
+    def cell(self, entry: Mapping[str, Any], key: str = "value") -> Cell:
+        """Return the cell of an estimate in the unit of this element."""
+        return estimate(entry, self.unit.seconds, key)
+
+
+def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
+    """Return the elements that a summary describes, in its order."""
+    names = dict.fromkeys(name.partition("[")[0] for name in summary["outputs"])
+    found = []
+    for element in elements_of(independent_rows(ds), list(names)):
+        place = place_in_words(element, ds[element.output])
+        words = f"{element.meaning}{', ' if place else ''}{place}"
+        found.append(Outcome(element.name, words, summary["outputs"][element.name]))
+    return found
+
+
+def result_tables(found: list[Outcome]) -> Iterator[Table]:
+    """Yield the tables of statistics, of tolerance bounds and of thresholds; no empty ones."""
+    if not found:
+        return
+    probabilities = list(found[0].entry["quantiles"])
+    quantiles = (f"{100 * float(p):g} % quantile" for p in probabilities)
+    header = ("output", "unit", "mean", "sd", *quantiles, "variance between regimes", *_COUNTS)
+    rows = [tuple(_statistics(one)) for one in found]
+    yield without_empty_columns(Table("Statistics, with 95 % intervals", header, rows))
+    bounded = [one for one in found if one.entry["tolerance"]]
+    if bounded:
+        rows = [
+            (one.label, one.unit_cell, *(one.cell(one.entry["tolerance"], end) for end in _ENDS))
+            + (count(one.entry["tolerance"]["rows_needed"]),)
+            for one in bounded
+        ]
+        yield Table("Tolerance bounds", ("output", "unit", *_ENDS, "rows needed"), rows)
+    rows = [row for one in found for row in _thresholds(one)]
+    if rows:
+        header = ("output", "threshold", "P(above)", "P(below)", "note")
+        yield without_empty_columns(Table("Probabilities, with 95 % intervals", header, rows))
+
+
+_ENDS = ("lower", "upper")
+
+
+def _statistics(one: Outcome) -> Iterator[Cell]:
+    entry = one.entry
+    yield one.label
+    yield one.unit_cell
+    yield one.cell({"value": entry["mean"], **entry["mean_interval"]})
+    yield one.cell(entry, "sd")
+    yield from (one.cell(quantile) for quantile in entry["quantiles"].values())
+    split = entry.get("between_regimes")
+    yield estimate(split) if split else Cell("")
+    yield from (count(entry[name]) for name in _COUNTS)
+
+
+def _thresholds(one: Outcome) -> Iterator[tuple[Cell, ...]]:
+    for threshold, entry in one.entry["thresholds"].items():
+        value = float(threshold)
+        unit = "" if one.unit.name == "1" else f" {one.unit.name}"
+        told = Cell(f"{number(value / one.unit.seconds)}{unit}", key=value)
+        sides, note = entry, entry.get("reason", "")
+        if note:
+            sides = entry["kaplan_meier"]
+            note += "; after Kaplan and Meier, if censoring says nothing of the life left"
+        yield one.label, told, estimate(sides["above"]), estimate(sides["below"]), Cell(note)
+
+
+def life_table(found: list[Outcome]) -> Table | None:
+    """Return the times by which 1, 10 and 50 % have ended; None where nothing is a lifetime."""
+    lives = [one for one in found if one.entry["b_lives"]]
+    if not lives:
+        return None
+    names = tuple(lives[0].entry["b_lives"])
+    rows = [
+        (one.label, one.unit_cell, *(one.cell(one.entry["b_lives"][name]) for name in names))
+        + (count(one.entry["never"]), count(one.entry["censored"]))
+        for one in lives
+    ]
+    header = ("lifetime", "unit", *names, "rows never ending", "rows censored")
+    return Table("B-lives: B10 is the time by which 10 % have ended", header, rows)

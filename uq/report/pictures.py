@@ -1,0 +1,83 @@
+"""Figures inside a page: as SVG that is part of it, or as an image where that would be heavy."""
+
+import base64
+import re
+from io import BytesIO, StringIO
+from typing import NamedTuple
+from xml.etree import ElementTree
+
+import matplotlib as mpl
+from markupsafe import Markup
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+from uq.figure import styled
+from uq.literals import plain
+
+HEAVIEST_SVG = 300_000
+"""Longer drawings, of thousands of points, become images [characters]."""
+
+_IMAGE_DOTS_PER_INCH = 200
+_NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+
+
+class Picture(NamedTuple):
+    """A figure as HTML, and what it shows."""
+
+    html: Markup
+    caption: str
+    is_image: bool
+
+
+@styled
+def picture(figure: Figure, caption: str) -> Picture:
+    """Return a figure as a part of a page.
+
+    Parameters
+    ----------
+    figure : Figure
+    caption : str
+        Told to who cannot see it, and unique within a page.
+
+    Returns
+    -------
+    Picture
+        SVG whose text is text and whose black is the colour of the page's text; a PNG where that
+        would be longer than `HEAVIEST_SVG`.
+    """
+    drawn = StringIO()
+    # Identifiers of two figures in one page must not meet.
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": caption}):
+        FigureCanvasSVG(figure).print_svg(drawn, metadata=_NO_METADATA)
+    if len(drawn.getvalue()) > HEAVIEST_SVG:
+        return Picture(_image(figure, caption), caption, True)
+    return Picture(_embedded(drawn.getvalue(), caption), caption, False)
+
+
+def _image(figure: Figure, caption: str) -> Markup:
+    png = BytesIO()
+    figure.set_dpi(_IMAGE_DOTS_PER_INCH)
+    FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
+    data = base64.b64encode(png.getvalue()).decode()
+    return Markup('<img alt="{}" src="data:image/png;base64,{}">').format(caption, data)
+
+
+def _embedded(svg: str, caption: str) -> Markup:
+    """Return an SVG document as an element of HTML: no name spaces, no style for the whole page."""
+    root = ElementTree.fromstring(plain(svg))
+    used = set(re.findall(r'(?:href="|url\()#([^")]+)', svg))
+    for element in root.iter():
+        element.tag = element.tag.rpartition("}")[2]
+        for name in list(element.attrib):
+            value = element.attrib.pop(name)
+            if name != "id" or value in used:
+                element.set(name.rpartition("}")[2], value)
+    for definitions in root.findall("defs"):
+        for style in definitions.findall("style"):
+            definitions.remove(style)
+    for name in ("version", "width", "height"):
+        root.attrib.pop(name, None)
+    root.set("role", "img")
+    root.set("aria-label", plain(caption))
+    return Markup(ElementTree.tostring(root, encoding="unicode"))
