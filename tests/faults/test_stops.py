@@ -12,7 +12,7 @@ from conftest import MODEL, OUT, ROWS, until
 RANDOM = random.Random(2026)
 
 
-@pytest.mark.parametrize("kills", [4, pytest.param(30, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kills", [2, pytest.param(30, marks=pytest.mark.slow)])
 def test_kills_at_random_moments(study, undisturbed, start, call, injected, kills):
     done = [0]
     while len(done) <= kills:
@@ -35,7 +35,7 @@ def test_kills_at_random_moments(study, undisturbed, start, call, injected, kill
     assert [path.name for path in OUT.parent.iterdir()] == [OUT.name]
 
 
-@pytest.mark.parametrize("kills", [3, pytest.param(10, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kills", [1, pytest.param(10, marks=pytest.mark.slow)])
 def test_kills_during_the_merge(write_study, start, call, injected, kills):
     study = write_study(model="linear", uncertain=("x1", "x2", "x3"), samples=200_000)
     options = ("--workers", "0", "--quiet", "--chunk-rows", "2000")
@@ -119,10 +119,9 @@ def test_a_lock_of_another_host_is_respected(study, under_way, call, injected):
     assert call("run", study, *MODEL)[0] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("chunk_rows", [1, 7, 1000])
-@pytest.mark.parametrize(
-    "workers", [0, *(pytest.param(n, marks=pytest.mark.slow) for n in (1, 2, 4))]
-)
+@pytest.mark.parametrize("workers", [0, 1, 2, 4])
 def test_kills_with_workers_and_any_chunks(
     study, undisturbed, start, call, injected, workers, chunk_rows
 ):
