@@ -25,7 +25,7 @@ test: $(TEST)
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
-	@$(BIN)/python -m pytest -m "not slow"
+	@$(BIN)/python -m pytest -n logical --maxprocesses 8 --dist loadfile -m "not slow"
 
 slow: $(TEST)
 	@$(BIN)/python -m pytest -m slow

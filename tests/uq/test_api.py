@@ -28,6 +28,8 @@ def test_everything_promised_is_there():
             "two_fidelities",
             "running_estimates",
             "enough",
+            "regimes",
+            "life_fits",
         }
     )
     for name in uq.__all__:
