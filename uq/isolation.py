@@ -1,7 +1,7 @@
 """Rows computed in a process of their own, which they may crash or never leave.
 
-Rows that do so are computed again one by one: the guilty ones get a status and a sentence, the
-others the values that they have anywhere.
+Rows that do so are computed again, a few at a time and then one by one: the guilty ones get a
+status and a sentence, the others the values that they have anywhere.
 """
 
 import signal
@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq import child
+from uq.code import code_of
 from uq.contract import Status
 from uq.environment import command, inherited
 from uq.errors import RunError
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 # Somebody else may have killed a process: three, that of its chunk included, make a row guilty.
 _SINGLE_CRASHES = 2
+_FEW_ROWS = 16  # few enough to be taken singly, enough for kernels that work on rows abreast
 _STARTS = 3
 _FIRST_SECONDS = 2.0  # a first call loads compiled code
 _DYING_SECONDS = 5.0
@@ -43,7 +45,8 @@ Evaluate = Callable[[NDArray[np.float64], NDArray[np.uint64], int], Chunk]
 def task_of(work: "Work") -> child.Task:
     """Return what a process that computes rows of some work is told beforehand."""
     settings = tuple(asdict(work.settings).items())
-    return child.Task(work.model_reference, work.model.version, settings, work.output)
+    code = code_of(work.model_reference)
+    return child.Task(work.model_reference, work.model.version, settings, work.output, code)
 
 
 @contextmanager
@@ -102,8 +105,12 @@ class Isolated:
         chunk = self._ask(child.Request(x, seed, start))
         if isinstance(chunk, Chunk):
             return chunk
-        rows = range(len(x))
-        return joined([self._single(x[i : i + 1], seed[i : i + 1], start + i) for i in rows])
+        if len(x) == 1:
+            return self._single(x, seed, start)
+        size = _FEW_ROWS if len(x) > _FEW_ROWS else 1
+        parts = range(0, len(x), size)
+        few = self.evaluate if size > 1 else self._single
+        return joined([few(x[i : i + size], seed[i : i + size], start + i) for i in parts])
 
     def _single(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
         """Run one row on its own, so that it is known who is guilty."""
