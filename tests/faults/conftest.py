@@ -41,7 +41,7 @@ OUTCOMES = {
     "worker killed three times on a chunk": "chunk halved, same bits",
     "workers killed again and again": "ends with a sentence",
     "worker joins or leaves a cluster": "same bits",
-    "scheduler killed": "ends with a sentence",
+    "scheduler killed": "ends with a sentence; goes on here, same bits",
     "cluster loses its only worker": "ends with a sentence",
     "cold numba cache, eight runs at once": "same bits",
     "decimal comma": "same bits",
