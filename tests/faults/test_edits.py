@@ -89,14 +89,13 @@ def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call, 
     assert "a 'latin-hypercube' design cannot be extended: all its rows change" in said
 
 
-def test_rows_of_an_edited_model_are_mixed_on_request_alone(study, start, call, folder, injected):
+def test_rows_of_an_edited_model_are_mixed_on_request_alone(
+    study, under_way, call, folder, injected
+):
     model = folder / "edited.py"
     options = ("--model", "edited:MODEL", "--workers", "0")
     model.write_text("from command import PATIENT as MODEL\n")
-    slowly = {"UQ_TEST_SECONDS": "0.02"}
-    run = start("run", study, *options, "--chunk-rows", "7", "--quiet", **slowly)
-    until(lambda: list(ROWS.glob("*.rows")))
-    run.kill()
+    under_way(study, *options).kill()
     model.write_text(model.read_text() + "# edited\n")
     injected("code of the model edited between runs", 2)
     refused = (
