@@ -57,6 +57,7 @@ def test_a_missing_chunk_file_is_computed_again(study, undisturbed, kept, call, 
     assert OUT.read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_rows_may_be_computed_in_any_order(study, undisturbed, under_way, call, injected):
     for chunk_rows in (5, 3, 11):  # each time holes are left, and filled with other chunks
         under_way(study, "--chunk-rows", chunk_rows, chunks=4).kill()

@@ -83,6 +83,7 @@ def test_kills_of_a_run_that_stops_when_it_knows_enough(study, under_way, call, 
 LOOKS = (47, 94, 188, 375, 750, 1500)
 
 
+@pytest.mark.slow
 def test_another_wish_after_a_kill_changes_no_row(study, under_way, call, folder, injected):
     plain = study.read_text()
     assert call("run", study, *MODEL, "-o", "whole.nc") == (0, "")
