@@ -1,7 +1,7 @@
 """Rows computed in a process of their own, which they may crash or never leave.
 
-Rows that do so are computed again, a few at a time and then one by one: the guilty ones get a
-status and a sentence, the others the values that they have anywhere.
+Rows that do so are computed again in parts, down to single ones: the guilty ones get a status and a
+sentence, the others the values that they have anywhere.
 """
 
 import signal
@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
+from math import ceil
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any, cast
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
 # Somebody else may have killed a process: three, that of its chunk included, make a row guilty.
 _SINGLE_CRASHES = 2
-_FEW_ROWS = 16  # few enough to be taken singly, enough for kernels that work on rows abreast
+_PARTS = 8  # of rows that crashed: more would be small for kernels, fewer would crash more often
 _STARTS = 3
 _FIRST_SECONDS = 2.0  # a first call loads compiled code
 _DYING_SECONDS = 5.0
@@ -107,10 +108,10 @@ class Isolated:
             return chunk
         if len(x) == 1:
             return self._single(x, seed, start)
-        size = _FEW_ROWS if len(x) > _FEW_ROWS else 1
+        size = ceil(len(x) / _PARTS)
         parts = range(0, len(x), size)
-        few = self.evaluate if size > 1 else self._single
-        return joined([few(x[i : i + size], seed[i : i + size], start + i) for i in parts])
+        part = self.evaluate if size > 1 else self._single
+        return joined([part(x[i : i + size], seed[i : i + size], start + i) for i in parts])
 
     def _single(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
         """Run one row on its own, so that it is known who is guilty."""
