@@ -108,7 +108,8 @@ class Isolated:
             return chunk
         if len(x) == 1:
             return self._single(x, seed, start)
-        size = ceil(len(x) / _PARTS)
+        # A time that is over costs more than rows that are taken singly.
+        size = ceil(len(x) / _PARTS) if chunk.status is Status.CRASHED else 1
         parts = range(0, len(x), size)
         part = self.evaluate if size > 1 else self._single
         return joined([part(x[i : i + size], seed[i : i + size], start + i) for i in parts])
