@@ -44,6 +44,7 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam_mesh
 	@$(BIN)/python -m benchmarks.vibrator
 	@$(BIN)/python -m benchmarks.mole
+	@$(BIN)/python -m benchmarks.store
 
 clean:
 	rm -rf .venv

@@ -27,6 +27,7 @@ LAYERS = {
     "study": {
         "changes",
         "checks",
+        "code",
         "conditioning",
         "curves",
         "data_files",
