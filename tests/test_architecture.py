@@ -101,6 +101,7 @@ LAYERS = {
         "regime_split",
         "regime_table",
         "regimes_of",
+        "shapley",
         "sobol",
         "statistics",
         "targets",
