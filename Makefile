@@ -7,7 +7,7 @@ TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow faults notebook bench clean
+.PHONY: run test slow faults notebook bench coverage clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -45,6 +45,11 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.vibrator
 	@$(BIN)/python -m benchmarks.mole
 	@$(BIN)/python -m benchmarks.store
+	@$(BIN)/python -m benchmarks.large
+
+# How often each printed interval holds the truth: docs/coverage.md, in about twenty minutes.
+coverage: $(TEST)
+	@$(BIN)/python -m benchmarks.coverage
 
 clean:
 	rm -rf .venv

@@ -102,6 +102,7 @@ LAYERS = {
         "regime_split",
         "regime_table",
         "regimes_of",
+        "shapley",
         "sobol",
         "statistics",
         "targets",

@@ -92,15 +92,14 @@ def study_file_of(ds: xr.Dataset) -> StudyFile:
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
-    """Return the rows for plain statistics: A and B of a crossed design, all rows of others.
+    """Return the rows for plain statistics: A and B where a design has these, all rows of others.
 
-    The mixed blocks of a crossed design repeat the numbers of A and B. Where the rows do not follow
+    The mixed blocks between repeat the numbers of A and B. Where the rows do not follow
     the laws of the inputs there are none.
     """
     design = DESIGNS[ds.attrs["design"]]
-    mixed = ("AB_", "BA_") if design.crossed else ()
     labels = flags(ds["block"]) if design.follows_laws else []
-    plain = [code for code, label in labels if not label.startswith(mixed)]
+    plain = [code for code, label in labels if not label.startswith(("AB_", "BA_"))]
     chosen = np.isin(ds["block"].values, plain)
     return ds if chosen.all() else ds.isel(sample=chosen)
 

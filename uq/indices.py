@@ -15,12 +15,14 @@ from uq.given_data import given_data_indices
 from uq.independent_inputs import are_dependent, independent_inputs, notes_on_inputs
 from uq.morris import morris_indices, trajectories
 from uq.regimes_of import within_regime
+from uq.shapley import paths, shapley_indices
 from uq.sobol import crossed, sobol_indices
 from uq.targets import Index, Indices, RefusedError, Target, category_targets, targets
 
 _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
     "sobol": (crossed, sobol_indices),
     "morris": (trajectories, morris_indices),
+    "shapley": (paths, shapley_indices),
     "fast": (curves, fast_indices),
 }
 """Methods whose rows belong together: what finds them in a result, and the estimate from them."""
