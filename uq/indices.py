@@ -117,6 +117,12 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
     ------
     InputError
         When the design cannot feed the method.
+
+    Examples
+    --------
+    >>> found = uq.sensitivity(uq.run("studies/ishigami.toml"))
+    >>> found["ST"].sel(output="y").to_series().round(2).to_dict()
+    {'x1': 0.56, 'x2': 0.44, 'x3': 0.24}
     """
     name, found = _estimate(ds, method, None)
     estimated = [one.indices for one in found if not isinstance(one.indices, str)]
