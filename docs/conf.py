@@ -19,7 +19,6 @@ project = "vibrolife"
 copyright = "2026, the vibrolife developers"
 extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc"]
 exclude_patterns = ["outputs"]
-suppress_warnings = ["toc.empty_glob"]
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
@@ -38,13 +37,19 @@ html_show_sphinx = False
 html_copy_source = False
 html_math_renderer = "mathml"
 
-_ACCENTED = re.compile("<mover>(?=<mi>[^<]*</mi><mo>&#x00(?:2D9|0A8);)")
+_DOTS = {"2D9": "\u0307", "0A8": "\u0308"}
+_DOTTED = re.compile("<mover><mi>([^<]*)</mi><mo>&#x00(2D9|0A8);</mo></mover>")
 _UPRIGHT = re.compile('(?:<mi mathvariant="normal">[A-Za-z]</mi>){2,}')
+_TAG = re.compile(r"\\tag\{(.*?)\}")
 
 
 def mathml(tex: str, display: str) -> str:
-    """Return a formula as MathML, with accents on their letters and words in one piece."""
-    found = _ACCENTED.sub('<mover accent="true">', convert(tex, display=display))
+    """Return a formula as MathML that needs no mathematical font.
+
+    Dots are parts of their letters, words are in one piece, and a tag stands behind its formula.
+    """
+    found = convert(_TAG.sub(r"\\qquad\\text{(\1)}", tex), display=display)
+    found = _DOTTED.sub(lambda one: f'<mi class="dotted">{one[1]}{_DOTS[one[2]]}</mi>', found)
     return _UPRIGHT.sub(lambda word: f"<mi>{re.sub('<.*?>', '', word.group())}</mi>", found)
 
 

@@ -1,7 +1,7 @@
 """What a page says besides what is typed in it.
 
-A line ``{{ table argument }}`` in a page becomes what the function of that name in `tables` returns,
-and ``{{ text README }}`` a text of the repository's root: nothing is typed twice.
+A line ``{{ table argument }}`` in a page becomes what the function of that name in `tables`
+returns, and ``{{ text README }}`` a text of the repository's root: nothing is typed twice.
 """
 
 import re

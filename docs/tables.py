@@ -152,6 +152,11 @@ def outputs(name: str) -> str:
     return table(("output", "unit", "meaning", ""), lines)
 
 
+def page(name: str) -> str:
+    """Return the name of a page, if there is one, for a table of contents."""
+    return name if (Path(__file__).parent / f"{name}.md").is_file() else ""
+
+
 def output(name: str) -> str:
     """Quote what a command printed, kept in a file beside this one."""
     text = (Path(__file__).parent / "outputs" / f"{name}.txt").read_text(encoding="utf-8")

@@ -93,9 +93,9 @@ def refusal(block, model):
     if "design" not in data:
         text += '\n[design]\nmethod = "monte-carlo"\nsamples = 64\n'
     if "uncertain" not in data:
-        name = next(name for name, nominal in find_model(model).nominal.items() if nominal > 0)
-        nominal = find_model(model).nominal[name]
-        law = f'{{distribution = "uniform", lower = {nominal * 0.99!r}, upper = {nominal!r}}}'
+        name, nominal = next(iter(find_model(model).nominal.items()))
+        upper = 0.999 * nominal + 0.001 * find_model(model).parameter(name).bounds[1]
+        law = f'{{distribution = "uniform", lower = {nominal!r}, upper = {upper!r}}}'
         text += f"\n[uncertain]\n{name} = {law}\n"
     try:
         study_from_text(text, folder=HOUSE)
