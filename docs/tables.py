@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields
+from html import escape
 from importlib import import_module
 from inspect import isfunction
 from math import inf, pi
@@ -16,6 +17,7 @@ from pydantic import BaseModel
 from uq.cli.app import app
 from uq.contract import Status
 from uq.designs import DESIGNS, FOR_DEPENDENT_INPUTS
+from uq.reading import read_study_text
 from uq.registry import find_model
 from uq.study_file import (
     LAWS,
@@ -163,6 +165,17 @@ def output(name: str) -> str:
     return f"```text\n{text}```"
 
 
+def studies(name: str) -> str:
+    """Tabulate the studies of a model that come with the project."""
+    lines = []
+    for path in sorted((Path(__file__).parents[1] / "studies").glob("*.toml")):
+        study = read_study_text(path.read_text(encoding="utf-8"), str(path))
+        if study.study.model == name:
+            rows = f"{study.design.method}, {study.design.samples} samples"
+            lines.append((f"`studies/{path.name}`", study.study.description, rows))
+    return table(("study", "", "design"), lines)
+
+
 def references(name: str) -> str:
     """List what to cite for a model."""
     return "\n".join(f"- {text}" for text in find_model(name).references)
@@ -243,8 +256,8 @@ def designs() -> str:
             f"{method}\\*" if method in FOR_DEPENDENT_INPUTS else method for method in design.feeds
         )
         can = "yes" if design.append_only else "no"
-        lines.append((f'`"{name}"`', design.meaning, feeds, can))
-    return table(("`method`", "rows", "sensitivity methods, the default first", "extend"), lines)
+        lines.append((f'`"{name}"`', design.meaning, can, feeds))
+    return table(("`method`", "rows", "extend", "sensitivity methods, the default first"), lines)
 
 
 def verbs() -> str:
@@ -261,7 +274,7 @@ def _verb(name: str, command: Any) -> str:
     arguments = [one for one in command.params if one.param_type_name == "argument"]
     usage = " ".join(_metavar(one) for one in arguments)
     lines = [
-        (", ".join(f"`{text}`" for text in _spellings(one)), one.help or "")
+        (", ".join(f"`{text}`" for text in _spellings(one)), escape(one.help or ""))
         for one in command.params
         if one.param_type_name == "option"
     ]
