@@ -1,13 +1,13 @@
 """What a page says besides what is typed in it.
 
-A line ``{{ table argument }}`` in a page becomes what the function of that name in `tables`
+A line ``{{ table argument }}`` in a page becomes what the function of that name in `generated`
 returns, and ``{{ text README }}`` a text of the repository's root: nothing is typed twice.
 """
 
 import re
 from pathlib import Path
 
-import tables
+import generated
 
 ROOT = Path(__file__).parents[1]
 TEXTS = {"README": "index", "CONTRIBUTING": "contributing", "CHANGELOG": "changelog"}
@@ -44,7 +44,7 @@ def expanded(page: str) -> str:
 
     def replacement(found: re.Match[str]) -> str:
         name, argument = found.groups()
-        function = text if name == "text" else getattr(tables, name)
+        function = text if name == "text" else getattr(generated, name)
         return str(function(argument) if argument else function())
 
     return _DIRECTIVE.sub(replacement, page)
