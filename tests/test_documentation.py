@@ -19,8 +19,8 @@ from uq.study import study_from_text
 HOUSE = Path(__file__).parents[1]
 sys.path.insert(0, str(HOUSE / "docs"))
 
-import pages  # noqa: E402
 import generated  # noqa: E402
+import pages  # noqa: E402
 
 SOURCES = {
     str(path.relative_to(HOUSE)): path.read_text(encoding="utf-8")
@@ -164,6 +164,6 @@ def test_what_is_quoted_is_what_is_printed(module, kept, capsys):
 
 
 def comparable(text):
-    """Return the lines whose digits do not depend on the processor: no chaos, no rounding errors."""
+    """Return what does not depend on the processor: no chaos, no rounding errors."""
     lines = [line for line in text.splitlines() if "chaotic" not in line]
     return [re.sub(r" +-?(0\.0+|\S+e-1[5-9])(?!\S)", " 0", line) for line in lines]
