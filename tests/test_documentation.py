@@ -39,7 +39,7 @@ def blocks(name, language):
 @pytest.mark.parametrize("module", ["generated", "uq.contract", *EXAMPLES])
 def test_examples_in_docstrings_run(module, folder):
     shutil.copytree(HOUSE / "studies", "studies")
-    found = doctest.testmod(importlib.import_module(module), globs={"uq": public})
+    found = doctest.testmod(importlib.import_module(module), extraglobs={"uq": public})
     assert found.failed == 0
 
 
