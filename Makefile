@@ -5,9 +5,10 @@ BIN := .venv/bin
 BASE := .venv/.installed
 TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
+DOCS := .venv/.installed-docs
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow faults notebook bench coverage clean
+.PHONY: run test slow faults notebook docs bench coverage clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -36,6 +37,10 @@ faults: $(TEST)
 
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks
+
+docs: $(DOCS)
+	@$(BIN)/python -m sphinx -q -W --keep-going docs site
+	@echo "Documentation: site/index.html"
 
 bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam
@@ -69,4 +74,8 @@ $(TEST): $(BASE)
 $(NOTEBOOK): $(BASE)
 	@$(PIP) -e ".[notebook]"
 	@$(BIN)/python -m ipykernel install --prefix .venv --name vibrolife --display-name vibrolife >/dev/null
+	@touch $@
+
+$(DOCS): $(BASE)
+	@$(PIP) -e ".[docs]"
 	@touch $@

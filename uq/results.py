@@ -155,6 +155,12 @@ def open_result(path: str | Path) -> xr.Dataset:
     ------
     InputError
         When the file does not exist, is not netCDF, or is not a result of this schema version.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/ishigami.toml")
+    >>> uq.open_result("results/ishigami.nc").identical(ds)
+    True
     """
     path = Path(path)
     if not path.exists():

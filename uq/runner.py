@@ -79,6 +79,12 @@ def run(
         When the model does not keep its contract.
     RunError
         When no result can be had: workers that die, a disk that is full.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/ishigami.toml")  # in results/ishigami.nc, too
+    >>> ds.sizes["sample"]
+    10240
     """
     if not isinstance(study, Study):
         study = load_study(study)

@@ -111,6 +111,13 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
         rows they need; counts of rows never, censored, undefined and failed; and for each
         threshold ``P(>t)`` and ``P(<t)`` with their intervals, where it is one of the output's.
         Infinity stands for never, NaN for what could not be given.
+
+    Examples
+    --------
+    >>> table = uq.summary(uq.run("studies/ishigami.toml"))
+    >>> line = table.loc["y"]
+    >>> bool(line["mean_low"] < 3.5 < line["mean_high"])  # the mean is known
+    True
     """
     lines = {name: _line(entry) for name, entry in summarise(ds)["outputs"].items()}
     return pd.DataFrame(list(lines.values()), index=pd.Index(list(lines), name="output"))
