@@ -17,7 +17,10 @@ def test_everything_promised_is_there():
         == set(dir(uq))
         == {
             "basins",
+            "labels",
+            "life_fits",
             "load_study",
+            "regimes",
             "run",
             "open_result",
             "simulate",
