@@ -7,7 +7,7 @@ TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow faults notebook bench clean
+.PHONY: run test slow faults notebook notebooks bench clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -36,6 +36,10 @@ faults: $(TEST)
 
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks
+
+# Every notebook again at full size, with its outputs: about ten minutes.
+notebooks: $(TEST)
+	@$(BIN)/python notebooks/execute.py
 
 bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam
