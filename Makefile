@@ -8,7 +8,7 @@ NOTEBOOK := .venv/.installed-notebook
 DOCS := .venv/.installed-docs
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow faults notebook docs bench coverage clean
+.PHONY: run test slow faults notebook notebooks docs bench coverage clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -41,6 +41,10 @@ notebook: $(NOTEBOOK)
 docs: $(DOCS)
 	@$(BIN)/python -m sphinx -q -W --keep-going docs site
 	@echo "Documentation: site/index.html"
+
+# Every notebook again at full size, with its outputs: about ten minutes.
+notebooks: $(TEST)
+	@$(BIN)/python notebooks/execute.py
 
 bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam

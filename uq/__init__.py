@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from uq.attraction import basins
     from uq.convergence import enough, running_estimates
+    from uq.elements import labels
     from uq.indices import sensitivity
     from uq.life_fit import life_fits
     from uq.lifetime import survival
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = [
     "basins",
     "enough",
+    "labels",
     "life_fits",
     "load_study",
     "open_result",
@@ -41,6 +43,7 @@ __all__ = [
 _MODULES = {
     "basins": "attraction",
     "enough": "convergence",
+    "labels": "elements",
     "life_fits": "life_fit",
     "load_study": "study",
     "open_result": "results",

@@ -115,6 +115,34 @@ def flags(variable: xr.DataArray) -> list[tuple[int, str]]:
     return list(zip(codes, variable.attrs["flag_meanings"].split(), strict=True))
 
 
+def labels(variable: xr.DataArray) -> xr.DataArray:
+    """Return the words that the codes of a variable stand for.
+
+    Parameters
+    ----------
+    variable : xarray.DataArray
+        The ``status``, the ``regime`` or another category of a result, or some rows of it.
+
+    Returns
+    -------
+    xarray.DataArray
+        Of the same shape, for instance to colour a figure or to group by.
+
+    Raises
+    ------
+    InputError
+        When the variable is not a category.
+    """
+    if "flag_values" not in variable.attrs:
+        raise InputError(f"'{variable.name}' is a quantity, not a category: it has no labels")
+    codes, words = zip(*flags(variable), strict=True)
+    order = np.argsort(codes)
+    places = np.searchsorted(codes, variable.values, sorter=order)
+    found = variable.copy(data=np.array(words)[order][places])
+    found.attrs = {"long_name": variable.attrs["long_name"]}
+    return found
+
+
 def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
     """Return the outputs that a study wants to see: those it names, or else all."""
     named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds)))
