@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from uq.attraction import basins
+    from uq.comparison import compare
     from uq.convergence import enough, running_estimates
     from uq.indices import sensitivity
     from uq.life_fit import life_fits
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "basins",
+    "compare",
     "enough",
     "life_fits",
     "load_study",
@@ -40,6 +42,7 @@ __all__ = [
 
 _MODULES = {
     "basins": "attraction",
+    "compare": "comparison",
     "enough": "convergence",
     "life_fits": "life_fit",
     "load_study": "study",
