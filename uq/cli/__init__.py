@@ -57,7 +57,8 @@ def _run(arguments: list[str]) -> int:
             line = " ".join(error.format_message().split())
         context = getattr(error, "ctx", None)
         command = context.command_path if context else "uq"
-        raise InputError(f"uq: {line.rstrip('.')}; see '{command} --help'") from None
+        line = f"{line} See" if line.endswith("?") else f"{line.rstrip('.')}; see"
+        raise InputError(f"uq: {line} '{command} --help'") from None
 
 
 def _stop(number: int, frame: FrameType | None) -> NoReturn:

@@ -33,7 +33,8 @@ def _with_what_is_here() -> list[tuple[str, str]]:
     ):
         found = sorted(Path(folder).glob(f"*.{ending}"))
         if found:
-            more = f", or one of {len(found) - 1} others in {folder}/" if found[1:] else ""
+            others = f"one of {len(found) - 1} others" if found[2:] else "1 other"
+            more = f", or {others} in {folder}/" if found[1:] else ""
             name = shlex.quote(str(found[0]))
             lines.append((f"uq {verb.format(name)}", words + more))
     return lines
