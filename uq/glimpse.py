@@ -24,7 +24,7 @@ class Glimpse:
     """
 
     def __init__(self, work: Work) -> None:
-        self._regimes = ()
+        self._regimes: tuple[str, ...] = ()
         self._lives: dict[str, _Sample] = {}
         coordinates = work.model.coordinates(work.settings)
         for name, output in work.model.outputs.items():

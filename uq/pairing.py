@@ -168,21 +168,21 @@ class Pair:
     ) -> Estimate:
         """Return how far an estimate of the second lies from that of the first."""
         if self.kinship is Kinship.REPLICATES:
+            value = known[1].value - known[0].value
             found = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
-            apart, size = found[1] - found[0], np.abs(found).max()
-            if intervals.is_constant(apart + size):  # they differ by rounding alone
-                return Estimate(known[1].value - known[0].value, np.nan, np.nan)
-            return _scattered(known[1].value - known[0].value, apart)
+            if not np.isfinite(found).all():
+                return Estimate(value, np.nan, np.nan)
+            apart = found[1] - found[0]
+            if intervals.is_constant(apart + np.abs(found).max()):  # they differ by rounding alone
+                return Estimate(value, np.nan, np.nan)
+            return Estimate(value, *intervals.scatter_interval(value, apart))
         return two_samples.difference(*known, self._correlation(estimator, samples))
 
     def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
         if self.kinship is Kinship.REPLICATES and all(one.value > 0 for one in known):
             found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
-            if not all((one > 0).all() for one in found):
-                return Estimate(known[1].value / known[0].value, np.nan, np.nan)
-            logs = _scattered(np.log(known[1].value / known[0].value), np.log(found[1] / found[0]))
-            return Estimate(*np.exp(logs).tolist())
+            return _factor(known[1].value / known[0].value, found[1], found[0])
         return two_samples.ratio(*known, self._correlation(SD, samples))
 
     def sd(self, i: int, sample: Sample) -> Estimate:
@@ -192,9 +192,7 @@ class Pair:
         if self._replicate[i] is None:
             return Estimate(value, *two_samples.sd_interval(values))
         found = self._by_replicate(SD, i, sample)
-        if not (value > 0 and (found > 0).all()):
-            return Estimate(value, np.nan, np.nan)
-        return Estimate(*np.exp(_scattered(np.log(value), np.log(found))).tolist())
+        return _factor(value, found, np.ones(len(found)))
 
     @property
     def unpaired(self) -> float:
@@ -214,6 +212,7 @@ class Pair:
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
         of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])
+        assert of is not None, "independent rows are not taken by replicate"
         found = np.full(count, np.nan)
         for r in range(count):
             values = sample.numbers[sample.kept & (of == r)]
@@ -222,7 +221,9 @@ class Pair:
         return found
 
 
-def _scattered(value: float, estimates: Floats) -> Estimate:
-    if not np.isfinite(estimates).all():
+def _factor(value: float, above: Floats, below: Floats) -> Estimate:
+    """Return a ratio with its interval from those of the replicates, in which it is logarithmic."""
+    if not (value > 0 and (above > 0).all() and (below > 0).all()):  # nor are they where unknown
         return Estimate(value, np.nan, np.nan)
-    return Estimate(value, *intervals.scatter_interval(value, estimates))
+    interval = intervals.scatter_interval(float(np.log(value)), np.log(above / below))
+    return Estimate(value, *np.exp(interval).tolist())
