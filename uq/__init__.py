@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from uq.attraction import basins
+    from uq.comparison import compare
     from uq.convergence import enough, running_estimates
     from uq.elements import labels
     from uq.indices import sensitivity
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "basins",
+    "compare",
     "enough",
     "labels",
     "life_fits",
@@ -42,6 +44,7 @@ __all__ = [
 
 _MODULES = {
     "basins": "attraction",
+    "compare": "comparison",
     "enough": "convergence",
     "labels": "elements",
     "life_fits": "life_fit",

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, LogFormatter
@@ -38,6 +39,7 @@ _STYLE: Any = {
     "lines.linewidth": 1.2,
     "text.parse_math": False,  # a dollar sign in a file is one
     "svg.hashsalt": "vibrolife",
+    "pdf.fonttype": 42,  # text that can be searched and edited
 }
 styled = mpl.rc_context(_STYLE)
 """Decorates whatever draws or writes a figure."""
@@ -70,23 +72,31 @@ def roomy(axes: Axes) -> None:
     axes.locator_params(axis="x", nbins=6)
 
 
-def logarithmic(axes: Axes) -> None:
-    """Make a horizontal axis logarithmic, its numbers in plain text: dollar signs mean nothing."""
-    axes.set_xscale("log")
-    axes.xaxis.set_major_formatter(LogFormatter())
-    axes.xaxis.set_minor_formatter(LogFormatter())
+class _PlainLog(LogFormatter):
+    """Numbers as one writes them, at the ticks that matplotlib would label; never as TeX."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return f"{x:g}" if super().__call__(x, pos) else ""
+
+
+def logarithmic(axes: Axes, vertical: bool = False) -> None:
+    """Make the horizontal axis logarithmic, or the vertical one, its numbers in plain text."""
+    axis, scale = (axes.yaxis, axes.set_yscale) if vertical else (axes.xaxis, axes.set_xscale)
+    scale("log")
+    axis.set_major_formatter(_PlainLog())
+    axis.set_minor_formatter(_PlainLog())
 
 
 def legend(axes: Axes) -> None:
     """Explain colours and lines below a figure with one panel, where there is anything to say."""
     handles, labels = axes.get_legend_handles_labels()
     if any(labels) and isinstance(axes.figure, Figure):
-        axes.figure.legend(handles, labels, loc="outside lower left")
+        axes.figure.legend(handles, labels, loc="outside lower left", markerscale=1.5)
 
 
 @styled
 def write(figure: Figure, path: Path) -> list[Path]:
-    """Write a figure as PNG and SVG, the same bytes each time, and return both paths.
+    """Write a figure as PNG, SVG and PDF, the same bytes each time, and return their paths.
 
     Parameters
     ----------
@@ -98,13 +108,16 @@ def write(figure: Figure, path: Path) -> list[Path]:
     -------
     list of Path
     """
-    png, svg = (path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg"))
+    png, svg, pdf = (path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg", "pdf"))
     # Figure.savefig draws twice for each file, only to lay out what the first drawing lays out.
     figure.set_dpi(_DOTS_PER_INCH)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
-    figure.set_layout_engine("none")  # the second has the layout of the first
+    figure.set_layout_engine("none")  # the others have the layout of the first
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": None})
-    return [png, svg]
+    FigureCanvasPdf(figure).print_pdf(
+        pdf, metadata={"CreationDate": None, "Creator": None, "Producer": None}
+    )
+    return [png, svg, pdf]
 
 
 def file_name(*words: str) -> str:

@@ -48,7 +48,10 @@ def study_of(path: Path, model: str | None = None) -> Study:
     study = study_from_text(text, f"{path}: its study", model).with_samples(samples)
     if study.identity != identity:
         change = what_changed(text, version, study)
-        raise InputError(f"{path}: was computed with another model ({change})")
+        raise InputError(
+            f"{path}: was computed with another model ({change}); run the study anew, into another"
+            " output or with --fresh"
+        )
     return study
 
 
@@ -93,7 +96,7 @@ def extend(path: Path, samples: int, model: str | None = None, **options: Any) -
     study = study_of(path, model)
     there = study.design.samples
     if samples < there:
-        raise InputError(f"--samples {samples}: {path} has {there} already")
+        raise InputError(f"--samples {samples}: {path} has {there} already; ask for more")
     problem = refusal_to_extend(study)
     if samples > there and problem:
         raise InputError(f"{path}: {problem}")

@@ -67,8 +67,12 @@ def _load(point: EntryPoint, label: str) -> Model:
         found = getattr(importlib.import_module(module_name), attribute)
     except (Exception, SystemExit) as error:
         reason = " ".join(str(error).split())
+        remedy = ""
+        if isinstance(error, ModuleNotFoundError):
+            remedy = "; install it, or name its folder in PYTHONPATH"
         raise InputError(
             f"{label} cannot be imported from {point.value}: {type(error).__name__}: {reason}"
+            f"{remedy}"
         ) from error
     if not isinstance(found, Model):
         raise InputError(

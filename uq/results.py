@@ -20,7 +20,7 @@ from uq.code import made_here
 from uq.columns import censored_name, failed_rows
 from uq.contract import Model, Status
 from uq.designs import DESIGNS, block_names
-from uq.errors import InputError
+from uq.errors import InputError, choices, nearest
 from uq.provenance import provenance
 from uq.soundness import unsound
 
@@ -137,7 +137,7 @@ def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
         yield f"{variable.name}[{label}]" if label else str(variable.name), variable.isel(place)
 
 
-def open_result(path: str | Path) -> xr.Dataset:
+def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") -> xr.Dataset:
     """Open a result and check its schema.
 
     One that takes less than 200 MB is read into memory, and its file closed; what is larger is
@@ -146,6 +146,8 @@ def open_result(path: str | Path) -> xr.Dataset:
     Parameters
     ----------
     path : str or Path
+    remedy : str, optional
+        What an error line says can be done.
 
     Returns
     -------
@@ -164,9 +166,19 @@ def open_result(path: str | Path) -> xr.Dataset:
     """
     path = Path(path)
     if not path.exists():
-        raise InputError(f"{path}: no such file")
+        raise InputError(f"{path}: no such file{_others(path)}; {remedy}")
     if path.is_dir():
-        raise InputError(f"{path}: is a folder, not a result")
+        raise InputError(f"{path}: is a folder, not a result{_others(path / '_')}; {remedy}")
+    try:
+        ds = _opened(path)
+        check(ds, path)
+    except InputError as error:
+        raise InputError(f"{error}; {remedy}") from None
+    ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
+    return ds
+
+
+def _opened(path: Path) -> xr.Dataset:
     try:
         ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False)
         if ds.nbytes > _INFLATED_BYTES + _INFLATION * path.stat().st_size:
@@ -178,11 +190,15 @@ def open_result(path: str | Path) -> xr.Dataset:
         if ds.nbytes < _IN_MEMORY_BYTES:
             with ds:
                 ds.load()
+        return ds
     except UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file") from None
-    check(ds, path)
-    ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
-    return ds
+
+
+def _others(path: Path) -> str:
+    """Return which results there are in the folder of a path that is none."""
+    there = sorted(one.name for one in path.parent.glob("*.nc"))
+    return nearest(path.name, there) or (f" (there: {choices(there)})" if there else "")
 
 
 def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:

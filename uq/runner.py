@@ -132,10 +132,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     if not os.path.isfile(path):  # nor can it be seen
         return None
     remedy = "choose another output, or overwrite it with --fresh"
-    try:
-        ds = results.open_result(path)
-    except InputError as error:
-        raise InputError(f"{error}; {remedy}") from None
+    ds = results.open_result(path, remedy)
     if ds.attrs["study_identity"] != study.identity:
         change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
         raise InputError(f"{path}: holds the result of another study ({change}); {remedy}")

@@ -258,7 +258,8 @@ def _read(path: Path) -> str:
     except FileNotFoundError:
         folder = path.parent
         files = [entry.name for entry in folder.glob("*.toml")] if folder.is_dir() else []
-        raise InputError(f"{path}: no such file{nearest(path.name, files)}") from None
+        remedy = nearest(path.name, files) or f"; 'uq init MODEL > {path.name}' writes one to edit"
+        raise InputError(f"{path}: no such file{remedy}") from None
     except IsADirectoryError:
         raise InputError(f"{path}: is a directory; a study is a TOML file") from None
     except UnicodeDecodeError as error:

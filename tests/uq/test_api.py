@@ -31,6 +31,9 @@ def test_everything_promised_is_there():
             "two_fidelities",
             "running_estimates",
             "enough",
+            "compare",
+            "life_fits",
+            "regimes",
         }
     )
     for name in uq.__all__:

@@ -13,13 +13,22 @@ import typer
 from uq.literals import plain_line
 
 app = typer.Typer(
-    help="Probabilistic lifetime and sensitivity studies of vibro-impact machines.",
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
 
-ModelName = Annotated[str, typer.Argument(metavar="MODEL", help="As 'uq models' lists them.")]
+
+def _models(incomplete: str) -> list[str]:
+    """Return the names that a shell may complete to."""
+    from uq.registry import model_names
+
+    return [name for name in model_names() if name.startswith(incomplete)]
+
+
+ModelName = Annotated[
+    str,
+    typer.Argument(metavar="MODEL", help="As 'uq models' lists them.", autocompletion=_models),
+]
 StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
 ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.")]
 Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
@@ -47,9 +56,20 @@ Mixed = Annotated[
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
 
 
+@app.callback(invoke_without_command=True)
+def begin(context: typer.Context) -> None:
+    """Probabilistic lifetime and sensitivity studies of vibro-impact machines."""
+    if context.invoked_subcommand is None:
+        from uq.cli.guide import guide
+
+        guide()
+
+
 @app.command()
 def models(
-    name: Annotated[str | None, typer.Argument(help="Show this one in full.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(help="Show this one in full.", autocompletion=_models)
+    ] = None,
     json: Json = False,
 ) -> None:
     """List the models, or show all that one of them declares."""
@@ -271,6 +291,18 @@ def convergence(
     from uq.cli import estimates
 
     estimates.convergence(result, output, json)
+
+
+@app.command()
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A.nc", help="A result of 'uq run'.")],
+    second: Annotated[Path, typer.Argument(metavar="B.nc", help="Another, of the same model.")],
+    json: Json = False,
+) -> None:
+    """Show what two studies of one model have different."""
+    from uq.cli import comparing
+
+    comparing.compare(first, second, json)
 
 
 @app.command()

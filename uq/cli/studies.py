@@ -149,7 +149,7 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str) -> i
         console.print()
         console.print(note)
         name = shlex.quote(str(target))
-        console.print(f"Next: uq sensitivity {name}, or uq plot {name}")
+        console.print(f"Next: uq report {name} --open, or uq sensitivity {name}")
     return _verdict(study, ds)
 
 
