@@ -32,8 +32,6 @@ def test_everything_promised_is_there():
             "running_estimates",
             "enough",
             "compare",
-            "life_fits",
-            "regimes",
         }
     )
     for name in uq.__all__:
