@@ -19,6 +19,7 @@ from uq.errors import InputError
 from uq.evaluate import KernelError
 from uq.results import open_result
 from uq.study import load_study
+from uq.work import work_of
 
 COMMAND = Path(sys.executable).with_name("uq")
 PATIENCE = 60.0
@@ -123,6 +124,32 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monke
     assert "KilledWorker" in failed
     injected("worker killed three times on a chunk")
     assert ds.identical(undisturbed(study))
+
+
+class Unlucky(isolation.Isolated):
+    """A process that somebody kills twice while it computes."""
+
+    kills = 2
+
+    def _answer(self, connection, limit):
+        if self.kills:
+            self.kills -= 1
+            self._process.kill()
+        return super()._answer(connection, limit)
+
+
+def test_a_row_is_not_guilty_because_its_process_was_killed_twice(study_of, undisturbed, injected):
+    study = study_of(seconds=0.2, samples=2)
+    work = work_of(study)
+    process = Unlucky(isolation.task_of(work))
+    rows = work.block(0, 2)
+    try:
+        chunk = process.evaluate(rows.x, rows.seed)
+    finally:
+        process.close()
+    injected("process of a worker killed", 2)
+    assert chunk.status.tolist() == [Status.OK, Status.OK]
+    assert np.array_equal(chunk.columns["y"], undisturbed(study)["y"].values)
 
 
 FAULTS = {
