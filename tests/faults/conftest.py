@@ -40,6 +40,7 @@ OUTCOMES = {
     "process of a worker killed": "started anew, same bits",
     "worker killed three times on a chunk": "chunk halved, same bits",
     "workers killed again and again": "ends with a sentence",
+    "workers that can start no process": "ends with a sentence",
     "worker joins or leaves a cluster": "same bits",
     "scheduler killed": "ends with a sentence; goes on here, same bits",
     "cluster loses its only worker": "ends with a sentence",

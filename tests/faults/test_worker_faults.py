@@ -342,3 +342,12 @@ def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
     finally:
         stop.set()
         thread.join()
+
+
+@pytest.mark.slow
+def test_workers_that_can_start_no_process_end_the_run(study_of, monkeypatch, injected):
+    monkeypatch.setenv("UQ_TEST_WORKERS_CHILDREN_END", "1")
+    said = "no worker could compute rows .*: a process for the rows could not start: exit code 3"
+    injected("workers that can start no process")
+    with pytest.raises(cluster.RunError, match=said):
+        runner.compute(study_of(seconds=0.01), workers=1, chunk_rows=20)
