@@ -166,7 +166,8 @@ def test_a_read_only_folder_is_refused(study, call, injected):
             code, said = call("run", closed / study.name, *MODEL, "-o", output, **as_nobody)
             assert code == 2, said
             injected("read-only folder")
-            assert said == f"{output}: cannot write in {closed}: Permission denied\n"
+            why = "Permission denied; choose another place with -o"
+            assert said == f"{output}: cannot write in {closed}: {why}\n"
         assert [path.name for path in closed.iterdir()] == [study.name]
         closed.chmod(0o700)
 
