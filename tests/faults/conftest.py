@@ -15,6 +15,7 @@ PATIENCE = 180.0
 
 OUTCOMES = {
     "SIGKILL of a run": "goes on, same bits",
+    "SIGKILL of a run with workers": "no process is left; goes on, same bits",
     "SIGKILL during the merge": "goes on, same bits",
     "SIGKILL of a run that stops when it knows enough": "stops where it would, same bits",
     "[design] until edited between runs": "goes on to a look, rows stay the same",
@@ -49,7 +50,6 @@ OUTCOMES = {
     "no terminal, no colours, closed standard input": "same bits",
     "path with blanks and accents": "same bits",
     "rows in another order, in other chunks": "same bits",
-    "SIGKILL of a run with workers": "no process is left; goes on, same bits",
     "row: raise": "marked raised; the others as ever",
     "row: nan": "marked non-finite; the others as ever",
     "row: inf": "marked non-finite; the others as ever",
