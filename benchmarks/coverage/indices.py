@@ -160,7 +160,8 @@ def morris(repetitions):
 
 # Methods without intervals ------------------------------------------------------------------------
 
-DELTA = {"x1": 0.2087, "x2": 0.3911, "x3": 0.1550}
+DELTA = {"x1": 0.256, "x2": 0.424, "x3": 0.207}
+"""By histograms of a grid of 700 points in each input."""
 
 
 def bootstraps(repetitions):
@@ -173,7 +174,7 @@ def bootstraps(repetitions):
         y = ishigami(x)
         found = salib_rbd_fast.analyze(PROBLEM, x, y, num_resamples=100, seed=seed + 1)
         _halves(tally, "S1", found["S1"], found["S1_conf"], "SALib rbd_fast")
-        found = salib_delta.analyze(PROBLEM, x, y, num_resamples=20, method="raw", seed=seed + 1)
+        found = salib_delta.analyze(PROBLEM, x, y, num_resamples=20, method="delta", seed=seed + 1)
         values, halves = found["delta_raw"], found["delta_raw_conf"]
         _halves(tally, "delta", values, halves, "SALib delta", DELTA)
         x = fast_sampler.sample(PROBLEM, 341, seed=seed)

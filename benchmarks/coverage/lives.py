@@ -1,5 +1,7 @@
 """Lifetimes that never end or are censored: survival, B-lives, shares, fitted laws."""
 
+import warnings
+
 import numpy as np
 import openturns as ot
 from scipy import stats
@@ -70,7 +72,9 @@ def _rivals(tally, ds):
     values = ds["left"].values
     curve = stats.ecdf(stats.CensoredData(uncensored=values[ended], right=values[~ended])).sf
     for method in ("linear", "log-log"):
-        band = curve.confidence_interval(method=method)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # undefined before the first end
+            band = curve.confidence_interval(method=method)
         for time in TIMES:
             ends = (float(end.evaluate(time)) for end in band)
             tally.add(f"survival at {time}", LIFE.sf(time), *ends, by=f"scipy ecdf, {method}")

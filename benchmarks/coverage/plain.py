@@ -6,7 +6,6 @@ import openturns.experimental as otx
 from scipy import stats
 
 from benchmarks.coverage.problems import (
-    EDGE,
     ISHIGAMI_MEAN,
     LIFE,
     ishigami_cdf,
@@ -28,6 +27,9 @@ DESIGNS = {
     "halton": ("halton", 125, 8),
     "saltelli": ("saltelli", 64, 8),
 }
+EVERY = 5
+"""Others are asked for the intervals of every fifth repetition."""
+
 TAIL = (
     "no interval without further assumptions is right for the mean of so heavy a tail (infinite"
     " skewness; Bahadur and Savage 1956): its quantiles, B-lives and P(T < t) are"
@@ -75,7 +77,7 @@ def plain(design, repetitions):
         name: Tally(f"{NAMES[name]}, {rows_of(design)}", REASONS.get((design, name)))
         for name in TRUTH
     }
-    for ds in repeated(study, repetitions):
+    for number, ds in enumerate(repeated(study, repetitions)):
         found = summarise(ds)
         for name, tally in tallies.items():
             _summary(tally, found["outputs"][name], *TRUTH[name])
@@ -88,7 +90,8 @@ def plain(design, repetitions):
             shares.entry("mean in a regime", jump()["within"]["upper"], within["mean_interval"])
             found = within["quantiles"]["0.5"]
             shares.entry("median in a regime", jump_ppf(0.5, "upper"), found)
-            _rivals(tallies, ds)
+            if number % EVERY == 0:
+                _rivals(tallies, ds)
         elif design == "sobol":
             _taken_for_independent(tallies["ishigami"], ds["ishigami"].values)
     return [line for tally in tallies.values() for line in tally.lines()]
@@ -125,8 +128,11 @@ def _rivals(tallies, ds):
         tally.add(f"P(> {t})", 1 - cdf(t), *ends, by="OpenTURNS, normal law")
         sample = ot.Sample(y[:, None])
         for p in QUANTILES:
-            found = otx.QuantileConfidence(p, 0.95).computeBilateralConfidenceInterval(sample)
-            tally.add(f"quantile {p}", ppf(p), *_ends(found), by="OpenTURNS QuantileConfidence")
+            algorithm = otx.QuantileConfidence(p, 0.95)
+            found, sure = algorithm.computeBilateralConfidenceIntervalWithCoverage(sample)
+            # Of the quantile 0.95 it gives the largest row twice, and says itself: coverage 0.
+            ends = _ends(found) if sure else (None, None)
+            tally.add(f"quantile {p}", ppf(p), *ends, by="OpenTURNS QuantileConfidence")
         for what, p, lower in (("lower", 0.05, True), ("upper", 0.95, False)):
             algorithm = otx.QuantileConfidence(p, 0.95)
             low, high = _ends(algorithm.computeUnilateralConfidenceInterval(sample, lower))
@@ -146,7 +152,5 @@ def _taken_for_independent(tally, y):
     tally.add("quantile 0.5", ishigami_ppf(0.5), *found, by=by)
 
 
-REASONS = {}
+REASONS = {(design, "life"): {"mean": TAIL} for design in DESIGNS}
 """Design and problem -> quantity -> why its coverage is not 95 %."""
-
-assert EDGE < 2

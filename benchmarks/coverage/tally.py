@@ -8,6 +8,9 @@ from scipy import stats
 LOW, HIGH = 0.93, 0.97
 """Where the coverage of an interval of 95 % should lie."""
 
+ENOUGH = 1000
+"""With fewer repetitions the coverage itself is not known to a per cent: its interval counts."""
+
 OURS = "uq"
 
 
@@ -21,7 +24,6 @@ class Line(NamedTuple):
     repetitions, given, held : int
     width : float
         Median of the widths of those given; NaN for bounds on one side.
-    nominal : float
     reason : str
         Why its coverage does not lie between 93 and 97 %, or "".
     """
@@ -33,7 +35,6 @@ class Line(NamedTuple):
     given: int
     held: int
     width: float
-    nominal: float
     reason: str
 
     @property
@@ -47,10 +48,12 @@ class Line(NamedTuple):
     @property
     def unexplained(self):
         """Whether an interval of ours is off and nothing says why."""
-        value = self.coverage[0]
-        margin = self.nominal - 0.95
-        fine = LOW + margin <= value <= HIGH + margin
-        return self.by == OURS and self.given > 0 and not fine and not self.reason
+        if not self.given:
+            return False
+        value, low, high = self.coverage
+        if self.repetitions >= ENOUGH:
+            low = high = value
+        return self.by == OURS and not (low <= HIGH and high >= LOW) and not self.reason
 
 
 class Tally:
@@ -66,14 +69,13 @@ class Tally:
 
     def __init__(self, problem, reasons=None):
         self.problem, self.reasons = problem, reasons or {}
-        self._held, self._nominal = {}, {}
+        self._held = {}
 
-    def add(self, what, truth, low, high, by=OURS, nominal=0.95):
+    def add(self, what, truth, low, high, by=OURS):
         """Count one interval; an end that is None or NaN is not given."""
         known = all(end is not None and not np.isnan(end) for end in (low, high))
         held = (bool(low <= truth <= high), float(high) - float(low)) if known else None
         self._held.setdefault((what, by), []).append(held)
-        self._nominal[what, by] = nominal
 
     def entry(self, what, truth, entry, by=OURS):
         """Count the interval of an entry with ``low`` and ``high``."""
@@ -81,12 +83,9 @@ class Tally:
 
     def lines(self):
         """Return what was counted."""
-        return [
-            self._line(what, by, held, self._nominal[what, by])
-            for (what, by), held in self._held.items()
-        ]
+        return [self._line(what, by, held) for (what, by), held in self._held.items()]
 
-    def _line(self, what, by, held, nominal):
+    def _line(self, what, by, held):
         given = [one for one in held if one is not None]
         widths = [width for _, width in given if np.isfinite(width)]
         return Line(
@@ -97,7 +96,6 @@ class Tally:
             len(given),
             sum(one for one, _ in given),
             float(np.median(widths)) if widths else np.nan,
-            nominal,
             self._reason(what) if by == OURS else "",
         )
 
