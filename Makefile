@@ -38,8 +38,9 @@ faults: $(TEST)
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks
 
+# Everything anew: Sphinx does not see when the declarations behind a table change.
 docs: $(DOCS)
-	@$(BIN)/python -m sphinx -q -W --keep-going docs site
+	@$(BIN)/python -m sphinx -E -a -q -W --keep-going docs site
 	@echo "Documentation: site/index.html"
 
 # Every notebook again at full size, with its outputs: about ten minutes.
