@@ -12,15 +12,16 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constrain
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
-	@$(BIN)/uq plot results/beam-lifetime.nc
+	@$(BIN)/uq plot results/beam-lifetime.nc > /dev/null
 	@$(BIN)/uq run studies/beam-sensitivity.toml
 	@$(BIN)/uq sensitivity results/beam-sensitivity.nc
-	@$(BIN)/uq plot results/beam-sensitivity.nc
+	@$(BIN)/uq plot results/beam-sensitivity.nc > /dev/null
 	@echo
-	@echo "Results: results/beam-lifetime.nc and results/beam-sensitivity.nc, figures beside them."
-	@echo "Next:    $(BIN)/uq init beam > studies/mine.toml    a study of your own to edit"
-	@echo "         $(BIN)/uq run studies/mine.toml            run it"
-	@echo "         make notebook                             open JupyterLab"
+	@echo "Results: results/beam-lifetime.nc and results/beam-sensitivity.nc, figures in folders"
+	@echo "         results/beam-lifetime and results/beam-sensitivity."
+	@echo "Next:    $(BIN)/uq report results/beam-lifetime.nc --open    all of it in your browser"
+	@echo "         $(BIN)/uq init beam > studies/mine.toml             a study of your own to edit"
+	@echo "         make notebook                                      open JupyterLab"
 
 test: $(TEST)
 	@$(BIN)/ruff check .
@@ -38,8 +39,9 @@ faults: $(TEST)
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks
 
+# Everything anew: Sphinx does not see when the declarations behind a table change.
 docs: $(DOCS)
-	@$(BIN)/python -m sphinx -q -W --keep-going docs site
+	@$(BIN)/python -m sphinx -E -a -q -W --keep-going docs site
 	@echo "Documentation: site/index.html"
 
 # Every notebook again at full size, with its outputs: about ten minutes.
