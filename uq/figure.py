@@ -10,6 +10,7 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -67,9 +68,15 @@ def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure
     return figure, found
 
 
-def roomy(axes: Axes) -> None:
+def roomy(axes: Axes, ticks: int = 6) -> None:
     """Have so few ticks on a horizontal axis, not yet logarithmic, that long numbers have room."""
-    axes.locator_params(axis="x", nbins=6)
+    axes.locator_params(axis="x", nbins=ticks)
+    whole_numbers(axes.xaxis)
+
+
+def whole_numbers(axis: Axis) -> None:
+    """Write each number in full: a common factor at the end of an axis covers its label."""
+    axis.set_major_formatter(lambda value, _: f"{value:.6g}")
 
 
 class _PlainLog(LogFormatter):

@@ -11,6 +11,8 @@ from uq.elements import Floats
 from uq.figure import COLOURS, WIDTH, is_wide, logarithmic, roomy, sentence, styled
 from uq.realised import EVERYWHERE, stated_and_realised
 
+_IN_ONE_COLUMN = 3  # inputs
+
 
 @styled
 def inputs(ds: xr.Dataset) -> Figure | None:
@@ -29,21 +31,25 @@ def inputs(ds: xr.Dataset) -> Figure | None:
     found = stated_and_realised(ds)
     if not found:
         return None
-    figure = Figure(figsize=(WIDTH, 0.3 + 1.4 * len(found)), layout="constrained")
-    panels = figure.subplots(len(found), squeeze=False)[:, 0]
-    for axes, (name, (law, values)) in zip(panels, found.items(), strict=True):
-        _panel(axes, law, values)
+    columns = 1 if len(found) <= _IN_ONE_COLUMN else 2
+    lines = -(-len(found) // columns)
+    figure = Figure(figsize=(WIDTH, 0.3 + 1.4 * lines), layout="constrained")
+    panels = figure.subplots(lines, columns, squeeze=False).ravel()
+    for axes in panels[len(found) :]:
+        axes.set_axis_off()
+    for axes, (name, (law, values)) in zip(panels, found.items(), strict=False):
+        _panel(axes, law, values, ticks=6 // columns)
         attrs = ds[name].attrs
         meaning, unit = attrs["long_name"], attrs["units"]
         if law.times is not None:
             meaning, unit = f"{meaning}: factor on {law.times}", ""
-        axes.set_xlabel(sentence(meaning, unit))
+        axes.set_xlabel(sentence(meaning, unit, width=44 // columns))
     rows = len(next(iter(found.values()))[1])
     panels[0].set_title(f"Share per bin of {rows} rows; line: as stated", loc="left")
     return figure
 
 
-def _panel(axes: Axes, law: Law, values: Floats) -> None:
+def _panel(axes: Axes, law: Law, values: Floats, ticks: int) -> None:
     wide = is_wide(values)
     scaled = np.log10(values) if wide else values
     count = min(len(np.histogram_bin_edges(scaled, "scott")) - 1, 60)
@@ -58,6 +64,6 @@ def _panel(axes: Axes, law: Law, values: Floats) -> None:
     axes.stairs(rows, edges, fill=True, color=COLOURS[4])
     axes.stairs(stated, edges, color=COLOURS[1], lw=1.2)
     axes.set_ylim(0, None)
-    roomy(axes)
+    roomy(axes, ticks)
     if wide:
         logarithmic(axes)
