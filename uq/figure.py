@@ -160,10 +160,16 @@ def place_in_words(element: Element, variable: xr.DataArray) -> str:
     return ", ".join(words)
 
 
+def named_input(parameter: xr.DataArray, width: int = 44) -> str:
+    """Return the name of an input for an axis: its symbol tells apart those of one meaning."""
+    attrs = parameter.attrs
+    return sentence(f"{attrs['long_name']} ({attrs['symbol']})", attrs["units"], width)
+
+
 def is_wide(values: Floats) -> bool:
-    """Whether positive values spread so far that a logarithmic axis shows them better."""
-    low, high = np.quantile(values, (0.005, 0.995)) if len(values) else (0.0, 0.0)
-    return bool(low > 0 and high > 30 * low)
+    """Whether positive values crowd so far down that a logarithmic axis shows them better."""
+    low, middle, high = np.quantile(values, (0.005, 0.5, 0.995)) if len(values) else (0.0,) * 3
+    return bool(low > 0 and high > 30 * low and middle - low < (high - low) / 4)
 
 
 def thinned(count: int, most: int = 1000) -> np.ndarray[Any, np.dtype[np.intp]]:

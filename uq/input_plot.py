@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from uq.conditioning import cdf_within
 from uq.distributions import Law
 from uq.elements import Floats
-from uq.figure import COLOURS, WIDTH, is_wide, logarithmic, roomy, sentence, styled
+from uq.figure import COLOURS, WIDTH, is_wide, logarithmic, named_input, roomy, sentence, styled
 from uq.realised import EVERYWHERE, stated_and_realised
 
 _IN_ONE_COLUMN = 3  # inputs
@@ -39,11 +39,12 @@ def inputs(ds: xr.Dataset) -> Figure | None:
         axes.set_axis_off()
     for axes, (name, (law, values)) in zip(panels, found.items(), strict=False):
         _panel(axes, law, values, ticks=6 // columns)
-        attrs = ds[name].attrs
-        meaning, unit = attrs["long_name"], attrs["units"]
-        if law.times is not None:
-            meaning, unit = f"{meaning}: factor on {law.times}", ""
-        axes.set_xlabel(sentence(meaning, unit, width=44 // columns))
+        width = 44 // columns
+        if law.times is None:
+            axes.set_xlabel(named_input(ds[name], width))
+        else:
+            factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
+            axes.set_xlabel(sentence(factor, width=width))
     rows = len(next(iter(found.values()))[1])
     panels[0].set_title(f"Share per bin of {rows} rows; line: as stated", loc="left")
     return figure

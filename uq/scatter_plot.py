@@ -19,6 +19,7 @@ from uq.figure import (
     is_wide,
     legend,
     logarithmic,
+    named_input,
     roomy,
     sentence,
     styled,
@@ -148,8 +149,7 @@ def _leading(inputs: dict[str, Floats], element: Element) -> list[str]:
 
 
 def _name_input(axes: Axes, rows: xr.Dataset, name: str, width: int = 44, ticks: int = 6) -> None:
-    attrs = rows[name].attrs
-    axes.set_xlabel(sentence(attrs["long_name"], attrs["units"], width))
+    axes.set_xlabel(named_input(rows[name], width))
     roomy(axes, ticks)
 
 
@@ -207,8 +207,7 @@ def pairs(ds: xr.Dataset) -> Figure:
             if i == size - 1:
                 _name_input(axes, rows, across, width=22, ticks=6 if size == 1 else 3)
             if j == 0:
-                attrs = rows[down].attrs
-                axes.set_ylabel(sentence(attrs["long_name"], attrs["units"], width=22))
+                axes.set_ylabel(named_input(rows[down], width=22))
     panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
     legend(panels[0, 0])
     return figure

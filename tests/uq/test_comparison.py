@@ -247,3 +247,37 @@ def test_the_interval_of_a_scatter_suits_laws_with_heavy_and_light_tails():
             held += low < law.std() < high
         assert 0.91 < held / 400 < 0.98
     assert np.isnan(sd_interval(np.ones(50))).all() and np.isnan(sd_interval(np.arange(3.0))).all()
+
+
+SOBOL = {"method": "sobol", "samples": 64, "replicates": 8}
+PLAIN = {"samples": 200}
+CASES = {
+    "strangers": (PLAIN, PLAIN, 10_000),
+    "pairs": (PLAIN, PLAIN, 0),
+    "extended": (PLAIN, {"samples": 400}, 0),
+    "replicates, strangers": (SOBOL, SOBOL, 10_000),
+    "replicates, pairs": (SOBOL, SOBOL, 0),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES)
+def test_differences_hold_the_truth_as_often_as_they_say(case):
+    design, other_design, apart = CASES[case]
+    laws = FOUR, FOUR | {"x4": NARROW}
+    truth = api.compare(*(study(one, samples=400_000, seed=i) for i, one in enumerate(laws)))
+    held = {key: [] for key in truth.index}
+    for seed in range(200):
+        found = api.compare(
+            study(laws[0], seed=seed, **design),
+            study(laws[1], seed=seed + apart, **other_design),
+        )
+        for key, line in found.iterrows():
+            if np.isfinite(line["low"]) and np.isfinite(line["high"]):
+                held[key].append(line["low"] <= truth.loc[key, "difference"] <= line["high"])
+    for key, one in held.items():
+        # Sobol' points integrate this mean to rounding: what is left of its difference is no error
+        # of sampling.
+        if not ("replicates" in case and key[1] == "mean"):
+            print(f"{case:24} {key[1]:16} {np.mean(one):6.1%} of {len(one)}")
+            assert np.mean(one) >= 0.9 and len(one) > 150, key

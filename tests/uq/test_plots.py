@@ -191,7 +191,9 @@ def test_histograms_by_regime_add_up():
 def test_scatter_leads_with_what_matters_and_shows_conditional_means():
     ds = linear(samples=1000)
     figure = plots.scatter(ds, "y")
-    assert [axes.get_xlabel() for axes in figure.axes] == ["Independent input"] * 3
+    assert [axes.get_xlabel() for axes in figure.axes] == [
+        f"Independent input (x_{i})" for i in (4, 3, 2)
+    ]
     points, line = figure.axes[0].lines
     assert np.array_equal(points.get_xdata(), ds["x4"].values)  # 4 x4 moves y most
     slope = np.polyfit(line.get_xdata(), line.get_ydata(), 1)[0]
@@ -212,7 +214,7 @@ def test_pairs_show_the_inputs_that_decide_the_regime():
     ds = kinds(samples=200)
     figure = plots.pairs(ds)
     (axes,) = figure.axes
-    assert axes.get_xlabel() == "First input [m]"  # decides it alone
+    assert axes.get_xlabel() == "First input (x_1) [m]"  # decides it alone
     slow, fast = axes.lines
     assert slow.get_xdata().max() <= 0.5 < fast.get_xdata().min()
     assert len(slow.get_xdata()) + len(fast.get_xdata()) == 200
