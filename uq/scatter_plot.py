@@ -126,9 +126,10 @@ def _conditional(
     line = np.where(np.isfinite(line), line, np.nan)
     words = f"{'median' if medians else 'mean'} of slices of {len(x) // count} rows"
     axes.plot(middle, line, color=COLOURS[1], label=words + independent * ", 95 % band")
-    if independent:
+    ended = values[np.isfinite(values)]
+    if independent and len(ended):
         low, high = np.array(ends, dtype=float).T
-        top = np.nanmax(values[np.isfinite(values)])
+        top = ended.max()  # an end that is never would hide all others
         axes.fill_between(middle, low, np.minimum(high, top), color=COLOURS[1], alpha=0.25, lw=0)
 
 
