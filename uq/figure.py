@@ -136,8 +136,8 @@ def sentence(text: str, unit: str = "", width: int = 44) -> str:
     """Return text for an axis: wrapped, with a capital, its unit behind, nothing read as TeX."""
     text = plain(text[:1].upper() + text[1:])
     if unit and unit != "1":
-        text += f" [{powers(unit)}]"
-    return textwrap.fill(text, width)
+        text += " " + f"[{powers(unit)}]".replace(" ", "\u00a0")  # a unit stays in one piece
+    return textwrap.fill(text, width).replace("\u00a0", " ")
 
 
 def powers(unit: str) -> str:

@@ -279,6 +279,7 @@ def test_a_time_history_has_a_panel_for_each_quantity():
 def test_words_and_units_of_axes():
     assert sentence("worn volume per work", "m2 N-1") == "Worn volume per work [m² N⁻¹]"
     assert sentence("a $price$") == r"A $price$"
+    assert sentence("stiffness of a stop", "N m-1", 24) == "Stiffness of a stop\n[N m⁻¹]"
     assert sentence("a pure number", "1") == "A pure number"
     assert powers("kg m-1") == "kg m⁻¹"
     assert file_name("sobol", "P(life[depth=0.1]<1e6)") == "sobol-P_life_depth_0.1_1e6"
