@@ -5,9 +5,10 @@ BIN := .venv/bin
 BASE := .venv/.installed
 TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
+DOCS := .venv/.installed-docs
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow faults notebook bench clean
+.PHONY: run test slow faults notebook notebooks docs bench coverage clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -25,7 +26,7 @@ test: $(TEST)
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
-	@$(BIN)/python -m pytest -m "not slow"
+	@$(BIN)/python -m pytest -n logical --maxprocesses 8 --dist loadfile -m "not slow"
 
 slow: $(TEST)
 	@$(BIN)/python -m pytest -m slow
@@ -37,6 +38,14 @@ faults: $(TEST)
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks
 
+docs: $(DOCS)
+	@$(BIN)/python -m sphinx -q -W --keep-going docs site
+	@echo "Documentation: site/index.html"
+
+# Every notebook again at full size, with its outputs: about ten minutes.
+notebooks: $(TEST)
+	@$(BIN)/python notebooks/execute.py
+
 bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam
 	@$(BIN)/python -m benchmarks.beam_study
@@ -44,6 +53,12 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam_mesh
 	@$(BIN)/python -m benchmarks.vibrator
 	@$(BIN)/python -m benchmarks.mole
+	@$(BIN)/python -m benchmarks.store
+	@$(BIN)/python -m benchmarks.large
+
+# How often each printed interval holds the truth: docs/coverage.md, in about twenty minutes.
+coverage: $(TEST)
+	@$(BIN)/python -m benchmarks.coverage
 
 clean:
 	rm -rf .venv
@@ -63,4 +78,8 @@ $(TEST): $(BASE)
 $(NOTEBOOK): $(BASE)
 	@$(PIP) -e ".[notebook]"
 	@$(BIN)/python -m ipykernel install --prefix .venv --name vibrolife --display-name vibrolife >/dev/null
+	@touch $@
+
+$(DOCS): $(BASE)
+	@$(PIP) -e ".[docs]"
 	@touch $@

@@ -28,6 +28,7 @@ LAYERS = {
     "study": {
         "changes",
         "checks",
+        "code",
         "conditioning",
         "curves",
         "data_files",
@@ -106,6 +107,7 @@ LAYERS = {
         "regime_split",
         "regime_table",
         "regimes_of",
+        "shapley",
         "sobol",
         "statistics",
         "targets",

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from uq.attraction import basins
     from uq.comparison import compare
     from uq.convergence import enough, running_estimates
+    from uq.elements import labels
     from uq.indices import sensitivity
     from uq.life_fit import life_fits
     from uq.lifetime import survival
@@ -26,6 +27,7 @@ __all__ = [
     "basins",
     "compare",
     "enough",
+    "labels",
     "life_fits",
     "load_study",
     "open_result",
@@ -44,6 +46,7 @@ _MODULES = {
     "basins": "attraction",
     "compare": "comparison",
     "enough": "convergence",
+    "labels": "elements",
     "life_fits": "life_fit",
     "load_study": "study",
     "open_result": "results",

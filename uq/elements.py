@@ -92,15 +92,14 @@ def study_file_of(ds: xr.Dataset) -> StudyFile:
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
-    """Return the rows for plain statistics: A and B of a crossed design, all rows of others.
+    """Return the rows for plain statistics: A and B where a design has these, all rows of others.
 
-    The mixed blocks of a crossed design repeat the numbers of A and B. Where the rows do not follow
+    The mixed blocks between repeat the numbers of A and B. Where the rows do not follow
     the laws of the inputs there are none.
     """
     design = DESIGNS[ds.attrs["design"]]
-    mixed = ("AB_", "BA_") if design.crossed else ()
     labels = flags(ds["block"]) if design.follows_laws else []
-    plain = [code for code, label in labels if not label.startswith(mixed)]
+    plain = [code for code, label in labels if not label.startswith(("AB_", "BA_"))]
     chosen = np.isin(ds["block"].values, plain)
     return ds if chosen.all() else ds.isel(sample=chosen)
 
@@ -114,6 +113,34 @@ def flags(variable: xr.DataArray) -> list[tuple[int, str]]:
     """Return the codes of a CF flag variable with their labels."""
     codes = np.atleast_1d(variable.attrs["flag_values"]).tolist()
     return list(zip(codes, variable.attrs["flag_meanings"].split(), strict=True))
+
+
+def labels(variable: xr.DataArray) -> xr.DataArray:
+    """Return the words that the codes of a variable stand for.
+
+    Parameters
+    ----------
+    variable : xarray.DataArray
+        The ``status``, the ``regime`` or another category of a result, or some rows of it.
+
+    Returns
+    -------
+    xarray.DataArray
+        Of the same shape, for instance to colour a figure or to group by.
+
+    Raises
+    ------
+    InputError
+        When the variable is not a category.
+    """
+    if "flag_values" not in variable.attrs:
+        raise InputError(f"'{variable.name}' is a quantity, not a category: it has no labels")
+    codes, words = zip(*flags(variable), strict=True)
+    order = np.argsort(codes)
+    places = np.searchsorted(codes, variable.values, sorter=order)
+    found = variable.copy(data=np.array(words)[order][places])
+    found.attrs = {"long_name": variable.attrs["long_name"]}
+    return found
 
 
 def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:

@@ -115,6 +115,7 @@ def rerun_failed(
     row_limit: float | None = None,
     progress: Report | None = None,
     say: Say = lambda _: None,
+    mixed: bool = False,
 ) -> xr.Dataset:
     """Compute the failed rows of a result again.
 
@@ -125,7 +126,7 @@ def rerun_failed(
     settings : dict
         Numerical settings other than the study's; the result says for each row whether it was
         computed with them, in the variable ``rerun``.
-    model, workers, scheduler, row_limit, progress, say
+    model, workers, scheduler, row_limit, progress, say, mixed
         As in `extend` and `uq.runner.run`.
 
     Returns
@@ -152,7 +153,7 @@ def rerun_failed(
         if getattr(changed, name) != getattr(study.settings, name)
     }
     plain = json.loads(json.dumps(differing))  # as it will be read again
-    with runner.kept(study, path, again=plain, say=say) as kept:
+    with runner.kept(study, path, again=plain, say=say, mixed=mixed) as kept:
         work = work_of(study)._replace(settings=changed)
         return runner.carry_out(work, workers, scheduler, None, progress, row_limit, kept)
 

@@ -196,8 +196,8 @@ class Job:
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
             raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")
+        self.tell()  # at once: an interrupt says how many rows are kept
         self.store.keep_up()
-        self.tell()
 
     def tell(self) -> None:
         """Report how far the run is."""

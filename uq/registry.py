@@ -49,6 +49,12 @@ def find_model(reference: str) -> Model:
     return _load(installed[reference], f"model '{reference}'")
 
 
+def module_of(reference: str) -> str:
+    """Return the full name of the module in which a model lives; see `find_model`."""
+    point = _entry_points().get(reference)
+    return (point.value if point else reference).partition(":")[0]
+
+
 def _entry_points() -> dict[str, EntryPoint]:
     return {point.name: point for point in entry_points(group=GROUP)}
 

@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from uq.code import made_here
 from uq.columns import censored_name, failed_rows
 from uq.contract import Model, Status
 from uq.designs import DESIGNS, block_names
@@ -156,6 +157,12 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     ------
     InputError
         When the file does not exist, is not netCDF, or is not a result of this schema version.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/ishigami.toml")
+    >>> uq.open_result("results/ishigami.nc").identical(ds)
+    True
     """
     path = Path(path)
     if not path.exists():
@@ -234,7 +241,8 @@ def relabel(ds: xr.Dataset, study: "Study") -> xr.Dataset:
 
     Comments, sources and [analysis] of a study may change without a row being computed again.
     """
-    made = {name: ds.attrs[name] for name in provenance() if name in ds.attrs}
+    here = made_here(study.model_reference)
+    made = {name: ds.attrs[name] for name in here if name in ds.attrs}
     ds = ds.assign_attrs(_attributes(study) | made)
     for name, entry in (dict(study.uncertain) | dict(study.tied)).items():
         ds[name].attrs["source"] = entry.source or study.model.parameter(name).source
@@ -331,7 +339,7 @@ def _attributes(study: "Study") -> dict[str, Any]:
             "second_order": int(design.second_order),
             "seed": design.seed,
         }
-        | provenance()
+        | made_here(study.model_reference)
     )
 
 

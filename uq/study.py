@@ -157,6 +157,12 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
     ------
     InputError
         Everything that is wrong with the file, one line each.
+
+    Examples
+    --------
+    >>> study = uq.load_study("studies/ishigami.toml")
+    >>> study.design.samples, list(study.uncertain)
+    (256, ['x1', 'x2', 'x3'])
     """
     return study_from_text(_read(Path(path)), str(path), model, Path(path).parent)
 

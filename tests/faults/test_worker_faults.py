@@ -1,6 +1,7 @@
 """Whatever happens to the processes that compute, the result is that of an undisturbed run."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -234,9 +235,25 @@ def test_processes_with_a_cold_cache_agree(study_of, folder, injected):
 
 
 SURROUNDINGS = {
-    "decimal comma": {"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8", "COLUMNS": "80"},
+    "decimal comma": {"LC_ALL": "de_DE.UTF-8", "COLUMNS": "80"},
     "plain": {"LC_ALL": "C", "LANG": "C", "NO_COLOR": "1", "TERM": "dumb"},
 }
+COMMA = """
+import locale
+locale.setlocale(locale.LC_ALL, "")
+assert format(1.5, "n") == "1,5"
+"""
+
+
+def with_decimal_comma(folder):
+    """Return the environment of processes that all write 1,5, where such a locale can be made."""
+    place, name = folder / "locale", SURROUNDINGS["decimal comma"]["LC_ALL"]
+    place.mkdir()
+    make = ["localedef", "-i", "de_DE", "-f", "UTF-8", place / name]
+    if shutil.which("localedef") is None or subprocess.run(make, capture_output=True).returncode:
+        return {}
+    (place / "sitecustomize.py").write_text(COMMA)
+    return {"LOCPATH": str(place), "PYTHONPATH": os.pathsep.join([str(place), *sys.path])}
 
 
 @pytest.mark.slow
@@ -244,8 +261,12 @@ SURROUNDINGS = {
 def test_surroundings_change_no_bit(study_of, undisturbed, folder, injected, surroundings):
     study = study_of("linear", samples=40, fail_how="nan", fail_above=0.95)
     expected = undisturbed(study)
-    environment = os.environ | SURROUNDINGS[surroundings]
-    environment |= {"PYTHONPATH": os.pathsep.join(sys.path)}
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    environment |= SURROUNDINGS[surroundings]
+    if surroundings == "decimal comma":
+        comma = with_decimal_comma(folder)
+        environment |= comma
+        injected("decimal comma", bool(comma))
     ended = subprocess.run(
         [COMMAND, "run", study.path, "--workers", "1"],
         env=environment,
@@ -255,8 +276,9 @@ def test_surroundings_change_no_bit(study_of, undisturbed, folder, injected, sur
         capture_output=True,
         timeout=PATIENCE,
     )
-    injected("decimal comma, plain terminal, closed input")
+    injected("no terminal, no colours, closed standard input")
     assert ended.returncode == 0, ended.stderr
+    assert b"Error" not in ended.stderr
     assert b"\x1b" not in ended.stdout + ended.stderr
     assert max(map(len, ended.stdout.decode().splitlines())) <= 80
     assert open_result(folder / "results" / "small.nc").identical(expected)

@@ -17,7 +17,10 @@ def test_everything_promised_is_there():
         == set(dir(uq))
         == {
             "basins",
+            "labels",
+            "life_fits",
             "load_study",
+            "regimes",
             "run",
             "open_result",
             "simulate",
@@ -29,8 +32,6 @@ def test_everything_promised_is_there():
             "running_estimates",
             "enough",
             "compare",
-            "life_fits",
-            "regimes",
         }
     )
     for name in uq.__all__:

@@ -50,6 +50,9 @@ Settings = Annotated[
     list[str] | None,
     typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
 ]
+Mixed = Annotated[
+    bool, typer.Option("--mixed", help="Keep rows that other code of the model computed.")
+]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
 
 
@@ -164,6 +167,7 @@ def run(
     row_limit: RowLimit = None,
     model: ModelReference = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Overwrite whatever OUT.nc is.")] = False,
+    mixed: Mixed = False,
     quiet: Quiet = False,
 ) -> int:
     """Run a study, or go on where it stopped; show the summary."""
@@ -174,6 +178,7 @@ def run(
         "scheduler": scheduler,
         "chunk_rows": chunk_rows,
         "row_limit": row_limit,
+        "mixed": mixed,
     }
     return studies.run(study, output, model, samples, fresh, quiet, options)
 
@@ -199,12 +204,14 @@ def extend(
     scheduler: Scheduler = None,
     row_limit: RowLimit = None,
     model: ModelReference = None,
+    mixed: Mixed = False,
     quiet: Quiet = False,
 ) -> int:
     """Give a result more samples; nothing is computed again."""
     from uq.cli import keeping
 
-    options = {"workers": workers, "scheduler": scheduler, "row_limit": row_limit}
+    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    options |= {"row_limit": row_limit, "mixed": mixed}
     return keeping.extend(result, samples, model, quiet, options)
 
 
@@ -217,12 +224,14 @@ def rerun(
     scheduler: Scheduler = None,
     row_limit: RowLimit = None,
     model: ModelReference = None,
+    mixed: Mixed = False,
     quiet: Quiet = False,
 ) -> int:
     """Compute the failed rows of a result again."""
     from uq.cli import keeping
 
-    options = {"workers": workers, "scheduler": scheduler, "row_limit": row_limit}
+    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    options |= {"row_limit": row_limit, "mixed": mixed}
     return keeping.rerun(result, failed, setting or [], model, quiet, options)
 
 
