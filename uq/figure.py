@@ -10,6 +10,7 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -67,9 +68,15 @@ def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure
     return figure, found
 
 
-def roomy(axes: Axes) -> None:
+def roomy(axes: Axes, ticks: int = 6) -> None:
     """Have so few ticks on a horizontal axis, not yet logarithmic, that long numbers have room."""
-    axes.locator_params(axis="x", nbins=6)
+    axes.locator_params(axis="x", nbins=ticks)
+    whole_numbers(axes.xaxis)
+
+
+def whole_numbers(axis: Axis) -> None:
+    """Write each number in full: a common factor at the end of an axis covers its label."""
+    axis.set_major_formatter(lambda value, _: f"{value:.6g}")
 
 
 class _PlainLog(LogFormatter):
@@ -129,8 +136,8 @@ def sentence(text: str, unit: str = "", width: int = 44) -> str:
     """Return text for an axis: wrapped, with a capital, its unit behind, nothing read as TeX."""
     text = plain(text[:1].upper() + text[1:])
     if unit and unit != "1":
-        text += f" [{powers(unit)}]"
-    return textwrap.fill(text, width)
+        text += " " + f"[{powers(unit)}]".replace(" ", "\u00a0")  # a unit stays in one piece
+    return textwrap.fill(text, width).replace("\u00a0", " ")
 
 
 def powers(unit: str) -> str:
@@ -153,10 +160,16 @@ def place_in_words(element: Element, variable: xr.DataArray) -> str:
     return ", ".join(words)
 
 
+def named_input(parameter: xr.DataArray, width: int = 44) -> str:
+    """Return the name of an input for an axis: its symbol tells apart those of one meaning."""
+    attrs = parameter.attrs
+    return sentence(f"{attrs['long_name']} ({attrs['symbol']})", attrs["units"], width)
+
+
 def is_wide(values: Floats) -> bool:
-    """Whether positive values spread so far that a logarithmic axis shows them better."""
-    low, high = np.quantile(values, (0.005, 0.995)) if len(values) else (0.0, 0.0)
-    return bool(low > 0 and high > 30 * low)
+    """Whether positive values crowd so far down that a logarithmic axis shows them better."""
+    low, middle, high = np.quantile(values, (0.005, 0.5, 0.995)) if len(values) else (0.0,) * 3
+    return bool(low > 0 and high > 30 * low and middle - low < (high - low) / 4)
 
 
 def thinned(count: int, most: int = 1000) -> np.ndarray[Any, np.dtype[np.intp]]:

@@ -37,6 +37,7 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = time_unit(float(np.median(ends)) if len(ends) else 0.0)
     figure, (axes,) = new_figure(2.3, entries=len(chosen))
+    band = False
     for i, element in enumerate(chosen):
         curve = survival(ds, element.name)
         curve = curve.isel(time=thinned(curve.sizes["time"]))
@@ -47,6 +48,7 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
         low, high = 1 - curve["high"], 1 - curve["low"]
         if np.isfinite(low).any():
             axes.fill_between(time, low, high, step="post", color=colour, alpha=0.2, lw=0)
+            band = True
         _mark(axes, element, replicates_of(rows), unit, colour)
     axes.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
     axes.set_xlabel(sentence(chosen[0].meaning, unit.name))
@@ -54,8 +56,7 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
     other.set_ylabel("Probability of\na longer life")
     if is_wide(ends):
         logarithmic(axes)
-    band = ["pointwise 95 % band"] * bool(axes.collections)
-    explain(axes, chosen, *band)
+    explain(axes, chosen, *["pointwise 95 % band"] * band)
     return figure
 
 

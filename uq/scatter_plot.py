@@ -13,7 +13,19 @@ from uq import intervals
 from uq.elements import Element, Floats, independent_rows, named_elements, replicates_of
 from uq.elements_plot import label, occurring_regimes, regime_colours, rows_in_words, told_in
 from uq.errors import InputError
-from uq.figure import COLOURS, WIDTH, is_wide, legend, logarithmic, roomy, sentence, styled, thinned
+from uq.figure import (
+    COLOURS,
+    WIDTH,
+    is_wide,
+    legend,
+    logarithmic,
+    named_input,
+    roomy,
+    sentence,
+    styled,
+    thinned,
+    whole_numbers,
+)
 from uq.independent_inputs import independent_inputs
 
 _MOST_INPUTS = 3
@@ -31,7 +43,8 @@ def scatter(ds: xr.Dataset, output: str) -> Figure:
         A result.
     output : str
         An output without dimensions, or one element of another: of an output with several, its
-        first. Where lives never end or are censored, the line is the conditional median.
+        first. Where lives never end or are censored, or values spread over decades, the line is
+        the conditional median.
 
     Returns
     -------
@@ -45,14 +58,15 @@ def scatter(ds: xr.Dataset, output: str) -> Figure:
     panels = figure.subplots(len(leading), sharey=True, squeeze=False)[:, 0]
     finite = np.isfinite(element.values)
     unit, per = told_in(element.units, element.values)
+    wide = is_wide(element.values[finite])
     independent = replicates_of(rows) is None
     for axes, name in zip(panels, leading, strict=True):
         _points(axes, inputs[name], element, per)
-        _conditional(axes, inputs[name], element, per, independent)
+        _conditional(axes, inputs[name], element, per, wide, independent)
         _name_input(axes, rows, name)
+        whole_numbers(axes.yaxis)
         axes.set_ylabel(sentence(element.meaning, unit, width=24))
-    if is_wide(element.values[finite]):
-        for axes in panels:
+        if wide:
             logarithmic(axes, vertical=True)
     words = label(ds, element)
     title = f"{words}{', ' if words else ''}{rows_in_words([element])}"
@@ -91,11 +105,13 @@ def _marker(rows: int) -> float:
     return 3.0 if rows > 1000 else 4.5
 
 
-def _conditional(axes: Axes, x: Floats, element: Element, per: float, independent: bool) -> None:
-    """Draw the mean within slices of the input, or the median where there is no mean."""
+def _conditional(
+    axes: Axes, x: Floats, element: Element, per: float, wide: bool, independent: bool
+) -> None:
+    """Draw the mean within slices of the input, or the median where the mean says little."""
     present = element.present
     x, values = x[present], element.at_most / per
-    medians = not np.isfinite(values).all()
+    medians = wide or not np.isfinite(values).all()
     count = min(_MOST_BINS, len(x) // _IN_BIN)
     if count < 2:
         return
@@ -110,9 +126,10 @@ def _conditional(axes: Axes, x: Floats, element: Element, per: float, independen
     line = np.where(np.isfinite(line), line, np.nan)
     words = f"{'median' if medians else 'mean'} of slices of {len(x) // count} rows"
     axes.plot(middle, line, color=COLOURS[1], label=words + independent * ", 95 % band")
-    if independent:
+    ended = values[np.isfinite(values)]
+    if independent and len(ended):
         low, high = np.array(ends, dtype=float).T
-        top = np.nanmax(values[np.isfinite(values)])
+        top = ended.max()  # an end that is never would hide all others
         axes.fill_between(middle, low, np.minimum(high, top), color=COLOURS[1], alpha=0.25, lw=0)
 
 
@@ -132,10 +149,9 @@ def _leading(inputs: dict[str, Floats], element: Element) -> list[str]:
     return sorted(inputs, key=lambda name: between(inputs[name]))
 
 
-def _name_input(axes: Axes, rows: xr.Dataset, name: str, width: int = 44) -> None:
-    attrs = rows[name].attrs
-    axes.set_xlabel(sentence(attrs["long_name"], attrs["units"], width))
-    roomy(axes)
+def _name_input(axes: Axes, rows: xr.Dataset, name: str, width: int = 44, ticks: int = 6) -> None:
+    axes.set_xlabel(named_input(rows[name], width))
+    roomy(axes, ticks)
 
 
 @styled
@@ -187,13 +203,12 @@ def pairs(ds: xr.Dataset) -> Figure:
                     label=name,
                     rasterized=True,
                 )
-            roomy(axes)
-            axes.locator_params(nbins=4)
+            axes.locator_params(axis="y", nbins=4)
+            whole_numbers(axes.yaxis)
             if i == size - 1:
-                _name_input(axes, rows, across, width=22)
+                _name_input(axes, rows, across, width=22, ticks=6 if size == 1 else 3)
             if j == 0:
-                attrs = rows[down].attrs
-                axes.set_ylabel(sentence(attrs["long_name"], attrs["units"], width=22))
+                axes.set_ylabel(named_input(rows[down], width=22))
     panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
     legend(panels[0, 0])
     return figure

@@ -46,8 +46,8 @@ def test_a_report_is_shown_without_complaint_or_request(browser, report, width, 
         "data:image",
         "file:",
     }
-    assert picture.shape[0] > 2000 and picture.shape[1] == width
-    assert browser.value("document.documentElement.scrollWidth") == width  # nothing sticks out
+    assert picture.shape[0] > 2000 and width - 20 < picture.shape[1] <= width  # a scroll bar
+    assert browser.value("document.documentElement.scrollWidth") <= width  # nothing sticks out
     ground = picture[5, 5, :3].mean()
     assert (ground < 0.2) == dark
     assert abs(picture[..., :3].mean(axis=2) - ground).max() > 0.7  # the text stands out

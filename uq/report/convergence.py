@@ -49,7 +49,7 @@ def convergence_of(ds: xr.Dataset, found: list[Outcome]) -> Convergence:
     Convergence
     """
     if not found:
-        return Convergence(None, [], "There is no output with numbers.", [])
+        return Convergence(None, [], "there is no output with numbers", [])
     errors = enough(ds)
     told = [one for one in found if one.name in errors.index]
     rows = [_row(one, errors.loc[one.name]) for one in told]

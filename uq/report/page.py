@@ -108,7 +108,7 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
     others = [one for one in found if one not in lives]
     rows = independent_rows(ds)
     several = len(occurring_regimes(rows)) > 1
-    by_regime = [histogram_by_regime] * several
+    spread = histogram_by_regime if several else histogram
     lost = int(failed(ds).sum())
     return {
         "title": str(ds.attrs["title"]),
@@ -124,9 +124,9 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
         "pairs": _pairs(ds) if several and len(independent_inputs(rows)) > 1 else None,
         "convergence": convergence_of(ds, found),
         "results": list(result_tables(found)),
-        "histograms": _pictures(ds, others, histogram, *by_regime, scatter),
+        "histograms": _pictures(ds, others, spread, scatter),
         "lives": life_table(found),
-        "survival": _pictures(ds, lives, lifetime, *by_regime, scatter),
+        "survival": _pictures(ds, lives, lifetime, *[spread] * several, scatter),
         "notes": summary["notes"],
         "methods": methods,
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
