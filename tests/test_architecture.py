@@ -107,7 +107,16 @@ LAYERS = {
         "twin",
         "widths",
     },
-    "drawing": {"figure", "index_plot", "input_plot", "plots"},
+    "drawing": {
+        "figure",
+        "index_plot",
+        "input_plot",
+        "motion_plot",
+        "panel",
+        "plots",
+        "quantities",
+        "response_plot",
+    },
     "telling": {"report"},
     "command": {"cli"},
 }

@@ -1,4 +1,4 @@
-"""Figures of a result: lifetimes, histograms, a time history, and all that a study asks for."""
+"""Figures of a result: lifetimes, histograms, and all that a study asks for."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -161,30 +161,6 @@ def histogram(ds: xr.Dataset, output: str) -> Figure:
     if wide:
         logarithmic(axes)
     _explain(axes, chosen)
-    return figure
-
-
-@styled
-def trajectory(ds: xr.Dataset) -> Figure:
-    """Draw every quantity of one time history against time.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        From `uq.simulate`, with a ``trajectory``.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    history = ds["trajectory"]
-    figure, panels = new_figure(0.4 + 1.1 * history.sizes["quantity"], history.sizes["quantity"])
-    time = history["time"].values
-    for axes, series in zip(panels, history.transpose("quantity", "time"), strict=True):
-        axes.plot(time, series, color=COLOURS[0], lw=0.8)
-        meaning, unit = series["meaning"].item(), series["unit"].item()
-        axes.set_ylabel(sentence(meaning, unit, width=20))
-    panels[-1].set_xlabel("Time [s]")
     return figure
 
 

@@ -28,6 +28,14 @@ def test_everything_promised_is_there():
             "two_fidelities",
             "running_estimates",
             "enough",
+            "life_fits",
+            "regimes",
+            "plot_basins",
+            "plot_bifurcation",
+            "plot_curve",
+            "plot_history",
+            "plot_phase_portrait",
+            "plot_section",
         }
     )
     for name in uq.__all__:

@@ -2,12 +2,10 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-import sample_models
 from computed import asking, kinds, linear, with_output
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-import uq
 from uq import plots
 from uq.errors import InputError
 from uq.figure import file_name, powers, sentence
@@ -151,12 +149,6 @@ def test_titles_of_indices_are_in_words():
 def test_degenerate_results_are_drawn_all_the_same(tmp_path, value, kind):
     ds = asking(with_output(linear(samples=64), "odd", np.full(64, value), kind), outputs=["odd"])
     assert len(plots.save_all(ds, tmp_path)) == 4
-
-
-def test_a_time_history_has_a_panel_for_each_quantity():
-    figure = plots.trajectory(uq.simulate(sample_models.KINDS))
-    assert [axes.get_ylabel() for axes in figure.axes] == ["Place [m]", "Speed [m s⁻¹]"]
-    assert figure.axes[-1].get_xlabel() == "Time [s]"
 
 
 def test_words_and_units_of_axes():
