@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from uq.b_lives import B_LIVES, b_lives
 from uq.elements import Element, independent_rows, named_elements, replicates_of
@@ -71,5 +72,5 @@ def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, c
             )
 
 
-def _rest(share: np.ndarray) -> np.ndarray:
-    return 1 - share
+def _rest(share: ArrayLike) -> ArrayLike:
+    return 1 - np.asarray(share)
