@@ -119,6 +119,12 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
     ------
     InputError
         When the design cannot feed the method.
+
+    Examples
+    --------
+    >>> found = uq.sensitivity(uq.run("studies/ishigami.toml"))
+    >>> found["ST"].sel(output="y").to_series().round(2).to_dict()  # 0.558, 0.442, 0.244
+    {'x1': 0.56, 'x2': 0.45, 'x3': 0.25}
     """
     name, found = _estimate(ds, method, None)
     estimated = [one.indices for one in found if not isinstance(one.indices, str)]

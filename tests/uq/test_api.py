@@ -17,7 +17,10 @@ def test_everything_promised_is_there():
         == set(dir(uq))
         == {
             "basins",
+            "labels",
+            "life_fits",
             "load_study",
+            "regimes",
             "run",
             "open_result",
             "simulate",
@@ -28,6 +31,13 @@ def test_everything_promised_is_there():
             "two_fidelities",
             "running_estimates",
             "enough",
+            "compare",
+            "plot_basins",
+            "plot_bifurcation",
+            "plot_curve",
+            "plot_history",
+            "plot_phase_portrait",
+            "plot_section",
         }
     )
     for name in uq.__all__:
