@@ -1,4 +1,4 @@
-"""Every notebook runs from top to bottom at reduced size; committed outputs are of one whole run."""
+"""Notebooks run from top to bottom at reduced size; committed outputs are of one whole run."""
 
 import shutil
 from importlib import import_module
