@@ -17,7 +17,7 @@ FEWER = "20"
 """A twentieth of the rows."""
 
 QUICK = ("06-your-own-machine",)
-"""The others take more than ten seconds, most of them to load compiled kernels."""
+"""The others need the compiled kernels of the machines."""
 
 
 def outputs(notebook):
