@@ -271,7 +271,7 @@ def _estimate(
     if any(np.isnan(one.value) for one in known):
         apart = NOTHING
     elif any("assumes" in entry for entry in entries):  # not a plain quantile of the rows
-        apart = two_samples.difference(*known, pair.unpaired)
+        apart = two_samples.difference(known[0], known[1], pair.unpaired)
     else:
         apart = pair.difference(estimator, samples, known)
     return {**dict(zip("ab", entries, strict=True)), "difference": _plain(apart)}
@@ -290,6 +290,7 @@ def _notes(
     yield pair.kinship.value
     for which, one in zip("AB", found, strict=True):
         yield from (f"{which}: {note}" for note in one["notes"])
-    for which, mine, other in (("A", *elements), ("B", *elements[::-1])):
-        if alone := [name for name in mine if name not in other]:
+    first, second = elements
+    for which, mine, others in (("A", first, second), ("B", second, first)):
+        if alone := [name for name in mine if name not in others]:
             yield f"only {which} has {', '.join(alone)}"

@@ -41,10 +41,9 @@ class Glimpse:
             codes = chunk.columns["regime"]
             self._counts += np.bincount(codes[codes >= 0], minlength=len(self._counts))
         for name, sample in self._lives.items():
-            first = (slice(None), *[0] * (chunk.columns[name].ndim - 1))
-            values = chunk.columns[name][first]
+            values = _first(chunk.columns[name])
             if (flag := censored_name(name)) in chunk.columns:
-                values = np.where(chunk.columns[flag][first], np.inf, values)
+                values = np.where(_first(chunk.columns[flag]), np.inf, values)
             sample.add(values[~np.isnan(values)])
 
     @property
@@ -59,6 +58,11 @@ class Glimpse:
         pairs = zip(self._regimes, self._counts.tolist(), strict=True)
         found = {name: count / total for name, count in pairs if count}
         return dict(sorted(found.items(), key=lambda pair: -pair[1]))
+
+
+def _first(column: NDArray[Any]) -> NDArray[Any]:
+    """Return the first element of each row."""
+    return column.reshape(len(column), -1)[:, 0] if len(column) else column.ravel()
 
 
 class _Sample:

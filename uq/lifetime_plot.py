@@ -1,5 +1,7 @@
 """The figure of a lifetime: how likely it has ended, and how likely it goes on."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -71,5 +73,5 @@ def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, c
             )
 
 
-def _rest(share: np.ndarray) -> np.ndarray:
+def _rest(share: Any) -> Any:
     return 1 - share

@@ -69,8 +69,8 @@ Places = tuple[NDArray[np.intp], NDArray[np.intp]]
 def shared_rows(first: xr.Dataset, second: xr.Dataset) -> Places:
     """Return the places of the rows that both results have, in each of them."""
     most = max(ds.attrs["replicates"] for ds in (first, second))
-    keys = [ds["group"].values * most + ds["replicate"].values for ds in (first, second)]
-    _, here, there = np.intersect1d(*keys, assume_unique=True, return_indices=True)
+    one, other = (ds["group"].values * most + ds["replicate"].values for ds in (first, second))
+    _, here, there = np.intersect1d(one, other, assume_unique=True, return_indices=True)
     return here, there
 
 
@@ -176,14 +176,14 @@ class Pair:
             if intervals.is_constant(apart + np.abs(found).max()):  # they differ by rounding alone
                 return Estimate(value, np.nan, np.nan)
             return Estimate(value, *intervals.scatter_interval(value, apart))
-        return two_samples.difference(*known, self._correlation(estimator, samples))
+        return two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
 
     def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
         if self.kinship is Kinship.REPLICATES and all(one.value > 0 for one in known):
             found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
             return _factor(known[1].value / known[0].value, found[1], found[0])
-        return two_samples.ratio(*known, self._correlation(SD, samples))
+        return two_samples.ratio(known[0], known[1], self._correlation(SD, samples))
 
     def sd(self, i: int, sample: Sample) -> Estimate:
         """Return the standard deviation of one of the two."""

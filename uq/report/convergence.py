@@ -1,6 +1,7 @@
 """What a report says of convergence: estimates as rows came in, and the other errors."""
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import pandas as pd
 import xarray as xr
@@ -52,7 +53,8 @@ def convergence_of(ds: xr.Dataset, found: list[Outcome]) -> Convergence:
         return Convergence(None, [], "there is no output with numbers", [])
     errors = enough(ds)
     told = [one for one in found if one.name in errors.index]
-    rows = [_row(one, errors.loc[one.name]) for one in told]
+    entries = errors.to_dict("index")
+    rows = [_row(one, entries[one.name]) for one in told]
     header = ("output", "unit", "estimate", "half-width of its interval", "error of the rows")
     table = without_empty_columns(Table("Error of sampling", header, rows)) if rows else None
     warnings = [
@@ -65,7 +67,7 @@ def convergence_of(ds: xr.Dataset, found: list[Outcome]) -> Convergence:
     return Convergence(table, warnings, "", _pictures(ds, found, running))
 
 
-def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
+def _row(one: Outcome, errors: Mapping[str, Any]) -> tuple[Cell, ...]:
     cells = []
     for error in (float(errors["sampling"]), float(errors["own"])):
         known = error == error
