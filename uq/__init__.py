@@ -14,8 +14,10 @@ if TYPE_CHECKING:
     from uq.indices import sensitivity
     from uq.life_fit import life_fits
     from uq.lifetime import survival
+    from uq.motion_plot import plot_history, plot_phase_portrait, plot_section
     from uq.regime_table import regimes
     from uq.reliability import rare_event
+    from uq.response_plot import plot_basins, plot_bifurcation, plot_curve
     from uq.results import open_result
     from uq.runner import run
     from uq.simulation import simulate
@@ -31,6 +33,12 @@ __all__ = [
     "life_fits",
     "load_study",
     "open_result",
+    "plot_basins",
+    "plot_bifurcation",
+    "plot_curve",
+    "plot_history",
+    "plot_phase_portrait",
+    "plot_section",
     "rare_event",
     "regimes",
     "run",
@@ -50,6 +58,12 @@ _MODULES = {
     "life_fits": "life_fit",
     "load_study": "study",
     "open_result": "results",
+    "plot_basins": "response_plot",
+    "plot_bifurcation": "response_plot",
+    "plot_curve": "response_plot",
+    "plot_history": "motion_plot",
+    "plot_phase_portrait": "motion_plot",
+    "plot_section": "motion_plot",
     "rare_event": "reliability",
     "regimes": "regime_table",
     "run": "runner",

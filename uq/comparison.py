@@ -290,7 +290,7 @@ def _notes(
     yield pair.kinship.value
     for which, one in zip("AB", found, strict=True):
         yield from (f"{which}: {note}" for note in one["notes"])
-    first, second = elements
-    for which, mine, others in (("A", first, second), ("B", second, first)):
-        if alone := [name for name in mine if name not in others]:
+    of_a, of_b = elements
+    for which, mine, other in (("A", of_a, of_b), ("B", of_b, of_a)):
+        if alone := [name for name in mine if name not in other]:
             yield f"only {which} has {', '.join(alone)}"

@@ -23,7 +23,7 @@ from uq.literals import plain
 WIDTH = 3.4
 """One column of a journal [inch]."""
 
-_DOTS_PER_INCH = 200
+DOTS_PER_INCH = 200
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
@@ -117,7 +117,7 @@ def write(figure: Figure, path: Path) -> list[Path]:
     """
     png, svg, pdf = (path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg", "pdf"))
     # Figure.savefig draws twice for each file, only to lay out what the first drawing lays out.
-    figure.set_dpi(_DOTS_PER_INCH)
+    figure.set_dpi(DOTS_PER_INCH)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
     figure.set_layout_engine("none")  # the others have the layout of the first
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": None})

@@ -41,7 +41,8 @@ class Glimpse:
             codes = chunk.columns["regime"]
             self._counts += np.bincount(codes[codes >= 0], minlength=len(self._counts))
         for name, sample in self._lives.items():
-            values = _first(chunk.columns[name])
+            first: Any = (slice(None), *[0] * (chunk.columns[name].ndim - 1))
+            values = chunk.columns[name][first]
             if (flag := censored_name(name)) in chunk.columns:
                 values = np.where(_first(chunk.columns[flag]), np.inf, values)
             sample.add(values[~np.isnan(values)])

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from uq.b_lives import B_LIVES, b_lives
 from uq.elements import Element, independent_rows, named_elements, replicates_of
@@ -73,5 +74,5 @@ def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, c
             )
 
 
-def _rest(share: Any) -> Any:
-    return 1 - share
+def _rest(share: ArrayLike) -> ArrayLike:
+    return 1 - np.asarray(share)

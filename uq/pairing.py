@@ -69,8 +69,8 @@ Places = tuple[NDArray[np.intp], NDArray[np.intp]]
 def shared_rows(first: xr.Dataset, second: xr.Dataset) -> Places:
     """Return the places of the rows that both results have, in each of them."""
     most = max(ds.attrs["replicates"] for ds in (first, second))
-    one, other = (ds["group"].values * most + ds["replicate"].values for ds in (first, second))
-    _, here, there = np.intersect1d(one, other, assume_unique=True, return_indices=True)
+    mine, other = (ds["group"].values * most + ds["replicate"].values for ds in (first, second))
+    _, here, there = np.intersect1d(mine, other, assume_unique=True, return_indices=True)
     return here, there
 
 

@@ -12,7 +12,7 @@ from uq.convergence_plot import convergence, index_convergence
 from uq.elements import analysis_of, independent_rows, shown_outputs
 from uq.elements_plot import occurring_regimes
 from uq.errors import InputError
-from uq.figure import COLOURS, file_name, new_figure, sentence, styled, write
+from uq.figure import file_name, write
 from uq.histogram_plot import histogram, histogram_by_regime
 from uq.independent_inputs import independent_inputs
 from uq.index_plot import bars, index_bars, subject
@@ -34,7 +34,6 @@ __all__ = [
     "quantile_table",
     "save_all",
     "scatter",
-    "trajectory",
 ]
 
 
@@ -113,27 +112,3 @@ def running_or_none(ds: xr.Dataset) -> pd.DataFrame | None:
         return running_estimates(ds)
     except InputError:
         return None
-
-
-@styled
-def trajectory(ds: xr.Dataset) -> Figure:
-    """Draw every quantity of one time history against time.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        From `uq.simulate`, with a ``trajectory``.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    history = ds["trajectory"]
-    figure, panels = new_figure(0.4 + 1.1 * history.sizes["quantity"], history.sizes["quantity"])
-    time = history["time"].values
-    for axes, series in zip(panels, history.transpose("quantity", "time"), strict=True):
-        axes.plot(time, series, color=COLOURS[0], lw=0.8)
-        meaning, unit = series["meaning"].item(), series["unit"].item()
-        axes.set_ylabel(sentence(meaning, unit, width=20))
-    panels[-1].set_xlabel("Time [s]")
-    return figure

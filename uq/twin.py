@@ -183,6 +183,7 @@ def _many(study: Study, start: int) -> list[Element]:
 
 def _twin_of(study: Study, x: Floats, seed: NDArray[np.uint64]) -> list[Element]:
     model, settings, twin = study.model, study.settings, study.analysis.twin
+    outputs: tuple[str, ...]
     if isinstance(twin, str):
         model, outputs = model.alone(twin), (twin,)
     else:  # the same outputs, from rows that cost less

@@ -56,11 +56,11 @@ def ratio(first: Estimate, second: Estimate, correlation: float) -> Estimate:
     """Return the second over the first, both positive; parameters as in `difference`."""
     if not (first.value > 0 and second.value > 0):
         return NOTHING
-    one, other = (
-        Estimate(*(float(np.log(end)) if end > 0 else np.nan for end in estimate))
-        for estimate in (first, second)
+    below, above = (
+        Estimate(*(float(np.log(end)) if end > 0 else np.nan for end in one))
+        for one in (first, second)
     )
-    return Estimate(*np.exp(difference(one, other, correlation)).tolist())
+    return Estimate(*np.exp(difference(below, above, correlation)).tolist())
 
 
 def sd_interval(values: Floats, confidence: float = CONFIDENCE) -> Interval:

@@ -32,6 +32,12 @@ def test_everything_promised_is_there():
             "running_estimates",
             "enough",
             "compare",
+            "plot_basins",
+            "plot_bifurcation",
+            "plot_curve",
+            "plot_history",
+            "plot_phase_portrait",
+            "plot_section",
         }
     )
     for name in uq.__all__:

@@ -2,12 +2,10 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-import sample_models
 from computed import asking, kinds, linear, with_output
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-import uq
 from uq import plots
 from uq.convergence import running_estimates
 from uq.convergence_plot import index_convergence
@@ -268,12 +266,6 @@ def test_numbers_on_logarithmic_axes_are_plain():
     for figure in (plots.histogram(ds, "wide"), plots.scatter(ds, "wide")):
         figure.draw_without_rendering()
         assert "mathdefault" not in words(figure) and "0.001" in words(figure)
-
-
-def test_a_time_history_has_a_panel_for_each_quantity():
-    figure = plots.trajectory(uq.simulate(sample_models.KINDS))
-    assert [axes.get_ylabel() for axes in figure.axes] == ["Place [m]", "Speed [m s⁻¹]"]
-    assert figure.axes[-1].get_xlabel() == "Time [s]"
 
 
 def test_words_and_units_of_axes():

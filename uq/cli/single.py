@@ -44,11 +44,12 @@ def simulate(
     if output:
         store.write(ds, output)
     if plot:
-        from uq.plots import trajectory
+        from uq.figure import DOTS_PER_INCH
+        from uq.motion_plot import plot_history
 
         try:
             plot.parent.mkdir(parents=True, exist_ok=True)
-            trajectory(ds).savefig(plot)
+            plot_history(ds).savefig(plot, dpi=DOTS_PER_INCH)
         except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
             raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None
     print_json(as_json(model, ds)) if json else _show(model, ds)

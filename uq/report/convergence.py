@@ -1,7 +1,6 @@
 """What a report says of convergence: estimates as rows came in, and the other errors."""
 
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple, cast
 
 import pandas as pd
 import xarray as xr
@@ -53,8 +52,7 @@ def convergence_of(ds: xr.Dataset, found: list[Outcome]) -> Convergence:
         return Convergence(None, [], "there is no output with numbers", [])
     errors = enough(ds)
     told = [one for one in found if one.name in errors.index]
-    entries = errors.to_dict("index")
-    rows = [_row(one, entries[one.name]) for one in told]
+    rows = [_row(one, cast(pd.Series, errors.loc[one.name])) for one in told]
     header = ("output", "unit", "estimate", "half-width of its interval", "error of the rows")
     table = without_empty_columns(Table("Error of sampling", header, rows)) if rows else None
     warnings = [
