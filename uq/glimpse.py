@@ -44,7 +44,7 @@ class Glimpse:
             first: Any = (slice(None), *[0] * (chunk.columns[name].ndim - 1))
             values = chunk.columns[name][first]
             if (flag := censored_name(name)) in chunk.columns:
-                values = np.where(_first(chunk.columns[flag]), np.inf, values)
+                values = np.where(chunk.columns[flag][first], np.inf, values)
             sample.add(values[~np.isnan(values)])
 
     @property
@@ -59,11 +59,6 @@ class Glimpse:
         pairs = zip(self._regimes, self._counts.tolist(), strict=True)
         found = {name: count / total for name, count in pairs if count}
         return dict(sorted(found.items(), key=lambda pair: -pair[1]))
-
-
-def _first(column: NDArray[Any]) -> NDArray[Any]:
-    """Return the first element of each row."""
-    return column.reshape(len(column), -1)[:, 0] if len(column) else column.ravel()
 
 
 class _Sample:

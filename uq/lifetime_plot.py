@@ -1,7 +1,5 @@
 """The figure of a lifetime: how likely it has ended, and how likely it goes on."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes

@@ -65,7 +65,7 @@ def convergence_of(ds: xr.Dataset, found: list[Outcome]) -> Convergence:
     return Convergence(table, warnings, "", _pictures(ds, found, running))
 
 
-def _row(one: Outcome, errors: Mapping[str, Any]) -> tuple[Cell, ...]:
+def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
     cells = []
     for error in (float(errors["sampling"]), float(errors["own"])):
         known = error == error
