@@ -498,7 +498,7 @@ def test_progress_of_a_run_counts_and_glances_at_its_rows(folder, write_study):
     assert np.quantile(lives, 0.49) <= last.medians["life[side=left,depth=0.5]"]
     assert last.medians["life[side=left,depth=0.5]"] <= np.quantile(lives, 0.51)
     slow = float((ds["regime"] == 0).mean())
-    assert last.shares == {"slow": slow, "fast": 1 - slow}
+    assert last.shares == pytest.approx({"slow": slow, "fast": 1 - slow})
 
 
 def test_a_terminal_of_80_columns_holds_the_progress(monkeypatch):
