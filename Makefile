@@ -7,7 +7,7 @@ TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow faults notebook bench clean
+.PHONY: run test slow faults figures notebook bench clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -33,6 +33,10 @@ slow: $(TEST)
 # Kills, full disks, damaged files, done to real runs; a shorter selection is in "make test".
 faults: $(TEST)
 	@$(BIN)/python -m pytest tests/faults -m "slow or not slow"
+
+# The figures of the machines' papers from our data: docs/papers.md and docs/papers/*.svg.
+figures: $(BASE)
+	@$(BIN)/python docs/papers
 
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks
