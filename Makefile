@@ -5,27 +5,29 @@ BIN := .venv/bin
 BASE := .venv/.installed
 TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
+DOCS := .venv/.installed-docs
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow faults figures notebook bench clean
+.PHONY: run test slow faults figures notebook notebooks docs bench coverage clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
-	@$(BIN)/uq plot results/beam-lifetime.nc
+	@$(BIN)/uq plot results/beam-lifetime.nc > /dev/null
 	@$(BIN)/uq run studies/beam-sensitivity.toml
 	@$(BIN)/uq sensitivity results/beam-sensitivity.nc
-	@$(BIN)/uq plot results/beam-sensitivity.nc
+	@$(BIN)/uq plot results/beam-sensitivity.nc > /dev/null
 	@echo
-	@echo "Results: results/beam-lifetime.nc and results/beam-sensitivity.nc, figures beside them."
-	@echo "Next:    $(BIN)/uq init beam > studies/mine.toml    a study of your own to edit"
-	@echo "         $(BIN)/uq run studies/mine.toml            run it"
-	@echo "         make notebook                             open JupyterLab"
+	@echo "Results: results/beam-lifetime.nc and results/beam-sensitivity.nc, figures in folders"
+	@echo "         results/beam-lifetime and results/beam-sensitivity."
+	@echo "Next:    $(BIN)/uq report results/beam-lifetime.nc --open    all of it in your browser"
+	@echo "         $(BIN)/uq init beam > studies/mine.toml             a study of your own to edit"
+	@echo "         make notebook                                      open JupyterLab"
 
 test: $(TEST)
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
-	@$(BIN)/python -m pytest -m "not slow"
+	@$(BIN)/python -m pytest -n logical --maxprocesses 8 --dist loadfile -m "not slow"
 
 slow: $(TEST)
 	@$(BIN)/python -m pytest -m slow
@@ -41,6 +43,15 @@ figures: $(BASE)
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks
 
+# Everything anew: Sphinx does not see when the declarations behind a table change.
+docs: $(DOCS)
+	@$(BIN)/python -m sphinx -E -a -q -W --keep-going docs site
+	@echo "Documentation: site/index.html"
+
+# Every notebook again at full size, with its outputs: about ten minutes.
+notebooks: $(TEST)
+	@$(BIN)/python notebooks/execute.py
+
 bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam
 	@$(BIN)/python -m benchmarks.beam_study
@@ -48,6 +59,12 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.beam_mesh
 	@$(BIN)/python -m benchmarks.vibrator
 	@$(BIN)/python -m benchmarks.mole
+	@$(BIN)/python -m benchmarks.store
+	@$(BIN)/python -m benchmarks.large
+
+# How often each printed interval holds the truth: docs/coverage.md, in about twenty minutes.
+coverage: $(TEST)
+	@$(BIN)/python -m benchmarks.coverage
 
 clean:
 	rm -rf .venv
@@ -67,4 +84,8 @@ $(TEST): $(BASE)
 $(NOTEBOOK): $(BASE)
 	@$(PIP) -e ".[notebook]"
 	@$(BIN)/python -m ipykernel install --prefix .venv --name vibrolife --display-name vibrolife >/dev/null
+	@touch $@
+
+$(DOCS): $(BASE)
+	@$(PIP) -e ".[docs]"
 	@touch $@

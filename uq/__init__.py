@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from uq.attraction import basins
+    from uq.comparison import compare
     from uq.convergence import enough, running_estimates
+    from uq.elements import labels
     from uq.indices import sensitivity
     from uq.life_fit import life_fits
     from uq.lifetime import survival
@@ -25,7 +27,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "basins",
+    "compare",
     "enough",
+    "labels",
     "life_fits",
     "load_study",
     "open_result",
@@ -48,7 +52,9 @@ __all__ = [
 
 _MODULES = {
     "basins": "attraction",
+    "compare": "comparison",
     "enough": "convergence",
+    "labels": "elements",
     "life_fits": "life_fit",
     "load_study": "study",
     "open_result": "results",

@@ -36,6 +36,7 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     for name, text in read_settings(model, given)[1].items():
         yield Fault(("settings", name), text, given[name]) if name else Fault(("settings",), text)
     yield from _output_faults(model, tables["analysis"])
+    yield from _twin_faults(model, tables["analysis"].get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
         if name not in model.outputs:
@@ -68,19 +69,27 @@ def _output_faults(model: Model, analysis: Mapping[str, Any]) -> Iterator[Fault]
         if name not in known:
             problem = unknown_name("output", name, model, known)
             yield Fault(("analysis", "outputs"), problem, name)
-    twin = analysis.get("twin", "")
-    if twin and twin not in model.cheap:
-        cheap = tuple(model.cheap)
-        listed = f" ({', '.join(cheap)})" if cheap else ""
-        problem = f"model '{model.name}' cannot compute it alone at a small part of the cost"
-        remedy = f"; choose one that it can{listed}" if cheap else "; it has no such output"
-        yield Fault(("analysis", "twin"), f"{problem}{remedy}{nearest(twin, cheap)}", twin)
     for name, value in analysis.get("thresholds", {}).items():
         path = ("analysis", "thresholds", name)
         if name not in known:
             yield Fault(path, unknown_name("output", name, model, known), value)
         elif model.outputs[name].kind == "category":
             yield Fault(path, "is a category: it has shares, not thresholds", value)
+
+
+def _twin_faults(model: Model, twin: Any, given: Mapping[str, Any]) -> Iterator[Fault]:
+    if isinstance(twin, dict):
+        problems = read_settings(model, {**given, **twin})[1]
+        for name, text in problems.items():
+            if name in twin or not name:
+                yield Fault(("analysis", "twin", *filter(None, [name])), text, twin.get(name, twin))
+    elif twin and twin not in model.cheap:
+        cheap = tuple(model.cheap)
+        listed = f" ({', '.join(cheap)})" if cheap else ""
+        problem = f"model '{model.name}' cannot compute it alone at a small part of the cost"
+        remedy = f"; choose one that it can{listed}" if cheap else "; it has no such output"
+        remedy += "; or give a table of settings that make rows cheap" * bool(model.setting_names)
+        yield Fault(("analysis", "twin"), f"{problem}{remedy}{nearest(twin, cheap)}", twin)
 
 
 def design_faults(tables: Tables) -> Iterator[Fault]:

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.code import code_of
 from uq.contract import Model
 from uq.errors import InputError
 from uq.evaluate import evaluate
@@ -32,12 +33,15 @@ class Task(NamedTuple):
         Names and values.
     output : str
         The cheap output that it computes alone; "" for all outputs.
+    code : str
+        `uq.code.code_of` the model that is wanted; "" for any.
     """
 
     model: str
     version: str
     settings: tuple[tuple[str, Any], ...]
     output: str = ""
+    code: str = ""
 
     def find_model(self) -> Model:
         """Return the model, as far as it is wanted."""
@@ -84,6 +88,11 @@ def main(handle: str) -> None:
             raise InputError(
                 f"a worker has version {model.version} of model '{model.name}', "
                 f"this process has {task.version}: install the same on both"
+            )
+        if task.code not in ("", code_of(task.model)):
+            raise InputError(
+                f"a worker has other code of model '{model.name}' than this process: start again "
+                "if it was edited meanwhile, or install the same on both"
             )
         settings = model.settings(**dict(task.settings))
     except Exception as error:

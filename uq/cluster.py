@@ -56,6 +56,14 @@ class Workers:
         return bool(self.client.status == "running")
 
     @property
+    def dashboard(self) -> str:
+        """Address of the page on which dask shows what it does, or ""."""
+        try:
+            return str(self.client.dashboard_link or "")
+        except (KeyError, OSError):  # a scheduler without one, or just gone
+            return ""
+
+    @property
     def threads(self) -> int:
         """Tasks that can run at the same time, as long as no worker is connected none."""
         try:
@@ -149,7 +157,10 @@ def remote(address: str) -> Iterator[Workers]:
             )
         except (OSError, ValueError) as error:
             reason = " ".join(str(error).split())
-            raise InputError(f"--scheduler {address}: cannot connect: {reason}") from None
+            raise InputError(
+                f"--scheduler {address}: cannot connect: {reason}; is a dask scheduler running"
+                " there?"
+            ) from None
         _check_versions(client, f"--scheduler {address}")
         try:
             yield Workers(client, _Presence(client, address).watch, local=False)
@@ -177,11 +188,13 @@ def _check_versions(client: Client, where: str) -> None:
     """Refuse workers that would give other bits, or not survive their first task."""
     there = client.run(differences, versions(), on_error="return")
     if not there:
-        raise InputError(f"{where}: the cluster has no workers")
+        raise InputError(f"{where}: the cluster has no workers; start some with 'dask worker'")
     for worker, wrong in there.items():
         if isinstance(wrong, Exception):
             reason = " ".join(str(wrong).split())
-            raise InputError(f"{where}: worker {worker} lacks {_PACKAGE}: {reason}")
+            raise InputError(
+                f"{where}: worker {worker} lacks {_PACKAGE}: {reason}; install it there"
+            )
         if wrong:
             raise InputError(f"{where}: worker {worker} {wrong}")
 

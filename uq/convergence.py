@@ -39,6 +39,13 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     ------
     InputError
         When there is no such output, or the first rows of the design are no design.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/exponential-wear.toml")
+    >>> running = uq.running_estimates(ds)
+    >>> running[running["estimate"] == "mean"]["samples"].to_list()
+    [16, 32, 63, 125, 250, 500, 1000]
     """
     names = None if output is None else {element.name for element in named_elements(ds, output)}
     lines = [

@@ -163,6 +163,14 @@ def _monte_carlo(seed: int, replicates: int, d: int, samples: int, start: int, s
     return np.stack([points(replicate) for replicate in range(replicates)], axis=1)
 
 
+def _paths(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
+    """Draw paths between two independent points, one input after the other in random order."""
+    points = _monte_carlo(seed, replicates, 3 * d, samples, start, stop)
+    first, last, order = np.split(points[:, :, None], 3, axis=-1)
+    step = np.argsort(np.argsort(order, axis=-1), axis=-1)  # at which an input changes
+    return np.where(step < np.arange(d + 1)[:, None], last, first)
+
+
 def _latin_hypercube(
     seed: int, replicates: int, d: int, samples: int, start: int, stop: int
 ) -> Points:
@@ -219,6 +227,10 @@ def _steps(parameters: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"step_{i}" for i in range(len(parameters) + 1))
 
 
+def _places(parameters: tuple[str, ...]) -> tuple[str, ...]:
+    return ("A", *(f"AB_{i}" for i in range(1, len(parameters))), "B")
+
+
 def _curves(parameters: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"curve_{name}" for name in parameters)
 
@@ -264,6 +276,12 @@ DESIGNS = {
         labels=_steps,
         follows_laws=False,
         least=2,
+    ),
+    "shapley": Design(
+        "paths from one independent row to another, for Shapley effects",
+        _paths,
+        ("shapley",),
+        labels=_places,
     ),
     "fast": Design(
         "a curve through the inputs for each of them, for extended FAST",

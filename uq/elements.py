@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from uq.columns import censored_name, lacking
 from uq.designs import DESIGNS
-from uq.errors import InputError, nearest
+from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.reading import read_study_text
 from uq.results import elements, failed
@@ -92,15 +92,14 @@ def study_file_of(ds: xr.Dataset) -> StudyFile:
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
-    """Return the rows for plain statistics: A and B of a crossed design, all rows of others.
+    """Return the rows for plain statistics: A and B where a design has these, all rows of others.
 
-    The mixed blocks of a crossed design repeat the numbers of A and B. Where the rows do not follow
+    The mixed blocks between repeat the numbers of A and B. Where the rows do not follow
     the laws of the inputs there are none.
     """
     design = DESIGNS[ds.attrs["design"]]
-    mixed = ("AB_", "BA_") if design.crossed else ()
     labels = flags(ds["block"]) if design.follows_laws else []
-    plain = [code for code, label in labels if not label.startswith(mixed)]
+    plain = [code for code, label in labels if not label.startswith(("AB_", "BA_"))]
     chosen = np.isin(ds["block"].values, plain)
     return ds if chosen.all() else ds.isel(sample=chosen)
 
@@ -114,6 +113,34 @@ def flags(variable: xr.DataArray) -> list[tuple[int, str]]:
     """Return the codes of a CF flag variable with their labels."""
     codes = np.atleast_1d(variable.attrs["flag_values"]).tolist()
     return list(zip(codes, variable.attrs["flag_meanings"].split(), strict=True))
+
+
+def labels(variable: xr.DataArray) -> xr.DataArray:
+    """Return the words that the codes of a variable stand for.
+
+    Parameters
+    ----------
+    variable : xarray.DataArray
+        The ``status``, the ``regime`` or another category of a result, or some rows of it.
+
+    Returns
+    -------
+    xarray.DataArray
+        Of the same shape, for instance to colour a figure or to group by.
+
+    Raises
+    ------
+    InputError
+        When the variable is not a category.
+    """
+    if "flag_values" not in variable.attrs:
+        raise InputError(f"'{variable.name}' is a quantity, not a category: it has no labels")
+    codes, words = zip(*flags(variable), strict=True)
+    order = np.argsort(codes)
+    places = np.searchsorted(codes, variable.values, sorter=order)
+    found = variable.copy(data=np.array(words)[order][places])
+    found.attrs = {"long_name": variable.attrs["long_name"]}
+    return found
 
 
 def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
@@ -151,7 +178,9 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
     unsound = failed(ds)
     for output in outputs:
         if output not in (known := output_names(ds)):
-            raise InputError(f"no such output '{output}'{nearest(output, known)}")
+            raise InputError(
+                f"no such output '{output}'{nearest(output, known)} (allowed: {choices(known)})"
+            )
         variable = ds[output]
         if variable.attrs["kind"] == "category":
             continue
@@ -199,13 +228,18 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
     output = name.partition("[")[0]
     found = list(elements_of(ds, [output]))
     if not found:
-        raise InputError(f"'{output}' is a category: it has no numbers")
+        raise InputError(
+            f"'{output}' is a category: it has no numbers; 'uq summary' shows shares of regimes,"
+            f" and 'uq sensitivity --output {output}' what decides them"
+        )
     if name == output:
         return found
     chosen = [element for element in found if element.name == name]
     if not chosen:
         names = [element.name for element in found]
-        raise InputError(f"no such element '{name}'{nearest(name, names)}")
+        raise InputError(
+            f"no such element '{name}'{nearest(name, names)} (allowed: {choices(names)})"
+        )
     return chosen
 
 
@@ -219,5 +253,6 @@ def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
     """
     found = named_elements(ds, name)
     if found[0].kind != "lifetime":
-        raise InputError(f"'{name}' is not a lifetime")
+        lives = [one for one in output_names(ds) if ds[one].attrs["kind"] == "lifetime"]
+        raise InputError(f"'{name}' is not a lifetime (lifetimes: {choices(lives)})")
     return found

@@ -29,6 +29,14 @@ class RunError(Exception):
     """A run that cannot give a result though its input is right: one plain sentence."""
 
 
+def choices(names: Iterable[str], most: int = 6) -> str:
+    """Return the first of some names for an error line: ``a, b, c and 4 more``."""
+    all_names = list(names)
+    more = len(all_names) - most
+    shown = ", ".join(all_names[:most]) or "none"
+    return f"{shown} and {more} more" if more > 0 else shown
+
+
 def nearest(name: str, choices: Iterable[str]) -> str:
     """Return ``"; did you mean 'x'?"`` for the choice most like `name`, or ``""``.
 

@@ -10,7 +10,9 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, LogFormatter
@@ -38,6 +40,7 @@ _STYLE: Any = {
     "lines.linewidth": 1.2,
     "text.parse_math": False,  # a dollar sign in a file is one
     "svg.hashsalt": "vibrolife",
+    "pdf.fonttype": 42,  # text that can be searched and edited
 }
 styled = mpl.rc_context(_STYLE)
 """Decorates whatever draws or writes a figure."""
@@ -65,28 +68,42 @@ def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure
     return figure, found
 
 
-def roomy(axes: Axes) -> None:
+def roomy(axes: Axes, ticks: int = 6) -> None:
     """Have so few ticks on a horizontal axis, not yet logarithmic, that long numbers have room."""
-    axes.locator_params(axis="x", nbins=6)
+    axes.locator_params(axis="x", nbins=ticks)
+    whole_numbers(axes.xaxis)
 
 
-def logarithmic(axes: Axes) -> None:
-    """Make a horizontal axis logarithmic, its numbers in plain text: dollar signs mean nothing."""
-    axes.set_xscale("log")
-    axes.xaxis.set_major_formatter(LogFormatter())
-    axes.xaxis.set_minor_formatter(LogFormatter())
+def whole_numbers(axis: Axis) -> None:
+    """Write each number in full: a common factor at the end of an axis covers its label."""
+    axis.set_major_formatter(lambda value, _: f"{value:.6g}")
+
+
+class _PlainLog(LogFormatter):
+    """Numbers as one writes them, at the ticks that matplotlib would label; never as TeX."""
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return f"{x:g}" if super().__call__(x, pos) else ""
+
+
+def logarithmic(axes: Axes, vertical: bool = False) -> None:
+    """Make the horizontal axis logarithmic, or the vertical one, its numbers in plain text."""
+    axis, scale = (axes.yaxis, axes.set_yscale) if vertical else (axes.xaxis, axes.set_xscale)
+    scale("log")
+    axis.set_major_formatter(_PlainLog())
+    axis.set_minor_formatter(_PlainLog())
 
 
 def legend(axes: Axes) -> None:
     """Explain colours and lines below a figure with one panel, where there is anything to say."""
     handles, labels = axes.get_legend_handles_labels()
     if any(labels) and isinstance(axes.figure, Figure):
-        axes.figure.legend(handles, labels, loc="outside lower left")
+        axes.figure.legend(handles, labels, loc="outside lower left", markerscale=1.5)
 
 
 @styled
 def write(figure: Figure, path: Path) -> list[Path]:
-    """Write a figure as PNG and SVG, the same bytes each time, and return both paths.
+    """Write a figure as PNG, SVG and PDF, the same bytes each time, and return their paths.
 
     Parameters
     ----------
@@ -98,13 +115,16 @@ def write(figure: Figure, path: Path) -> list[Path]:
     -------
     list of Path
     """
-    png, svg = (path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg"))
+    png, svg, pdf = (path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg", "pdf"))
     # Figure.savefig draws twice for each file, only to lay out what the first drawing lays out.
     figure.set_dpi(DOTS_PER_INCH)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
-    figure.set_layout_engine("none")  # the second has the layout of the first
+    figure.set_layout_engine("none")  # the others have the layout of the first
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": None})
-    return [png, svg]
+    FigureCanvasPdf(figure).print_pdf(
+        pdf, metadata={"CreationDate": None, "Creator": None, "Producer": None}
+    )
+    return [png, svg, pdf]
 
 
 def file_name(*words: str) -> str:
@@ -116,8 +136,8 @@ def sentence(text: str, unit: str = "", width: int = 44) -> str:
     """Return text for an axis: wrapped, with a capital, its unit behind, nothing read as TeX."""
     text = plain(text[:1].upper() + text[1:])
     if unit and unit != "1":
-        text += f" [{powers(unit)}]"
-    return textwrap.fill(text, width)
+        text += " " + f"[{powers(unit)}]".replace(" ", "\u00a0")  # a unit stays in one piece
+    return textwrap.fill(text, width).replace("\u00a0", " ")
 
 
 def powers(unit: str) -> str:
@@ -140,10 +160,16 @@ def place_in_words(element: Element, variable: xr.DataArray) -> str:
     return ", ".join(words)
 
 
+def named_input(parameter: xr.DataArray, width: int = 44) -> str:
+    """Return the name of an input for an axis: its symbol tells apart those of one meaning."""
+    attrs = parameter.attrs
+    return sentence(f"{attrs['long_name']} ({attrs['symbol']})", attrs["units"], width)
+
+
 def is_wide(values: Floats) -> bool:
-    """Whether positive values spread so far that a logarithmic axis shows them better."""
-    low, high = np.quantile(values, (0.005, 0.995)) if len(values) else (0.0, 0.0)
-    return bool(low > 0 and high > 30 * low)
+    """Whether positive values crowd so far down that a logarithmic axis shows them better."""
+    low, middle, high = np.quantile(values, (0.005, 0.5, 0.995)) if len(values) else (0.0,) * 3
+    return bool(low > 0 and high > 30 * low and middle - low < (high - low) / 4)
 
 
 def thinned(count: int, most: int = 1000) -> np.ndarray[Any, np.dtype[np.intp]]:

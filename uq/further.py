@@ -48,7 +48,10 @@ def study_of(path: Path, model: str | None = None) -> Study:
     study = study_from_text(text, f"{path}: its study", model).with_samples(samples)
     if study.identity != identity:
         change = what_changed(text, version, study)
-        raise InputError(f"{path}: was computed with another model ({change})")
+        raise InputError(
+            f"{path}: was computed with another model ({change}); run the study anew, into another"
+            " output or with --fresh"
+        )
     return study
 
 
@@ -93,7 +96,7 @@ def extend(path: Path, samples: int, model: str | None = None, **options: Any) -
     study = study_of(path, model)
     there = study.design.samples
     if samples < there:
-        raise InputError(f"--samples {samples}: {path} has {there} already")
+        raise InputError(f"--samples {samples}: {path} has {there} already; ask for more")
     problem = refusal_to_extend(study)
     if samples > there and problem:
         raise InputError(f"{path}: {problem}")
@@ -112,6 +115,7 @@ def rerun_failed(
     row_limit: float | None = None,
     progress: Report | None = None,
     say: Say = lambda _: None,
+    mixed: bool = False,
 ) -> xr.Dataset:
     """Compute the failed rows of a result again.
 
@@ -122,7 +126,7 @@ def rerun_failed(
     settings : dict
         Numerical settings other than the study's; the result says for each row whether it was
         computed with them, in the variable ``rerun``.
-    model, workers, scheduler, row_limit, progress, say
+    model, workers, scheduler, row_limit, progress, say, mixed
         As in `extend` and `uq.runner.run`.
 
     Returns
@@ -149,7 +153,7 @@ def rerun_failed(
         if getattr(changed, name) != getattr(study.settings, name)
     }
     plain = json.loads(json.dumps(differing))  # as it will be read again
-    with runner.kept(study, path, again=plain, say=say) as kept:
+    with runner.kept(study, path, again=plain, say=say, mixed=mixed) as kept:
         work = work_of(study)._replace(settings=changed)
         return runner.carry_out(work, workers, scheduler, None, progress, row_limit, kept)
 

@@ -29,6 +29,9 @@ MIN_ROWS = 64
 DUMMIES = 19
 """The largest of 19 is passed by one input in twenty that plays no part."""
 
+MOST_ROWS = {"delta": 20_000, "pawn": 20_000, "rbd-fast": 200_000, "quantile": 200_000}
+"""More rows would sharpen these by less than a hundredth, and take minutes for each output."""
+
 _HARMONICS = 10
 _TIED = 0.01
 
@@ -60,13 +63,17 @@ def given_data_indices(
         Too few rows, a constant output, one with repeated values where a density is needed, one
         that is no event where it must be.
     """
-    kept = np.isfinite(values)
-    y = values[kept]
-    if len(y) < MIN_ROWS:
-        raise RefusedError(f"only {len(y)} of {len(kept)} rows have a value; {MIN_ROWS} are needed")
-    if is_constant(y):
+    kept = np.flatnonzero(np.isfinite(values))
+    if (n := len(kept)) < MIN_ROWS:
+        raise RefusedError(f"only {n} of {len(values)} rows have a value; {MIN_ROWS} are needed")
+    if is_constant(values[kept]):
         raise RefusedError("the same value in all rows: nothing depends on the inputs")
-    x = {parameter: column[kept] for parameter, column in x.items()}
+    thinned: tuple[str, ...] = ()
+    if n > (most := MOST_ROWS.get(method, n)):
+        # At random: imported rows may come in an order that means something.
+        kept = np.sort(np.random.default_rng(0).choice(kept, most, replace=False))
+        thinned = (f"from {most} of {n} rows, chosen at random: all would take minutes",)
+    y, x = values[kept], {parameter: column[kept] for parameter, column in x.items()}
     if method == "hdmr":
         return hdmr_indices(x, y)
     idle = np.random.default_rng(0).random((len(y), DUMMIES))
@@ -82,7 +89,9 @@ def given_data_indices(
         for kind, one in found.items()
     }
     return Indices(
-        values_of, notes, dummy={k: float(one[len(x) :].max()) for k, one in found.items()}
+        values_of,
+        thinned + notes,
+        dummy={k: float(one[len(x) :].max()) for k, one in found.items()},
     )
 
 

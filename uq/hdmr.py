@@ -64,8 +64,10 @@ def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
             f"only {len(y)} rows have a value; {2 * MIN_ROWS} are needed, half of them held out"
         )
     names = [*x, ""]
-    columns = np.column_stack([*x.values(), np.random.default_rng(0).random(len(y))])[:n]
-    y = (y[:n] - y[:n].mean()) / y[:n].std()
+    rng = np.random.default_rng(0)
+    chosen = rng.permutation(len(y))[:n]  # imported rows may come in an order that means something
+    columns = np.column_stack([*(column[chosen] for column in x.values()), rng.random(n)])
+    y = (y[chosen] - y[chosen].mean()) / y[chosen].std()
     half = n // 2
     degree, explained = 0, float("-inf")
     for candidate in _DEGREES:

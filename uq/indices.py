@@ -15,12 +15,14 @@ from uq.given_data import given_data_indices
 from uq.independent_inputs import are_dependent, independent_inputs, notes_on_inputs
 from uq.morris import morris_indices, trajectories
 from uq.regimes_of import within_regime
+from uq.shapley import paths, shapley_indices
 from uq.sobol import crossed, sobol_indices
 from uq.targets import Index, Indices, RefusedError, Target, category_targets, targets
 
 _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
     "sobol": (crossed, sobol_indices),
     "morris": (trajectories, morris_indices),
+    "shapley": (paths, shapley_indices),
     "fast": (curves, fast_indices),
 }
 """Methods whose rows belong together: what finds them in a result, and the estimate from them."""
@@ -117,6 +119,12 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
     ------
     InputError
         When the design cannot feed the method.
+
+    Examples
+    --------
+    >>> found = uq.sensitivity(uq.run("studies/ishigami.toml"))
+    >>> found["ST"].sel(output="y").to_series().round(2).to_dict()  # 0.558, 0.442, 0.244
+    {'x1': 0.56, 'x2': 0.45, 'x3': 0.25}
     """
     name, found = _estimate(ds, method, None)
     estimated = [one.indices for one in found if not isinstance(one.indices, str)]

@@ -8,8 +8,10 @@ from matplotlib.figure import Figure
 from uq.conditioning import cdf_within
 from uq.distributions import Law
 from uq.elements import Floats
-from uq.figure import COLOURS, WIDTH, is_wide, logarithmic, roomy, sentence, styled
+from uq.figure import COLOURS, WIDTH, is_wide, logarithmic, named_input, roomy, sentence, styled
 from uq.realised import EVERYWHERE, stated_and_realised
+
+_IN_ONE_COLUMN = 3  # inputs
 
 
 @styled
@@ -29,21 +31,26 @@ def inputs(ds: xr.Dataset) -> Figure | None:
     found = stated_and_realised(ds)
     if not found:
         return None
-    figure = Figure(figsize=(WIDTH, 0.3 + 1.4 * len(found)), layout="constrained")
-    panels = figure.subplots(len(found), squeeze=False)[:, 0]
-    for axes, (name, (law, values)) in zip(panels, found.items(), strict=True):
-        _panel(axes, law, values)
-        attrs = ds[name].attrs
-        meaning, unit = attrs["long_name"], attrs["units"]
-        if law.times is not None:
-            meaning, unit = f"{meaning}: factor on {law.times}", ""
-        axes.set_xlabel(sentence(meaning, unit))
+    columns = 1 if len(found) <= _IN_ONE_COLUMN else 2
+    lines = -(-len(found) // columns)
+    figure = Figure(figsize=(WIDTH, 0.3 + 1.4 * lines), layout="constrained")
+    panels = figure.subplots(lines, columns, squeeze=False).ravel()
+    for axes in panels[len(found) :]:
+        axes.set_axis_off()
+    for axes, (name, (law, values)) in zip(panels, found.items(), strict=False):
+        _panel(axes, law, values, ticks=6 // columns)
+        width = 44 // columns
+        if law.times is None:
+            axes.set_xlabel(named_input(ds[name], width))
+        else:
+            factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
+            axes.set_xlabel(sentence(factor, width=width))
     rows = len(next(iter(found.values()))[1])
     panels[0].set_title(f"Share per bin of {rows} rows; line: as stated", loc="left")
     return figure
 
 
-def _panel(axes: Axes, law: Law, values: Floats) -> None:
+def _panel(axes: Axes, law: Law, values: Floats, ticks: int) -> None:
     wide = is_wide(values)
     scaled = np.log10(values) if wide else values
     count = min(len(np.histogram_bin_edges(scaled, "scott")) - 1, 60)
@@ -58,6 +65,6 @@ def _panel(axes: Axes, law: Law, values: Floats) -> None:
     axes.stairs(rows, edges, fill=True, color=COLOURS[4])
     axes.stairs(stated, edges, color=COLOURS[1], lw=1.2)
     axes.set_ylim(0, None)
-    roomy(axes)
+    roomy(axes, ticks)
     if wide:
         logarithmic(axes)

@@ -210,10 +210,10 @@ def quantile_interval(
     if n == 0:
         return UNKNOWN
     if replicate is None:
-        law, upper = stats.binom(n, probability), _upper_tail(confidence)
+        tail = 1 - _upper_tail(confidence)  # a frozen law would cost more than the rest
         return Interval(
-            order_statistic(values, int(law.ppf(1 - upper))),
-            order_statistic(values, int(law.isf(1 - upper)) + 1),
+            order_statistic(values, int(stats.binom.ppf(tail, n, probability))),
+            order_statistic(values, int(stats.binom.isf(tail, n, probability)) + 1),
         )
     value = quantile(values, probability)
     below = values <= value if np.isfinite(value) else values < value

@@ -1,7 +1,7 @@
 """Rows computed in a process of their own, which they may crash or never leave.
 
-Rows that do so are computed again one by one: the guilty ones get a status and a sentence, the
-others the values that they have anywhere.
+Rows that do so are computed again in parts, down to single ones: the guilty ones get a status and a
+sentence, the others the values that they have anywhere.
 """
 
 import signal
@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
+from math import ceil
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any, cast
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq import child
+from uq.code import code_of
 from uq.contract import Status
 from uq.environment import command, inherited
 from uq.errors import RunError
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 
 # Somebody else may have killed a process: three, that of its chunk included, make a row guilty.
 _SINGLE_CRASHES = 2
+_PARTS = 8  # of rows that crashed: more would be small for kernels, fewer would crash more often
 _STARTS = 3
 _FIRST_SECONDS = 2.0  # a first call loads compiled code
 _DYING_SECONDS = 5.0
@@ -43,7 +46,8 @@ Evaluate = Callable[[NDArray[np.float64], NDArray[np.uint64], int], Chunk]
 def task_of(work: "Work") -> child.Task:
     """Return what a process that computes rows of some work is told beforehand."""
     settings = tuple(asdict(work.settings).items())
-    return child.Task(work.model_reference, work.model.version, settings, work.output)
+    code = code_of(work.model_reference)
+    return child.Task(work.model_reference, work.model.version, settings, work.output, code)
 
 
 @contextmanager
@@ -102,8 +106,13 @@ class Isolated:
         chunk = self._ask(child.Request(x, seed, start))
         if isinstance(chunk, Chunk):
             return chunk
-        rows = range(len(x))
-        return joined([self._single(x[i : i + 1], seed[i : i + 1], start + i) for i in rows])
+        if len(x) == 1:
+            return self._single(x, seed, start)
+        # A time that is over costs more than rows that are taken singly.
+        size = ceil(len(x) / _PARTS) if chunk.status is Status.CRASHED else 1
+        parts = range(0, len(x), size)
+        part = self.evaluate if size > 1 else self._single
+        return joined([part(x[i : i + size], seed[i : i + size], start + i) for i in parts])
 
     def _single(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
         """Run one row on its own, so that it is known who is guilty."""

@@ -6,8 +6,9 @@ computes them changes no bit of the result.
 
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import ceil
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from uq.evaluate import Chunk, KernelError
@@ -42,12 +43,22 @@ class Progress(NamedTuple):
         Rows.
     found : int
         Rows among those done that were there from the start.
+    status : dict of str to int
+        Status label -> rows.
+    medians, shares : dict of str to float
+        Of lives [s] and regimes, among the rows that arrived in this process.
+    dashboard : str
+        Address of the page of a dask cluster, or "".
     """
 
     done: int
     total: int
     failed: int
     found: int = 0
+    status: Mapping[str, int] = MappingProxyType({})
+    medians: Mapping[str, float] = MappingProxyType({})
+    shares: Mapping[str, float] = MappingProxyType({})
+    dashboard: str = ""
 
 
 Report = Callable[[Progress], object]
@@ -99,6 +110,7 @@ class Job:
         self._rows = sum(b - a for a, b in self._todo)
         self._untaken = self._left = self._rows
         self._row_seconds = 0.0
+        self._dashboard = ""
 
     @property
     def complete(self) -> bool:
@@ -141,6 +153,7 @@ class Job:
 
     def finish_on(self, crew: "Workers") -> None:
         """Run the other rows on workers, and here while none of our own is there."""
+        self._dashboard = crew.dashboard
         flight = Flight(self.work, task_of(self.work), crew, self._row_limit)
         while not self.complete:
             threads = crew.threads
@@ -178,17 +191,20 @@ class Job:
 
     def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
         self.store.add(start, some, chunk)
+        self.store.glimpse.see(chunk)
         self._left -= len(some.x)
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
             raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")
+        self.tell()  # at once: an interrupt says how many rows are kept
         self.store.keep_up()
-        self.tell()
 
     def tell(self) -> None:
         """Report how far the run is."""
         store = self.store
-        self.report(Progress(store.done, store.total, store.failed, store.found))
+        seen = store.glimpse.medians, store.glimpse.shares
+        counts = store.done, store.total, store.failed, store.found, dict(store.status)
+        self.report(Progress(*counts, *seen, self._dashboard))
 
     def _chunk_rows(self) -> int:
         most = _CHUNK_BYTES // row_bytes(self.work)

@@ -55,6 +55,14 @@ def life_fits(ds: xr.Dataset, output: str) -> dict[str, dict[str, Any]]:
     ----------
     .. [1] J. F. Lawless, "Statistical models and methods for lifetime data", 2nd ed., Wiley
        (2003), sections 5.1.2 and 10.3.
+
+    Examples
+    --------
+    >>> laws = uq.life_fits(uq.run("studies/exponential-wear.toml"), "life")["life"]
+    >>> round(laws["lognormal"]["parameters"]["sigma"]["value"], 1)
+    0.5
+    >>> "refused" in laws["weibull"]
+    True
     """
     rows = independent_rows(ds)
     independent = replicates_of(rows) is None

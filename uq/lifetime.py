@@ -40,6 +40,14 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     ----------
     .. [1] S. Sawyer, "The Greenwood and exponential Greenwood confidence intervals in survival
        analysis" (2003).
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/exponential-wear.toml")
+    >>> curve = uq.survival(ds, "life")
+    >>> half = curve.sel(time=1e6, method="ffill")  # the median is known
+    >>> bool(half["low"] < 0.5 < half["high"])
+    True
     """
     rows = independent_rows(ds)
     chosen = lifetimes(rows, output)

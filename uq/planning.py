@@ -1,14 +1,16 @@
 """What a study will cost: a few of its rows are run, spread over all of them."""
 
 import time
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
-from math import ceil
-from queue import SimpleQueue
+from math import ceil, gcd
+from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy import special
 
 from uq import computing, results
 from uq.errors import InputError
@@ -27,6 +29,7 @@ PILOT_SECONDS = 8.0
 _FIRST_ROWS = 16
 _FILE_BYTES = 30_000  # names, units, the study
 _CHUNKS_AT_LEAST = 2  # per process
+_GOLDEN = (5**0.5 - 1) / 2
 # What a run does beside its rows takes this many times the start of a process: a busy computer is
 # slow in both.
 _RUN_STARTS = 6.0
@@ -46,6 +49,8 @@ class Cost(NamedTuple):
         Time of one process for one row [s].
     seconds : float
         From start to result, once the model is compiled [s].
+    seconds_low, seconds_high : float
+        95 % interval of it, as far as rows cost more than others [s].
     result_bytes : int
         The result.
     run_bytes : int
@@ -57,6 +62,8 @@ class Cost(NamedTuple):
     pilot_rows: int
     row_seconds: float
     seconds: float
+    seconds_low: float
+    seconds_high: float
     result_bytes: int
     run_bytes: int
 
@@ -89,18 +96,32 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
         began = time.perf_counter()
         crew[0].start()
         start_seconds = time.perf_counter() - began
-        some, chunks, row_seconds = _sample(work, crew, _warm_up(work, crew))
+        some, chunks, row = _sample(work, crew, _warm_up(work, crew))
     kept = row_bytes(study) * work.total
     constants = len(study.model.parameter_names) - len(study.uncertain)
     size = _FILE_BYTES + kept - 8 * constants * work.total  # a constant is one number in the result
-    alone = row_seconds * work.total
+    alone = row.seconds * work.total
     if workers is None and alone < computing.SHORT_SECONDS:
         processes = 1
     starts = _RUN_STARTS + (_WORKERS_STARTS if workers or processes > 1 else 0.0)
-    seconds = alone / processes + starts * start_seconds
+    beside = starts * start_seconds
+    low, seconds, high = (
+        alone / processes * share + beside
+        for share in (max(0.0, 1 - row.error), 1.0, 1 + row.error)
+    )
     chunk = joined(chunks)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
-    cost = Cost(work.total, processes, len(rows.x), row_seconds, seconds, size, kept + size)
+    cost = Cost(
+        rows=work.total,
+        workers=processes,
+        pilot_rows=len(rows.x),
+        row_seconds=row.seconds,
+        seconds=seconds,
+        seconds_low=low,
+        seconds_high=high,
+        result_bytes=size,
+        run_bytes=kept + size,
+    )
     failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
     return cost, results.build(study, rows, chunk.columns, chunk.status, failures)
 
@@ -117,32 +138,54 @@ def _warm_up(work: Work, crew: list[Isolated]) -> float:
 
 def _sample(
     work: Work, crew: list[Isolated], row_seconds: float
-) -> tuple[list[Rows], list[Chunk], float]:
-    """Return rows spread over the study, what became of them, and the time of a row.
+) -> tuple[list[Rows], list[Chunk], "_RowCost"]:
+    """Return rows spread over the study, what became of them, and what a row costs.
 
     They are cut as a run cuts them: rows that are computed together may share work.
     """
     size = chunk_rows(work, row_seconds)
-    chunks = ceil(PILOT_SECONDS * len(crew) / (size * row_seconds))
-    chunks = max(chunks, _CHUNKS_AT_LEAST * len(crew))
-    if chunks * size >= work.total:
-        starts = list(range(0, work.total, size))
-    else:
-        groups = np.linspace(0, (work.total - size) // work.group, chunks).astype(int)
-        starts = [int(group) * work.group for group in groups]
-    idle: SimpleQueue[Isolated] = SimpleQueue()
-    for process in crew:
-        idle.put(process)
+    chunks = ceil(work.total / size)
+    starts = [index * size for index in _spread(chunks)]
+    least, end = _CHUNKS_AT_LEAST * len(crew), time.perf_counter() + PILOT_SECONDS
+    done: dict[int, tuple[Rows, Chunk, float]] = {}
+    turn = Lock()
 
-    def compute(start: int) -> tuple[Rows, Chunk, float]:
-        rows = work.block(start, min(start + size, work.total))
-        process = idle.get()
-        began = time.perf_counter()
-        chunk = process.evaluate(rows.x, rows.seed, start)
-        seconds = time.perf_counter() - began
-        idle.put(process)
-        return rows, chunk, seconds
+    def compute(process: Isolated) -> None:
+        while True:
+            with turn:
+                taken = len(starts)
+                if not taken or (chunks - taken >= least and time.perf_counter() > end):
+                    return
+                start = starts.pop()
+            rows = work.block(start, min(start + size, work.total))
+            began = time.perf_counter()
+            chunk = process.evaluate(rows.x, rows.seed, start)
+            done[start] = rows, chunk, time.perf_counter() - began
 
     with ThreadPoolExecutor(len(crew)) as pool:
-        rows, done, seconds = zip(*pool.map(compute, starts), strict=True)
-    return list(rows), list(done), sum(seconds) / sum(len(some.x) for some in rows)
+        list(pool.map(compute, crew))
+    rows, found, seconds = zip(*(done[start] for start in sorted(done)), strict=True)
+    return list(rows), list(found), _row_cost(seconds, [len(some.x) for some in rows], chunks)
+
+
+def _spread(count: int) -> list[int]:
+    """Return 0..count-1 in an order, to be taken from its end, whose every part is spread out."""
+    stride = next(n for n in range(round(count * _GOLDEN), 0, -1) if gcd(n, count) == 1)
+    return [index * stride % count for index in range(count)][::-1]
+
+
+class _RowCost(NamedTuple):
+    """Time of one process for one row [s], and how far off it may be, as a share of it."""
+
+    seconds: float
+    error: float
+
+
+def _row_cost(seconds: Sequence[float], rows: Sequence[int], chunks: int) -> _RowCost:
+    """Return the cost of a row by some of the chunks, with the half-width of its 95 % interval."""
+    mean, m = sum(seconds) / sum(rows), len(seconds)
+    if m == chunks:
+        return _RowCost(mean, 0.0)
+    each = np.divide(seconds, rows)
+    deviation = each.std(ddof=1) / np.sqrt(m) * np.sqrt(1 - m / chunks)
+    return _RowCost(mean, float(special.stdtrit(m - 1, 0.975) * deviation / mean))

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from uq.elements import flags
-from uq.errors import InputError, nearest
+from uq.errors import InputError, choices, nearest
 from uq.results import failed
 
 
@@ -29,7 +29,9 @@ def within_regime(ds: xr.Dataset, regime: str) -> xr.Dataset:
         When the result has no regimes, not this one, or no row in it.
     """
     if "regime" not in ds:
-        raise InputError(f"this result has no regimes: '{regime}' means nothing here")
+        raise InputError(
+            f"this result has no regimes: '{regime}' means nothing here; leave out --regime"
+        )
     codes = {label: code for code, label in flags(ds["regime"]) if code >= 0}
     if regime not in codes:
         known = list(codes)
@@ -38,5 +40,9 @@ def within_regime(ds: xr.Dataset, regime: str) -> xr.Dataset:
         )
     found = ds["regime"].values == codes[regime]
     if not found.any():
-        raise InputError(f"no row is in the regime '{regime}'")
+        there = np.unique(ds["regime"].values)
+        occurring = [label for label, code in codes.items() if code in there]
+        raise InputError(
+            f"no row is in the regime '{regime}' (there are rows in: {choices(occurring)})"
+        )
     return ds.isel(sample=np.flatnonzero(found | ((ds["regime"].values < 0) & failed(ds))))

@@ -49,6 +49,12 @@ def find_model(reference: str) -> Model:
     return _load(installed[reference], f"model '{reference}'")
 
 
+def module_of(reference: str) -> str:
+    """Return the full name of the module in which a model lives; see `find_model`."""
+    point = _entry_points().get(reference)
+    return (point.value if point else reference).partition(":")[0]
+
+
 def _entry_points() -> dict[str, EntryPoint]:
     return {point.name: point for point in entry_points(group=GROUP)}
 
@@ -61,8 +67,12 @@ def _load(point: EntryPoint, label: str) -> Model:
         found = getattr(importlib.import_module(module_name), attribute)
     except (Exception, SystemExit) as error:
         reason = " ".join(str(error).split())
+        remedy = ""
+        if isinstance(error, ModuleNotFoundError):
+            remedy = "; install it, or name its folder in PYTHONPATH"
         raise InputError(
             f"{label} cannot be imported from {point.value}: {type(error).__name__}: {reason}"
+            f"{remedy}"
         ) from error
     if not isinstance(found, Model):
         raise InputError(

@@ -16,10 +16,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from uq.code import made_here
 from uq.columns import censored_name, failed_rows
 from uq.contract import Model, Status
 from uq.designs import DESIGNS, block_names
-from uq.errors import InputError
+from uq.errors import InputError, choices, nearest
 from uq.provenance import provenance
 from uq.soundness import unsound
 
@@ -136,7 +137,7 @@ def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
         yield f"{variable.name}[{label}]" if label else str(variable.name), variable.isel(place)
 
 
-def open_result(path: str | Path) -> xr.Dataset:
+def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") -> xr.Dataset:
     """Open a result and check its schema.
 
     One that takes less than 200 MB is read into memory, and its file closed; what is larger is
@@ -145,6 +146,8 @@ def open_result(path: str | Path) -> xr.Dataset:
     Parameters
     ----------
     path : str or Path
+    remedy : str, optional
+        What an error line says can be done.
 
     Returns
     -------
@@ -154,12 +157,28 @@ def open_result(path: str | Path) -> xr.Dataset:
     ------
     InputError
         When the file does not exist, is not netCDF, or is not a result of this schema version.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/ishigami.toml")
+    >>> uq.open_result("results/ishigami.nc").identical(ds)
+    True
     """
     path = Path(path)
     if not path.exists():
-        raise InputError(f"{path}: no such file")
+        raise InputError(f"{path}: no such file{_others(path)}; {remedy}")
     if path.is_dir():
-        raise InputError(f"{path}: is a folder, not a result")
+        raise InputError(f"{path}: is a folder, not a result{_others(path / '_')}; {remedy}")
+    try:
+        ds = _opened(path)
+        check(ds, path)
+    except InputError as error:
+        raise InputError(f"{error}; {remedy}") from None
+    ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
+    return ds
+
+
+def _opened(path: Path) -> xr.Dataset:
     try:
         ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False)
         if ds.nbytes > _INFLATED_BYTES + _INFLATION * path.stat().st_size:
@@ -171,11 +190,15 @@ def open_result(path: str | Path) -> xr.Dataset:
         if ds.nbytes < _IN_MEMORY_BYTES:
             with ds:
                 ds.load()
+        return ds
     except UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file") from None
-    check(ds, path)
-    ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
-    return ds
+
+
+def _others(path: Path) -> str:
+    """Return which results there are in the folder of a path that is none."""
+    there = sorted(one.name for one in path.parent.glob("*.nc"))
+    return nearest(path.name, there) or (f" (there: {choices(there)})" if there else "")
 
 
 def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
@@ -218,7 +241,8 @@ def relabel(ds: xr.Dataset, study: "Study") -> xr.Dataset:
 
     Comments, sources and [analysis] of a study may change without a row being computed again.
     """
-    made = {name: ds.attrs[name] for name in provenance() if name in ds.attrs}
+    here = made_here(study.model_reference)
+    made = {name: ds.attrs[name] for name in here if name in ds.attrs}
     ds = ds.assign_attrs(_attributes(study) | made)
     for name, entry in (dict(study.uncertain) | dict(study.tied)).items():
         ds[name].attrs["source"] = entry.source or study.model.parameter(name).source
@@ -315,7 +339,7 @@ def _attributes(study: "Study") -> dict[str, Any]:
             "second_order": int(design.second_order),
             "seed": design.seed,
         }
-        | provenance()
+        | made_here(study.model_reference)
     )
 
 

@@ -34,6 +34,7 @@ def run(
     fresh: bool = False,
     progress: Report | None = None,
     say: Callable[[str], object] = lambda _: None,
+    mixed: bool = False,
 ) -> xr.Dataset:
     """Run a study and write its result, or return the result that is already there.
 
@@ -62,6 +63,8 @@ def run(
         Called with a `Progress` as rows arrive.
     say : callable, optional
         Called with a line for the user: what was found on disk.
+    mixed : bool
+        Go on also with rows that other code of the model computed.
 
     Returns
     -------
@@ -76,13 +79,19 @@ def run(
         When the model does not keep its contract.
     RunError
         When no result can be had: workers that die, a disk that is full.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/ishigami.toml")  # in results/ishigami.nc, too
+    >>> ds.sizes["sample"]
+    10240
     """
     if not isinstance(study, Study):
         study = load_study(study)
     path, until = output_path(study, output), _until(study)
     if not fresh and (found := finished(study, path)) is not None:
         return found
-    with kept(study, path, fresh, say=say) as there:
+    with kept(study, path, fresh, say=say, mixed=mixed) as there:
         options = (workers, scheduler, chunk_rows, progress, row_limit)
         return carry_out(work_of(study), *options, there, until)
 
@@ -94,11 +103,12 @@ def kept(
     fresh: bool = False,
     again: Mapping[str, Any] | None = None,
     say: Callable[[str], object] = lambda _: None,
+    mixed: bool = False,
 ) -> Iterator[store.DiskStore]:
     """Keep the rows of a run on disk, if there is room for them; see `uq.store.keep`."""
     needed = 2 * store.row_bytes(study) * rows(study)  # the rows, and the result made from them
     store.check_target(path, needed - store.size_kept(path))
-    with store.keep(study, path, fresh, again, say) as there:
+    with store.keep(study, path, fresh, again, say, mixed) as there:
         yield there
 
 
@@ -122,10 +132,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     if not os.path.isfile(path):  # nor can it be seen
         return None
     remedy = "choose another output, or overwrite it with --fresh"
-    try:
-        ds = results.open_result(path)
-    except InputError as error:
-        raise InputError(f"{error}; {remedy}") from None
+    ds = results.open_result(path, remedy)
     if ds.attrs["study_identity"] != study.identity:
         change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
         raise InputError(f"{path}: holds the result of another study ({change}); {remedy}")

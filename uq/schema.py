@@ -82,17 +82,18 @@ def _when(table: str, key: str, value: str, then: dict[str, Schema]) -> Schema:
 
 def _model_schema(model: Model) -> dict[str, Schema]:
     known_outputs = {"enum": list(model.outputs)}
+    settings = _table(
+        {name: _setting(model, name, kind) for name, kind in setting_types(model).items()}
+    )
     return {
         "fixed": _table({name: _fixed(model, name) for name in model.parameter_names}),
         "uncertain": _table({name: _uncertain(model, name) for name in model.parameter_names}),
-        "settings": _table(
-            {name: _setting(model, name, kind) for name, kind in setting_types(model).items()}
-        ),
+        "settings": settings,
         "analysis": {
             "properties": {
                 "outputs": {"items": known_outputs},
                 "thresholds": {"propertyNames": known_outputs},
-                "twin": {"enum": ["", *model.cheap]},
+                "twin": {"anyOf": [{"enum": ["", *model.cheap]}, {"type": "object", **settings}]},
             }
         },
     }

@@ -48,6 +48,11 @@ def simulate(
     ------
     InputError
         When a name is unknown or a value not admissible.
+
+    Examples
+    --------
+    >>> uq.simulate("linear", {"x1": 0.25})["y"].item()  # x1 + 2 x2 + 3 x3 + 4 x4
+    4.75
     """
     model = find_model(model) if isinstance(model, str) else model
     given = dict(parameters or {})

@@ -108,9 +108,17 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     pandas.DataFrame
         Index: name of the element. Columns: units, mean, sd and each quantile, with ``_low`` and
         ``_high`` for the 95 % interval; tolerance bounds, where the study asks for them, with the
-        rows they need; counts of rows never, censored, undefined and failed; and for each
-        threshold ``P(>t)`` and ``P(<t)`` with their intervals, where it is one of the output's.
+        rows they need; counts of rows never, censored, undefined and failed; ``B1``, ``B10`` and
+        ``B50`` of lifetimes; and for each threshold ``P(>t)`` and ``P(<t)`` with their intervals,
+        where it is one of the output's.
         Infinity stands for never, NaN for what could not be given.
+
+    Examples
+    --------
+    >>> table = uq.summary(uq.run("studies/ishigami.toml"))
+    >>> line = table.loc["y"]
+    >>> bool(line["mean_low"] < 3.5 < line["mean_high"])  # the mean is known
+    True
     """
     lines = {name: _line(entry) for name, entry in summarise(ds)["outputs"].items()}
     return pd.DataFrame(list(lines.values()), index=pd.Index(list(lines), name="output"))
@@ -126,6 +134,8 @@ def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
     if bounds := entry["tolerance"]:
         line |= _cells("tolerance", bounds)
     line |= {count: entry[count] for count in _COUNTS}
+    for name, life in entry["b_lives"].items():
+        line |= _cells(name, life)
     for threshold, shares in entry["thresholds"].items():
         line |= _cells(f"P(>{threshold})", shares["above"])
         line |= _cells(f"P(<{threshold})", shares["below"])

@@ -157,6 +157,12 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
     ------
     InputError
         Everything that is wrong with the file, one line each.
+
+    Examples
+    --------
+    >>> study = uq.load_study("studies/ishigami.toml")
+    >>> study.design.samples, list(study.uncertain)
+    (256, ['x1', 'x2', 'x3'])
     """
     return study_from_text(_read(Path(path)), str(path), model, Path(path).parent)
 
@@ -252,7 +258,8 @@ def _read(path: Path) -> str:
     except FileNotFoundError:
         folder = path.parent
         files = [entry.name for entry in folder.glob("*.toml")] if folder.is_dir() else []
-        raise InputError(f"{path}: no such file{nearest(path.name, files)}") from None
+        remedy = nearest(path.name, files) or f"; 'uq init MODEL > {path.name}' writes one to edit"
+        raise InputError(f"{path}: no such file{remedy}") from None
     except IsADirectoryError:
         raise InputError(f"{path}: is a directory; a study is a TOML file") from None
     except UnicodeDecodeError as error:

@@ -69,6 +69,12 @@ def _needs_table(value: Any) -> Any:
     return value
 
 
+def _name_or_settings(value: Any) -> Any:
+    if not isinstance(value, str | dict):
+        raise ValueError("must name an output, or be a table of settings, such as {modes = 4}")
+    return value
+
+
 _LIST = BeforeValidator(_tuple)
 _DISTINCT = AfterValidator(_distinct)
 Share = Annotated[float, Field(gt=0, lt=1)]
@@ -217,8 +223,10 @@ class AnalysisTable(_Table):
             _DISTINCT,
         ],
     ] = Field({}, description="output = t: probability of lying above and below t")
-    twin: str = Field(
-        "", description="cheap output whose many rows sharpen the estimates, monte-carlo only"
+    twin: Annotated[str | dict[str, Any], BeforeValidator(_name_or_settings)] = Field(
+        "",
+        description="a cheap output, or settings that make rows cheap: many such rows sharpen the"
+        " estimates, monte-carlo only",
     )
     sensitivity: Annotated[
         tuple[Annotated[str, _one_of("method", METHODS)], ...], _LIST, _DISTINCT

@@ -1,7 +1,11 @@
-"""Two fidelities: the rows of a result, and many more of a cheap output of the same model."""
+"""Two fidelities: the rows of a result, and many more of a cheap twin of the same model.
+
+The twin is an output that the model can compute alone, or the same outputs under settings that make
+a row cheap, such as fewer modes.
+"""
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -14,21 +18,28 @@ from uq.elements import Element, elements_of, shown_outputs
 from uq.errors import InputError
 from uq.evaluate import evaluate
 from uq.intervals import Interval, mean_interval, share_interval
+from uq.literals import toml
 from uq.results import build_rows
 from uq.sampling import row_block, row_seeds, rows
 from uq.statistics import event
 from uq.study import Study, study_from_text
+from uq.values import read_settings
 
 MOST_ROWS = 1_000_000
-"""Cheap rows at most; a hundred for each row of the result if that is less."""
+"""Rows of the twin at most."""
 
-_PER_ROW = 100
+PER_ROW = 100
+"""Rows of a cheap output for each row of the result."""
+
+PER_ROW_OF_SETTINGS = 10
+"""Rows under other settings for each row of the result: they cost more."""
+
 _BLOCK = 65_536
 Floats = NDArray[np.float64]
 
 
 def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
-    """Estimate means and probabilities with the help of a cheap output of the same model.
+    """Estimate means and probabilities with the help of a cheap twin of the same model.
 
     Parameters
     ----------
@@ -82,19 +93,22 @@ def with_twin(ds: xr.Dataset, model: str | None = None) -> dict[str, Any]:
         cheap = ", ".join(study.model.cheap) or "none"
         raise InputError(
             "the study names no twin: [analysis] twin = NAME of an output that model"
-            f" '{study.model.name}' can compute alone ({cheap})"
+            f" '{study.model.name}' can compute alone ({cheap}), or a table of settings that make"
+            " its rows cheap"
         )
     study = study.with_samples(int(ds.attrs["samples"]))
     here = _twin_of(study, _inputs(ds, study), _seeds(ds, study))
     many = _many(study, ds.sizes["sample"])
-    outputs = [name for name in shown_outputs(ds, study.analysis) if name != study.analysis.twin]
+    twin = study.analysis.twin
+    outputs = [name for name in shown_outputs(ds, study.analysis) if name != twin]
     found = {}
     for element in elements_of(ds, outputs):
         for control, others in zip(here, many, strict=True):
-            if control.place.items() <= element.place.items():
+            same = control.name == element.name
+            if same or (control.output == twin and control.place.items() <= element.place.items()):
                 found[element.name] = dict(_estimates(element, control, others, study))
     return {
-        "twin": study.analysis.twin,
+        "twin": twin if isinstance(twin, str) else toml(twin),
         "rows": ds.sizes["sample"],
         "cheap_rows": len(many[0].values),
         "outputs": {name: entry for name, entry in found.items() if entry},
@@ -155,7 +169,8 @@ def _seeds(ds: xr.Dataset, study: Study) -> NDArray[np.uint64]:
 
 def _many(study: Study, start: int) -> list[Element]:
     """Return the twin of the rows that would come next in the study: independent of all others."""
-    wanted = min(_PER_ROW * start, MOST_ROWS)
+    per_row = PER_ROW if isinstance(study.analysis.twin, str) else PER_ROW_OF_SETTINGS
+    wanted = min(per_row * start, MOST_ROWS)
     per_sample = rows(study) // study.design.samples
     longer = study.with_samples(study.design.samples + -(-wanted // per_sample))
     parts = [
@@ -167,10 +182,16 @@ def _many(study: Study, start: int) -> list[Element]:
 
 
 def _twin_of(study: Study, x: Floats, seed: NDArray[np.uint64]) -> list[Element]:
-    alone = study.model.alone(study.analysis.twin)
-    chunk = evaluate(alone, study.settings, x, seed)
-    ds = build_rows(alone, study.settings, {}, chunk.columns, chunk.status, {})
-    return list(elements_of(ds, [study.analysis.twin]))
+    model, settings, twin = study.model, study.settings, study.analysis.twin
+    outputs: tuple[str, ...]
+    if isinstance(twin, str):
+        model, outputs = model.alone(twin), (twin,)
+    else:  # the same outputs, from rows that cost less
+        settings = read_settings(model, asdict(settings) | twin)[0]
+        outputs = tuple(dict.fromkeys((*study.analysis.outputs, *study.analysis.thresholds)))
+    chunk = evaluate(model, settings, x, seed)
+    ds = build_rows(model, settings, {}, chunk.columns, chunk.status, {})
+    return list(elements_of(ds, outputs))
 
 
 def _joined(pieces: tuple[Element, ...]) -> Element:

@@ -7,13 +7,13 @@ import numpy as np
 import xarray as xr
 
 from uq import results
+from uq.code import made_here
 from uq.columns import censored_name
 from uq.contract import Status
 from uq.errors import InputError
 from uq.evaluate import evaluate
 from uq.further import changed_settings, study_of
 from uq.interrupts import in_background
-from uq.provenance import provenance
 from uq.sampling import row_block
 from uq.store.adopt import variants
 from uq.store.seal import is_intact
@@ -62,12 +62,11 @@ def checksum_holds(path: Path) -> bool | None:
         raise InputError(f"{path}: not a readable netCDF file") from None
 
 
-def other_versions(ds: xr.Dataset) -> list[Version]:
-    """Return what made a result and is another here: processor, Python, libraries."""
-    made = {name: str(ds.attrs.get(name, "unknown")) for name in provenance()}
-    return [
-        Version(name, made[name], here) for name, here in provenance().items() if made[name] != here
-    ]
+def other_versions(ds: xr.Dataset, model: str | None = None) -> list[Version]:
+    """Return what made a result and is another here: processor, Python, libraries, model's code."""
+    pairs = made_here(model or ds.attrs["model"]).items()
+    found = [Version(name, str(ds.attrs.get(name, "unknown")), here) for name, here in pairs]
+    return [version for version in found if version.made != version.here]
 
 
 def recompute(path: Path, model: str | None = None) -> Recomputed:

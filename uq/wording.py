@@ -57,9 +57,9 @@ def known(entry: Entry, key: str = "value", per: float = 1.0) -> str:
 
 
 def interval(entry: Entry, per: float = 1.0) -> str:
-    """Return the ends of the interval of an entry; nothing where it has none."""
+    """Return the ends of the interval of an entry; nothing where it has none, or both never."""
     ends = [known(entry, end, per) if end in entry else "-" for end in ("low", "high")]
-    return "" if ends == ["-", "-"] else " to ".join(ends)
+    return "" if ends in (["-", "-"], ["never", "never"]) else " to ".join(ends)
 
 
 def law(stated: Any) -> str:

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import random
 import subprocess
 import tempfile
 from pathlib import Path
@@ -11,6 +12,8 @@ import pytest
 from conftest import MODEL, OUT, ROWS, until
 
 import uq
+
+RANDOM = random.Random(2026)
 
 
 @pytest.fixture
@@ -50,6 +53,17 @@ def test_a_damaged_chunk_file_is_computed_again(study, undisturbed, kept, call, 
 def test_a_missing_chunk_file_is_computed_again(study, undisturbed, kept, call, injected):
     kept[1].unlink()
     injected("chunk file missing")
+    assert call("run", study, *MODEL)[0] == 0
+    assert OUT.read_bytes() == undisturbed
+
+
+@pytest.mark.slow
+def test_rows_may_be_computed_in_any_order(study, undisturbed, under_way, call, injected):
+    for chunk_rows in (5, 3, 11):  # each time holes are left, and filled with other chunks
+        under_way(study, "--chunk-rows", chunk_rows, chunks=4).kill()
+        for file in RANDOM.sample(sorted(ROWS.glob("*.rows")), 3):
+            file.unlink()
+        injected("rows in another order, in other chunks")
     assert call("run", study, *MODEL)[0] == 0
     assert OUT.read_bytes() == undisturbed
 
@@ -152,17 +166,19 @@ def test_a_read_only_folder_is_refused(study, call, injected):
             code, said = call("run", closed / study.name, *MODEL, "-o", output, **as_nobody)
             assert code == 2, said
             injected("read-only folder")
-            assert said == f"{output}: cannot write in {closed}: Permission denied\n"
+            why = "Permission denied; choose another place with -o"
+            assert said == f"{output}: cannot write in {closed}: {why}\n"
         assert [path.name for path in closed.iterdir()] == [study.name]
         closed.chmod(0o700)
 
 
-def test_paths_with_blanks_and_accents(study, undisturbed, start, call, folder):
+def test_paths_with_blanks_and_accents(study, undisturbed, start, call, folder, injected):
     place = folder / "étude nº 1" / "mes résultats" / "durée de vie.nc"
     run = start("run", study, *MODEL, "-o", place, "--chunk-rows", "9", UQ_TEST_SECONDS="0.002")
     rows = place.with_name("durée de vie.nc.rows")
     until(lambda: list(rows.glob("*.rows")))
     run.kill()
+    injected("path with blanks and accents")
     assert call("run", study, *MODEL, "-o", place)[0] == 0
     assert place.read_bytes() == undisturbed
     assert call("verify", place, *MODEL[:2])[0] == 0

@@ -3,6 +3,8 @@
 import pytest
 from conftest import MODEL, OUT, ROWS, until
 
+import uq
+
 
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
@@ -85,3 +87,35 @@ def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call, 
     code, said = call("run", study, *MODEL)
     assert code == 2
     assert "a 'latin-hypercube' design cannot be extended: all its rows change" in said
+
+
+def test_rows_of_an_edited_model_are_mixed_on_request_alone(
+    study, under_way, call, folder, injected
+):
+    model = folder / "edited.py"
+    options = ("--model", "edited:MODEL", "--workers", "0")
+    model.write_text("from command import PATIENT as MODEL\n")
+    under_way(study, *options).kill()
+    model.write_text(model.read_text() + "# edited\n")
+    injected("code of the model edited between runs", 2)
+    refused = (
+        f"{OUT}: holds rows that other code of model 'patient' computed, whose version was left as "
+        "it was; start anew with uq run --fresh, or go on with --mixed\n"
+    )
+    before = {path.name for path in ROWS.iterdir()} - {"lock"}
+    assert call("run", study, *options) == (2, refused)
+    assert before == {path.name for path in ROWS.iterdir()}
+    assert call("run", study, *options, "--mixed", "--quiet") == (0, "")
+    old, new = uq.open_result(OUT).attrs["code"].split("; ")
+    code, said = call("verify", OUT, *options[:2])
+    assert code == 0
+    assert f"code  {old}; {new} made it, " in said
+    code, said = call("run", study, *options)
+    assert code == 0
+    assert "complete already, by other code of the model; nothing" in " ".join(said.split())
+    for verb in (("extend", OUT, "--samples", "1600"), ("rerun", OUT, "--failed")):
+        assert call(*verb, *options) == (2, refused)
+        assert not ROWS.exists()
+    assert call("extend", OUT, "--samples", "1600", *options, "--mixed", "--quiet") == (0, "")
+    assert call("run", study, *options, "--fresh", "--quiet") == (0, "")
+    assert len(uq.open_result(OUT).attrs["code"]) == 16

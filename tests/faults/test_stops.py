@@ -1,13 +1,17 @@
 """A run that is stopped, by whatever, goes on and gives the bits of one that is not."""
 
+import contextlib
 import json
 import random
 import re
 import shutil
 import signal
 
+import psutil
 import pytest
-from conftest import MODEL, OUT, ROWS, until
+from conftest import MODEL, OUT, PATIENCE, ROWS, until
+
+import uq
 
 RANDOM = random.Random(2026)
 
@@ -59,6 +63,47 @@ def test_kills_during_the_merge(write_study, start, call, injected, kills):
     shutil.copytree("copy", ROWS)
     assert "complete already" in call("run", study)[1]
     assert [path.name for path in OUT.parent.iterdir()] == [OUT.name]
+
+
+def wanting(half_width, text):
+    return text.replace("seed = 5", f"seed = 5\nuntil = {{output='y', half_width={half_width}}}")
+
+
+def test_kills_of_a_run_that_stops_when_it_knows_enough(study, under_way, call, injected):
+    study.write_text(wanting(0.03, study.read_text()))
+    assert call("run", study, *MODEL, "-o", "undisturbed.nc") == (0, "")
+    for _ in range(3):
+        under_way(study).kill()
+        injected("SIGKILL of a run that stops when it knows enough")
+    assert call("run", study, *MODEL) == (0, "")
+    assert 47 < uq.open_result(OUT).attrs["samples"] < 1500
+    assert OUT.read_bytes() == (OUT.parents[1] / "undisturbed.nc").read_bytes()
+
+
+LOOKS = (47, 94, 188, 375, 750, 1500)
+
+
+@pytest.mark.slow
+def test_another_wish_after_a_kill_changes_no_row(study, under_way, call, folder, injected):
+    plain = study.read_text()
+    assert call("run", study, *MODEL, "-o", "whole.nc") == (0, "")
+    whole = uq.open_result("whole.nc")
+    study.write_text(wanting(0.01, plain))
+    under_way(study, chunks=8).kill()
+    kept = json.loads(call("status", OUT, "--json")[1])["done"]
+    study.write_text(wanting(0.5, plain))  # known at the first look, which is past
+    injected("[design] until edited between runs", 2)
+    code, said = call("run", study, *MODEL[:-1])
+    assert code == 0
+    ended = uq.open_result(OUT)
+    size = ended.sizes["sample"]
+    assert size == min(look for look in LOOKS if look >= kept)
+    assert f"reached at look {1 + LOOKS.index(size)} of" in " ".join(said.split())
+    for name in ("x1", "x2", "y", "z", "status"):
+        assert ended[name].values.tobytes() == whole[name].values[:size].tobytes()
+    study.write_text(plain)  # no wish any more: all rows
+    assert call("run", study, *MODEL) == (0, "")
+    assert OUT.read_bytes() == (folder / "whole.nc").read_bytes()
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -129,7 +174,11 @@ def test_kills_with_workers_and_any_chunks(
     run = start("run", study, *options, UQ_TEST_SECONDS="0.002")
     until(lambda: list(ROWS.glob("*.rows")) or not run.process.is_alive())
     run.process.join(0.5)
+    family = []
+    with contextlib.suppress(psutil.NoSuchProcess):  # it is done already
+        family = psutil.Process(run.process.pid).children(recursive=True)
     run.kill()
-    injected("SIGKILL of a run")
+    injected("SIGKILL of a run with workers" if workers else "SIGKILL of a run")
+    assert psutil.wait_procs(family, PATIENCE)[1] == []
     assert call("run", study, *options)[0] == 0
     assert OUT.read_bytes() == undisturbed

@@ -1,6 +1,7 @@
 """Whatever happens to the processes that compute, the result is that of an undisturbed run."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from uq.errors import InputError
 from uq.evaluate import KernelError
 from uq.results import open_result
 from uq.study import load_study
+from uq.work import work_of
 
 COMMAND = Path(sys.executable).with_name("uq")
 PATIENCE = 60.0
@@ -122,6 +124,32 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monke
     assert "KilledWorker" in failed
     injected("worker killed three times on a chunk")
     assert ds.identical(undisturbed(study))
+
+
+class Unlucky(isolation.Isolated):
+    """A process that somebody kills twice while it computes."""
+
+    kills = 2
+
+    def _answer(self, connection, limit):
+        if self.kills:
+            self.kills -= 1
+            self._process.kill()
+        return super()._answer(connection, limit)
+
+
+def test_a_row_is_not_guilty_because_its_process_was_killed_twice(study_of, undisturbed, injected):
+    study = study_of(seconds=0.2, samples=2)
+    work = work_of(study)
+    process = Unlucky(isolation.task_of(work))
+    rows = work.block(0, 2)
+    try:
+        chunk = process.evaluate(rows.x, rows.seed)
+    finally:
+        process.close()
+    injected("process of a worker killed", 2)
+    assert chunk.status.tolist() == [Status.OK, Status.OK]
+    assert np.array_equal(chunk.columns["y"], undisturbed(study)["y"].values)
 
 
 FAULTS = {
@@ -234,9 +262,25 @@ def test_processes_with_a_cold_cache_agree(study_of, folder, injected):
 
 
 SURROUNDINGS = {
-    "decimal comma": {"LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8", "COLUMNS": "80"},
+    "decimal comma": {"LC_ALL": "de_DE.UTF-8", "COLUMNS": "80"},
     "plain": {"LC_ALL": "C", "LANG": "C", "NO_COLOR": "1", "TERM": "dumb"},
 }
+COMMA = """
+import locale
+locale.setlocale(locale.LC_ALL, "")
+assert format(1.5, "n") == "1,5"
+"""
+
+
+def with_decimal_comma(folder):
+    """Return the environment of processes that all write 1,5, where such a locale can be made."""
+    place, name = folder / "locale", SURROUNDINGS["decimal comma"]["LC_ALL"]
+    place.mkdir()
+    make = ["localedef", "-i", "de_DE", "-f", "UTF-8", place / name]
+    if shutil.which("localedef") is None or subprocess.run(make, capture_output=True).returncode:
+        return {}
+    (place / "sitecustomize.py").write_text(COMMA)
+    return {"LOCPATH": str(place), "PYTHONPATH": os.pathsep.join([str(place), *sys.path])}
 
 
 @pytest.mark.slow
@@ -244,8 +288,12 @@ SURROUNDINGS = {
 def test_surroundings_change_no_bit(study_of, undisturbed, folder, injected, surroundings):
     study = study_of("linear", samples=40, fail_how="nan", fail_above=0.95)
     expected = undisturbed(study)
-    environment = os.environ | SURROUNDINGS[surroundings]
-    environment |= {"PYTHONPATH": os.pathsep.join(sys.path)}
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    environment |= SURROUNDINGS[surroundings]
+    if surroundings == "decimal comma":
+        comma = with_decimal_comma(folder)
+        environment |= comma
+        injected("decimal comma", bool(comma))
     ended = subprocess.run(
         [COMMAND, "run", study.path, "--workers", "1"],
         env=environment,
@@ -255,8 +303,9 @@ def test_surroundings_change_no_bit(study_of, undisturbed, folder, injected, sur
         capture_output=True,
         timeout=PATIENCE,
     )
-    injected("decimal comma, plain terminal, closed input")
+    injected("no terminal, no colours, closed standard input")
     assert ended.returncode == 0, ended.stderr
+    assert b"Error" not in ended.stderr
     assert b"\x1b" not in ended.stdout + ended.stderr
     assert max(map(len, ended.stdout.decode().splitlines())) <= 80
     assert open_result(folder / "results" / "small.nc").identical(expected)
@@ -293,3 +342,12 @@ def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
     finally:
         stop.set()
         thread.join()
+
+
+@pytest.mark.slow
+def test_workers_that_can_start_no_process_end_the_run(study_of, monkeypatch, injected):
+    monkeypatch.setenv("UQ_TEST_WORKERS_CHILDREN_END", "1")
+    said = "no worker could compute rows .*: a process for the rows could not start: exit code 3"
+    injected("workers that can start no process")
+    with pytest.raises(cluster.RunError, match=said):
+        runner.compute(study_of(seconds=0.01), workers=1, chunk_rows=20)

@@ -95,12 +95,12 @@ def study(write_study):
     return load_study(path, FAULTY)
 
 
-def patiently(address, *arguments, **options):
+def patiently(address, *arguments, call=runner.compute, **options):
     """Run on a cluster that may still be starting."""
     end = time.monotonic() + PATIENCE
     while True:
         try:
-            return runner.compute(*arguments, scheduler=address, **options)
+            return call(*arguments, scheduler=address, **options)
         except InputError as error:
             if time.monotonic() > end or not (
                 "connect" in str(error) or "no workers" in str(error)
@@ -129,7 +129,7 @@ def test_workers_come_and_go(start, study, injected):
     assert there.scheduler.poll() is None
 
 
-def test_a_scheduler_that_dies_ends_the_run(start, study, monkeypatch, injected):
+def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, injected):
     monkeypatch.setattr(cluster, "_REMOTE_SECONDS", 2)
     there = start()
 
@@ -138,8 +138,12 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, monkeypatch, injected)
             there.end(there.scheduler)
 
     with pytest.raises(RunError, match=rf"^--scheduler {there.address}: the scheduler is gone$"):
-        patiently(there.address, study, chunk_rows=2, progress=kill)
+        patiently(there.address, study, "out.nc", call=runner.run, chunk_rows=2, progress=kill)
     injected("scheduler killed")
+    told = []
+    ds = runner.run(study, "out.nc", workers=0, progress=told.append)
+    assert told[0].found > 20
+    assert ds.identical(runner.compute(study, workers=0))
 
 
 def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch, injected):

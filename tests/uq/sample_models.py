@@ -258,3 +258,19 @@ PAIRED = _simple(
     cheap={"near": _near, "far": _far, "same": _same},
 )
 """Outputs that a cheap one of the same model tells much of, nothing of, or all of."""
+
+
+@dataclass(frozen=True)
+class Terms:
+    """How much of a series is summed."""
+
+    terms: Annotated[int, Setting("terms of the series", bounds=(1, 30))] = 20
+
+
+def _series(x, seed, settings):
+    total = sum(x[:, 0] ** k / math.factorial(k) for k in range(settings.terms))
+    return {"y": total + 0.3 * x[:, 1]}, ok(len(x))
+
+
+SERIES = _simple("series", _series, settings=Terms)
+"""y = exp(x1) + 0.3 x2, or less than that with few terms."""

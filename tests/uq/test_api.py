@@ -17,7 +17,10 @@ def test_everything_promised_is_there():
         == set(dir(uq))
         == {
             "basins",
+            "labels",
+            "life_fits",
             "load_study",
+            "regimes",
             "run",
             "open_result",
             "simulate",
@@ -28,8 +31,7 @@ def test_everything_promised_is_there():
             "two_fidelities",
             "running_estimates",
             "enough",
-            "life_fits",
-            "regimes",
+            "compare",
             "plot_basins",
             "plot_bifurcation",
             "plot_curve",

@@ -1,17 +1,22 @@
 """The command line: what it prints, what it refuses, how it ends."""
 
+import contextlib
 import json
 import os
+import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 
 import uq as api
+from uq.cli import progress
 from uq.cli.printing import duration, print_json
-from uq.cli.progress import sentence
+from uq.cli.progress import details, sentence
 from uq.job import Progress
 from uq.registry import model_names
 
@@ -27,17 +32,53 @@ def strict_json(text):
     return json.loads(text, parse_constant=refuse)
 
 
-def test_no_argument_is_a_call_for_help(uq):
-    ended = uq()
+def test_help_lists_every_verb(uq):
+    ended = uq("--help")
     assert ended.code == 0
     verbs = (
         "models simulate init check schema plan run status extend rerun verify summary "
-        "sensitivity convergence twin rare-event plot report"
+        "sensitivity convergence compare twin rare-event plot report"
     ).split()
     listed = ended.out.partition("Commands:\n")[2]
     assert [line.split()[0] for line in listed.splitlines() if line.strip()] == verbs
     assert "..." not in listed
-    assert uq("--help") == ended
+
+
+def test_no_argument_asks_what_to_do_next(uq, write_study, folder):
+    ended = uq()
+    assert (ended.code, ended.err) == (0, "")
+    for step in ("uq models", "uq init beam > ", "uq check", "uq run", "uq report", "uq --help"):
+        assert f"{step} " in ended.out
+    assert "With what is here" not in ended.out
+    (folder / "studies").mkdir()
+    for name in ("one", "two"):
+        write_study(name=name).rename(folder / "studies" / f"{name}.toml")
+    (folder / "results").mkdir()
+    (folder / "results" / "my one.nc").touch()
+    out = uq().out
+    assert "uq run studies/one.toml" in out and "1 other in" in out
+    assert "uq report 'results/my one.nc' --open" in out
+    assert max(map(len, out.splitlines())) <= 80
+
+
+@pytest.mark.parametrize(
+    ("typed", "completed"),
+    [
+        ("uq rep", ["report"]),
+        ("uq run --sam", ["--samples"]),
+        ("uq models be", ["beam"]),
+        ("uq simulate expo", ["exponential-wear"]),
+        ("uq init nothing", []),
+    ],
+)
+def test_a_shell_completes_verbs_options_and_models(uq, monkeypatch, typed, completed):
+    monkeypatch.setenv("_UQ_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", typed)
+    monkeypatch.setenv("COMP_CWORD", str(len(typed.split()) - 1))
+    ended = uq()
+    assert (ended.code, ended.out.split(), ended.err) == (0, completed, "")
+    monkeypatch.delenv("_UQ_COMPLETE")
+    assert "complete -o default -F _uq_completion uq" in uq("--show-completion", "bash").out
 
 
 def test_models_are_listed(uq):
@@ -54,7 +95,8 @@ def test_models_are_listed(uq):
 
 def test_one_model_is_shown_in_full(uq):
     shown = uq("models", "linear").out
-    for words in ("x_1 = 0.5, 0 to 1", "fail_how", "one of nan, inf, raise, shape", "y"):
+    line = "x1    x_1     0.5      0 to 1"
+    for words in (line, "fail_how", "one of nan, inf, raise, shape", "y"):
         assert words in shown
     described = strict_json(uq("models", "linear", "--json").out)
     assert described["parameters"]["x1"] == {
@@ -314,8 +356,8 @@ def test_tables_fit_in_80_columns(uq, write_study, verb):
 
 
 MISTAKES = {
-    "sumary": "uq: No such command 'sumary'. Did you mean 'summary'?",
-    "run": "uq: Missing argument 'STUDY'.",
+    "sumary": "uq: No such command 'sumary'. Did you mean 'summary'? See 'uq --help'",
+    "run": "uq: Missing argument 'STUDY'; see 'uq run --help'",
     "run a.toml --sampels 3": "uq: No such option: --sampels; did you mean '--samples'?",
     "run a.toml --workers -1": "uq: Invalid value for '--workers': ",
     "run a.toml --samples many": "uq: Invalid value for '--samples': ",
@@ -356,6 +398,14 @@ MISTAKES = {
 }
 
 
+NEXT_STEP = re.compile(
+    r"[Dd]id you mean|[Ss]ee '|must |allowed: |installed: |choose |give |write it |leave out"
+    r"|'uq run STUDY'|'uq init |install it|exclude each other|a study is a TOML file"
+    r"|supported formats|at line \d+, column"
+)
+"""What a line says that can be done, or what would be right."""
+
+
 @pytest.mark.parametrize("line", MISTAKES)
 def test_a_mistake_is_one_line_and_leaves_nothing_behind(uq, write_study, folder, line):
     write_study()
@@ -364,7 +414,7 @@ def test_a_mistake_is_one_line_and_leaves_nothing_behind(uq, write_study, folder
     ended = uq(*line.split())
     assert (ended.code, ended.out) == (2, "")
     assert ended.err.startswith(MISTAKES[line])
-    assert ended.err.count("\n") == 1
+    assert ended.err.count("\n") == 1 and NEXT_STEP.search(ended.err)
     assert everything(folder) == ["broken.toml", "folder", "small.toml"]
 
 
@@ -413,6 +463,83 @@ def test_times_in_words(seconds, words):
 def test_json_knows_only_finite_numbers():
     with pytest.raises(ValueError, match="not JSON compliant"):
         print_json({"a": float("nan")})
+
+
+def test_progress_tells_how_rows_ended_and_what_they_say():
+    told = details(
+        Progress(
+            300,
+            400,
+            3,
+            status={"ok": 290, "raised": 3, "out-of-budget": 7},
+            medians={"life[site=left]": 5 * 86400.0, "other": float("inf"), "short": 0.25},
+            shares={"slow": 0.625, "fast": 0.375},
+        )
+    )
+    assert told == [
+        "raised 3, out-of-budget 7",
+        "median life[site=left]: 5 days",
+        "median other: most rows do not end",
+        "median short: 0.25 s",
+        "slow 62%, fast 38%",
+    ]
+    assert details(Progress(1, 2, 0)) == []
+
+
+def test_progress_of_a_run_counts_and_glances_at_its_rows(folder, write_study):
+    path = write_study(model="kinds", uncertain=("x1", "x2"), samples=200)
+    seen = []
+    study = api.load_study(path, "sample_models:KINDS")
+    options = {"workers": 0, "chunk_rows": 50, "progress": seen.append}
+    ds = api.run(study, "out.nc", **options)
+    last = seen[-1]
+    assert (last.done, sum(last.status.values())) == (200, 200)
+    lives = np.where(ds["life_censored"], np.inf, ds["life"]).reshape(200, -1)[:, 0]
+    assert np.quantile(lives, 0.49) <= last.medians["life[side=left,depth=0.5]"]
+    assert last.medians["life[side=left,depth=0.5]"] <= np.quantile(lives, 0.51)
+    slow = float((ds["regime"] == 0).mean())
+    assert last.shares == {"slow": slow, "fast": 1 - slow}
+
+
+def test_a_terminal_of_80_columns_holds_the_progress(monkeypatch):
+    ours, theirs = os.openpty()
+    progress_of = Progress(
+        123_456_789,
+        1_000_000_000,
+        4_567,
+        status={"ok": 1, **{name: 123_456_789 for name in ("non-finite", "raised", "timed-out")}},
+        medians={f"a_life_with_a_long_name[site=middle,depth={i}]": 1e9 for i in range(2)},
+        shares={f"regime-with-a-long-name-{i}": 0.2 for i in range(5)},
+        dashboard="http://127.0.0.1:8787/status",
+    )
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setenv("TERM", "xterm")
+    with os.fdopen(theirs, "w") as terminal:
+        monkeypatch.setattr(sys, "stderr", terminal)
+        with progress.shown(quiet=False) as show:
+            show(progress_of)
+            time.sleep(0.5)
+    out = b""
+    with contextlib.suppress(OSError):
+        while more := os.read(ours, 65_536):
+            out += more
+    os.close(ours)
+    text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", out.decode())
+    lines = re.split(r"[\r\n]+", text)
+    assert max(map(len, lines)) <= 80
+    for words in ("123456789 of 1000000000 rows", "non-finite 123456789", "31.7 years", "status"):
+        assert any(words in line for line in lines), words
+
+
+def test_without_a_terminal_progress_is_plain_lines(capsys, monkeypatch):
+    monkeypatch.setattr(progress, "_PLAIN_SECONDS", 0.0)
+    with progress.shown(quiet=False) as show:
+        show(Progress(1, 4, 1, status={"ok": 0, "raised": 1}, dashboard="http://there/status"))
+        show(Progress(4, 4, 1, status={"ok": 3, "raised": 1}, dashboard="http://there/status"))
+    first, *lines = capsys.readouterr().err.splitlines()
+    assert first == "dask dashboard: http://there/status"
+    assert [line.partition(" rows")[0] for line in lines] == ["1 of 4", "4 of 4"]
+    assert lines[-1].endswith("0:00 left, 1 failed; raised 1")
 
 
 def test_progress_is_a_sentence():

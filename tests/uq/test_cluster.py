@@ -125,6 +125,8 @@ def test_a_worker_that_differs_is_refused_with_its_first_rows():
     x, seed = np.full((2, 3), 0.5), np.zeros(2, np.uint64)
     with pytest.raises(InputError, match="a worker has version 1 of model 'ishigami'.* has 2"):
         evaluate_rows(Task("ishigami", "2", ()), provenance.versions(), None, x, seed, 0)
+    with pytest.raises(InputError, match="a worker has other code of model 'ishigami' than this"):
+        evaluate_rows(Task("ishigami", "1", (), code="x"), provenance.versions(), None, x, seed, 0)
     later = provenance.versions() | {"vibrolife": "99"}
     with pytest.raises(InputError, match=r"^a worker has vibrolife \S+; this process has .* 99"):
         evaluate_rows(Task("ishigami", "1", ()), later, None, x, seed, 0)

@@ -61,11 +61,11 @@ def test_more_samples_append_where_the_design_says_so(method):
 
 def test_designs_that_cannot_be_extended_say_which_can():
     able = {name for name, design in DESIGNS.items() if design.append_only}
-    assert able == {"monte-carlo", "sobol", "halton", "saltelli"}
+    assert able == {"monte-carlo", "sobol", "halton", "saltelli", "shapley"}
     for name, design in DESIGNS.items():
         assert (design.extension_problem is None) == (name in able)
     assert DESIGNS["morris"].extension_problem == (
-        "cannot be extended; designs that can: monte-carlo, sobol, halton, saltelli"
+        "cannot be extended; designs that can: monte-carlo, sobol, halton, saltelli, shapley"
     )
 
 

@@ -280,10 +280,10 @@ def test_methods_for_independent_inputs_are_refused_and_others_named():
     given = tables({"x1": UNIFORM, "x3": UNIFORM}, samples=256, dependence=CORRELATED)
     said = refusal(given | {"analysis": {"sensitivity": ["rbd-fast"]}})
     assert said.startswith('[analysis] sensitivity = "rbd-fast": supposes independent inputs')
-    assert said.endswith("those that do not are 'delta' or 'pawn'")
+    assert said.endswith("those that do not are 'delta' or 'pawn' or 'quantile' or 'regional'")
     ds = computed(study_of(given))
     assert sensitivities(ds)["method"] == "delta"
-    with pytest.raises(InputError, match="'rbd-fast' supposes independent inputs.*delta or pawn"):
+    with pytest.raises(InputError, match="'rbd-fast' supposes independent inputs.*delta, pawn, "):
         sensitivities(ds, "rbd-fast")
 
 
@@ -448,7 +448,7 @@ def test_check_shows_what_the_rows_make_of_the_laws(uq, write_study):
     """
     path = write_study("linear", "sobol", 1024, more=more)
     shown = uq("check", path).out
-    assert "equals x1" in shown and "delta, pawn can be had" in shown
+    assert "equals x1" in shown and "delta, pawn, quantile, regional can be had" in shown
     lines = [line.split() for line in shown.splitlines()]
     assert ["x1", "stated", "0.14", "0.5", "0.86"] in lines
     (pair,) = [line for line in lines if line[:2] == ["x1,", "x2"]]
@@ -463,7 +463,7 @@ def test_a_figure_shows_each_input_as_stated_and_as_the_rows_have_it():
     entries = {"x1": BELL, "x2": UNIFORM | {"times": "x1"}, "x3": {"equals": "x1"}}
     figure = inputs(computed(study_of(tables(entries, "sobol", 4096))))
     assert [axes.get_xlabel() for axes in figure.axes] == [
-        "Independent input",
+        "Independent input (x_1)",
         "Independent input: factor on x1",
     ]
     for axes in figure.axes:

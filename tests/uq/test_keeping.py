@@ -171,6 +171,17 @@ def test_verify_finds_a_flipped_bit_wherever_it_is(uq, result):
         assert "checksum  WRONG" in flipped.out or "not a readable" in flipped.err
 
 
+@pytest.mark.parametrize("variable", ["", "y"])
+def test_verify_finds_words_that_were_changed(uq, write_study, variable):
+    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    with netCDF4.Dataset("out.nc", "a") as file:
+        owner = file[variable] if variable else file
+        owner.setncattr("source" if owner is file else "units", "else")
+    ended = uq("verify", "out.nc")
+    assert ended.code == 1
+    assert "checksum  WRONG" in ended.out
+
+
 def test_verify_finds_rows_that_would_come_out_otherwise_and_names_versions(uq, write_study):
     uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
     with netCDF4.Dataset("out.nc", "a") as file:

@@ -213,7 +213,7 @@ ONE_FAULT = [
     (
         {"analysis": {"sensitivity": ["sobl"]}},
         "[analysis] sensitivity[0] = \"sobl\": no such method; did you mean 'sobol'?"
-        " (allowed: rbd-fast, delta, pawn, sobol, morris, fast)",
+        " (allowed: rbd-fast, delta, pawn, hdmr, quantile, regional, sobol, morris, fast)",
     ),
     (
         {"analysis": {"sensitivity": ["sobol"]}},

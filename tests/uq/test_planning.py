@@ -96,6 +96,8 @@ def test_plan_shows_all_of_it(uq, write_study):
         "pilot",
         "row_seconds",
         "seconds",
+        "seconds_low",
+        "seconds_high",
         "disk",
         "widths",
     }

@@ -7,10 +7,13 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from uq import plots
+from uq.convergence import running_estimates
+from uq.convergence_plot import index_convergence
 from uq.errors import InputError
 from uq.figure import file_name, powers, sentence
 from uq.index_plot import index_bars
 from uq.indices import sensitivities
+from uq.statistics import summarise
 
 
 def words(figure):
@@ -19,27 +22,32 @@ def words(figure):
     return " ".join(" ".join(texts).split())
 
 
-def test_every_figure_of_a_study_is_written_as_png_and_svg(tmp_path):
-    asked = {"thresholds": {"life": 1.0}, "sensitivity": ["rbd-fast", "pawn"]}
-    ds = kinds(samples=128, analysis=asked)
+def test_every_figure_of_a_study_is_written_as_png_svg_and_pdf(tmp_path):
+    asked = {"outputs": ["life", "angle", "regime"], "thresholds": {"life": 1.0}}
+    ds = kinds(samples=96, analysis=asked | {"sensitivity": ["pawn"]})
     paths = plots.save_all(ds, tmp_path / "new" / "figures")
-    assert {path.suffix for path in paths} == {".png", ".svg"}
+    assert {path.suffix for path in paths} == {".png", ".svg", ".pdf"}
     stems = {path.stem for path in paths}
-    assert {"histogram-work", "histogram-angle", "lifetime-life"} < stems
-    assert {"rbd-fast-work_side_left", "rbd-fast-angle", "pawn-angle"} < stems
+    assert {"histogram-angle", "lifetime-life", "pairs", "inputs", "pawn-angle"} < stems
+    for kind in ("regimes", "quantiles", "scatter", "convergence"):
+        assert {f"{kind}-life", f"{kind}-angle"} < stems
     assert any("regime" in stem and stem.startswith("pawn") for stem in stems)
     assert not any("rate" in stem for stem in stems)  # censored: no rate
     for path in paths:
         if path.suffix == ".png":
             assert 600 < imread(path).shape[1] < 800  # one column at 200 dots per inch
-        else:
+        elif path.suffix == ".svg":
             assert ElementTree.parse(path).getroot().tag.endswith("svg")
+        else:
+            assert path.read_bytes().startswith(b"%PDF-")
 
 
 def test_the_same_result_gives_the_same_bytes(tmp_path):
-    ds = linear("saltelli", samples=16, replicates=4)
+    ds = linear(samples=32)
     once, again = (plots.save_all(ds, tmp_path / name) for name in ("once", "again"))
-    assert len(once) == 6
+    stems = {path.stem for path in once}
+    assert stems == {"histogram-y", "quantiles-y", "scatter-y", "convergence-y", "inputs"}
+    assert len(once) == 3 * len(stems)
     for one, other in zip(once, again, strict=True):
         assert one.read_bytes() == other.read_bytes()
 
@@ -47,15 +55,15 @@ def test_the_same_result_gives_the_same_bytes(tmp_path):
 def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
     draw, drawn = Figure.draw, []
     monkeypatch.setattr(Figure, "draw", lambda *given: (drawn.append(given), draw(*given)))
-    paths = plots.save_all(linear(samples=64), tmp_path)
-    assert len(drawn) == len(paths) == 6
+    paths = plots.save_all(linear(samples=16), tmp_path)
+    assert len(drawn) == len(paths) == 3 * 5
 
 
 def test_categories_alone_have_the_indices_of_each(tmp_path):
     ds = kinds(analysis={"outputs": ["regime"]})
     assert list(sensitivities(ds)["outputs"]) == ["P(regime=slow)", "P(regime=fast)"]
     stems = {path.stem for path in plots.save_all(ds, tmp_path)}
-    assert len(stems) == 2 and all(stem.startswith("rbd-fast-") for stem in stems)
+    assert stems == {"pairs", "rbd-fast-P_regime_slow", "rbd-fast-P_regime_fast"}
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
@@ -86,12 +94,12 @@ def test_lifetime_figure_shows_share_band_and_what_never_ends():
 
 def test_elements_of_an_output_share_a_figure_and_are_told_apart():
     figure = plots.lifetime(kinds(samples=100), "life")
-    lines = figure.axes[0].lines
+    lines = [line for line in figure.axes[0].lines if line.get_linestyle() != "None"]
     assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 4
     assert "left, depth 0.5, never" in words(figure)
     assert "censored" in words(figure)
     one = plots.lifetime(kinds(samples=100), "life[side=left,depth=0.5]")
-    assert len(one.axes[0].lines) == 1
+    assert [line.get_linestyle() for line in one.axes[0].lines].count("-") == 1
 
 
 def test_histogram_shows_every_row_once():
@@ -146,14 +154,124 @@ def test_titles_of_indices_are_in_words():
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, 3.0])
 @pytest.mark.parametrize("kind", ["lifetime", "value"])
-def test_degenerate_results_are_drawn_all_the_same(tmp_path, value, kind):
+def test_degenerate_results_are_drawn_all_the_same(value, kind):
     ds = asking(with_output(linear(samples=64), "odd", np.full(64, value), kind), outputs=["odd"])
-    assert len(plots.save_all(ds, tmp_path)) == 4
+    drawn = [plots.lifetime if kind == "lifetime" else plots.histogram, plots.scatter]
+    figures = [draw(ds, "odd") for draw in drawn] + [plots.convergence(ds, "odd")]
+    figures.append(plots.quantile_table(ds, "odd", summarise(ds)["outputs"]))
+    for figure in figures:
+        if figure is not None:
+            figure.draw_without_rendering()
+
+
+def test_lifetime_figure_marks_b_lives_and_reads_both_ways():
+    ds = with_output(linear(samples=200), "life", np.linspace(1.0, 3.0, 200), "lifetime")
+    axes = plots.lifetime(ds, "life").axes[0]
+    marks = {
+        round(float(line.get_ydata()[0]), 2): line.get_xdata()[0]
+        for line in axes.lines
+        if line.get_marker() == "o"
+    }
+    assert marks == pytest.approx({0.01: 1.02, 0.1: 1.2, 0.5: 2.0}, abs=0.02)
+    (other,) = axes.child_axes
+    assert other.get_ylabel() == "Probability of\na longer life"
+    axes.figure.draw_without_rendering()
+    assert sorted(other.get_ylim()) == pytest.approx([-0.02, 1.0])
+
+
+def test_histograms_by_regime_add_up():
+    ds = kinds(samples=300)
+    figure = plots.histogram_by_regime(ds, "work[side=left]")
+    slow, fast = figure.axes[0].patches
+    parts = [np.sum(one.get_data().values - one.get_data().baseline) for one in (slow, fast)]
+    assert sum(parts) == pytest.approx(1)
+    assert parts[0] == pytest.approx(float((ds["regime"] == 0).mean()))
+    assert "slow" in words(figure) and "Work rate [W]" in words(figure)
+    assert len(plots.histogram_by_regime(ds, "life").axes) == 4
+
+
+def test_scatter_leads_with_what_matters_and_shows_conditional_means():
+    ds = linear(samples=1000)
+    figure = plots.scatter(ds, "y")
+    assert [axes.get_xlabel() for axes in figure.axes] == [
+        f"Independent input (x_{i})" for i in (4, 3, 2)
+    ]
+    points, line = figure.axes[0].lines
+    assert np.array_equal(points.get_xdata(), ds["x4"].values)  # 4 x4 moves y most
+    slope = np.polyfit(line.get_xdata(), line.get_ydata(), 1)[0]
+    assert slope == pytest.approx(4, abs=0.5)
+    assert len(figure.axes[0].collections) == 1 and "95 % band" in words(figure)
+    assert not plots.scatter(linear("sobol", samples=256), "y").axes[0].collections
+    lives = plots.scatter(kinds(samples=300), "life")
+    assert "never, at the top edge" in words(lives) and "censored" in words(lives)
+    assert "median of slices" in words(lives)
+
+
+def test_many_rows_are_thinned_in_figures():
+    figure = plots.scatter(linear(samples=20_000), "y")
+    assert len(figure.axes[0].lines[0].get_xdata()) == 3000
+
+
+def test_pairs_show_the_inputs_that_decide_the_regime():
+    ds = kinds(samples=200)
+    figure = plots.pairs(ds)
+    (axes,) = figure.axes
+    assert axes.get_xlabel() == "First input (x_1) [m]"  # decides it alone
+    slow, fast = axes.lines
+    assert slow.get_xdata().max() <= 0.5 < fast.get_xdata().min()
+    assert len(slow.get_xdata()) + len(fast.get_xdata()) == 200
+    with pytest.raises(InputError, match="need a model with regimes and two uncertain inputs"):
+        plots.pairs(linear())
+
+
+def test_convergence_ends_with_all_rows_and_narrows():
+    ds = linear(samples=512)
+    figure = plots.convergence(ds, "y")
+    (axes,) = figure.axes
+    line = axes.lines[0]
+    assert line.get_xdata().tolist() == [16, 32, 64, 128, 256, 512]
+    assert line.get_ydata()[-1] == pytest.approx(float(ds["y"].mean()))
+    band = axes.collections[0].get_paths()[0].vertices
+    first, last = (np.ptp(band[band[:, 0] == n, 1]) for n in (16, 512))
+    assert last < first / 3
+    assert axes.get_ylabel() == "Mean: value of the function" and axes.get_xlabel() == "Samples"
+    assert "Median: time to a depth" in " ".join(
+        plots.convergence(kinds(samples=64), "life").axes[0].get_ylabel().split()
+    )
+    with pytest.raises(InputError, match="designs that grow"):
+        plots.convergence(linear("latin-hypercube", samples=64), "y")
+
+
+def test_total_indices_converge_in_a_figure():
+    ds = linear("saltelli", samples=64, replicates=4)
+    figure = index_convergence(ds, "y", running_estimates(ds), "in words")
+    (axes,) = figure.axes
+    assert len(axes.lines) == 4 and "Independent input (x_4)" in words(figure)
+    assert axes.lines[0].get_xdata().tolist() == [16, 32, 64]
+    assert axes.lines[0].get_ydata()[-1] == pytest.approx(16 / 30, abs=0.01)
+    assert axes.get_xlabel() == "Samples of each of 4 replicates"
+
+
+def test_quantiles_are_a_table_to_print():
+    ds = kinds(samples=200)
+    entries = summarise(ds)["outputs"]
+    told = words(plots.quantile_table(ds, "work", entries))
+    assert "Work rate [W]" in told and "left" in told and "95 % intervals" in told
+    assert f"{entries['work[side=left]']['quantiles']['0.5']['value']:.5g}" in told
+    assert "never" in words(plots.quantile_table(ds, "life", entries))
+
+
+def test_numbers_on_logarithmic_axes_are_plain():
+    ds = with_output(linear(samples=200), "wide", np.geomspace(1e-3, 1e4, 200))
+    for figure in (plots.histogram(ds, "wide"), plots.scatter(ds, "wide")):
+        figure.draw_without_rendering()
+        assert "mathdefault" not in words(figure) and "0.001" in words(figure)
 
 
 def test_words_and_units_of_axes():
     assert sentence("worn volume per work", "m2 N-1") == "Worn volume per work [m² N⁻¹]"
     assert sentence("a $price$") == r"A $price$"
+    assert sentence("stiffness of a stop", "N m-1", 24) == "Stiffness of a stop\n[N m⁻¹]"
     assert sentence("a pure number", "1") == "A pure number"
     assert powers("kg m-1") == "kg m⁻¹"
     assert file_name("sobol", "P(life[depth=0.1]<1e6)") == "sobol-P_life_depth_0.1_1e6"

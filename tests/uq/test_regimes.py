@@ -32,6 +32,17 @@ def test_inputs_of_a_regime_are_told_from_those_of_the_rest():
     assert float(left["sd"]) == pytest.approx(ds["x1"].values[hits].std(ddof=1))
 
 
+def test_labels_say_what_the_codes_mean():
+    ds = with_status(kinds(), slice(3), Status.TIMED_OUT)
+    words = uq.labels(ds["regime"])
+    assert words.dims == ("sample",)
+    assert list(words.values) == ["slow" if x <= 0.5 else "fast" for x in ds["x1"].values]
+    assert words.attrs["long_name"] == ds["regime"].attrs["long_name"]
+    assert list(uq.labels(ds["status"][2:4]).values) == ["timed-out", "ok"]
+    with pytest.raises(InputError, match="'angle' is a quantity, not a category"):
+        uq.labels(ds["angle"])
+
+
 def test_regional_distance_is_scipys_and_its_dummies_share_its_null():
     ds = kinds(samples=256, analysis={"outputs": ["regime"]})
     entry = sensitivities(ds, "regional")["outputs"]["P(regime=fast)"]

@@ -4,6 +4,7 @@ import json
 import sys
 
 import numpy as np
+import openturns as ot
 import pytest
 from computed import UNIFORM, as_text, study_of, with_seed
 from limit_states import PARTS, PLANE
@@ -79,6 +80,28 @@ def test_subset_simulation_finds_known_probabilities(of, output, threshold, belo
     assert close(ds, truth)
     assert interval(ds)[1] < 2.5 * interval(ds)[0]
     assert int(ds["rows"]) < 60_000
+
+
+@pytest.mark.parametrize(("names", "beyond"), [(("x1", "x2"), 4.264891), (tuple("abcd"), 3.719016)])
+def test_subset_simulation_agrees_with_that_of_openturns(names, beyond):
+    d = len(names)
+
+    def margin(u):
+        return np.asarray(u).sum(axis=1) / np.sqrt(d) - beyond
+
+    ot.RandomGenerator.SetSeed(1)
+    function = ot.PythonFunction(d, 1, func_sample=lambda u: margin(u)[:, None])
+    vector = ot.CompositeRandomVector(function, ot.RandomVector(ot.Normal(d)))
+    algorithm = ot.SubsetSampling(ot.ThresholdEvent(vector, ot.Greater(), 0.0))
+    algorithm.setMaximumOuterSampling(80)
+    algorithm.setBlockSize(100)
+    algorithm.run()
+    theirs = algorithm.getResult().getProbabilityEstimate()
+    found = subset_simulation(margin, d, 1000, np.random.default_rng(1).spawn(8))
+    ours = np.mean([one.probability for one in found])
+    truth = stats.norm.sf(beyond)
+    assert ours == pytest.approx(truth, rel=0.25)
+    assert ours == pytest.approx(theirs, rel=0.5)
 
 
 @pytest.mark.parametrize(("of", "output", "threshold", "below", "truth"), KNOWN[:-1])

@@ -86,14 +86,17 @@ def test_a_report_says_all_there_is_to_say():
     summary = re.search(r"angle an angle rad ([0-9.]+)", words)
     assert float(summary[1]) == pytest.approx(np.nanmean(ds["angle"]), rel=1e-4)
     drawn = found.tags.count("svg")
-    assert drawn == 4 + 2 * len([1 for name in ("left", "right", "P", "angle", "slow", "fast")]) + 2
+    assert (
+        drawn == 12 + 2 * len([1 for name in ("left", "right", "P", "angle", "slow", "fast")]) + 2
+    )
 
 
 def test_links_lead_somewhere_and_names_are_unique():
     found = read(kinds(samples=200, analysis=ASKED))
     ids = [value for name, value in found.attributes if name == "id"]
     assert len(ids) == len(set(ids))
-    assert {value[1:] for name, value in found.attributes if name == "href"} <= set(ids)
+    links = {value for name, value in found.attributes if name == "href" and value[0] == "#"}
+    assert links and {link[1:] for link in links} <= set(ids)
     used = re.findall(r"url\(#([^)]+)\)", str(found.attributes))
     assert used and set(used) <= set(ids)
 

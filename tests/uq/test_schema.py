@@ -62,6 +62,7 @@ def test_the_template_of_every_model_is_valid(validator, name):
             "design/until",
         ),
         ({"analysis": {"twin": "y"}}, "analysis/twin"),
+        ({"analysis": {"twin": {"modes": 2}}}, "analysis/twin"),
         ({"uncertain": {"x4": UNIFORM}}, "uncertain"),
         ({"uncertain": {"x3": {**UNIFORM, "meen": 1}}}, "uncertain/x3"),
         ({"uncertain": {"x3": {"distribution": "normal", "mean": 0}}}, "uncertain/x3"),

@@ -251,7 +251,9 @@ def test_outputs_that_the_study_names_are_shown():
     table = uq.summary(kinds(analysis={"quantiles": [0.5]}))
     assert table.index[0] == "work[side=left]"
     expected = ["units", "mean", "mean_low", "mean_high", "sd", "q0.5", "q0.5_low", "q0.5_high"]
-    assert list(table.columns) == [*expected, "never", "censored", "undefined", "failed"]
+    lives = [f"{name}{end}" for name in ("B1", "B10", "B50") for end in ("", "_low", "_high")]
+    counts = ["never", "censored", "undefined", "failed"]
+    assert list(table.columns) == [*expected, *counts, *lives]
     assert table.loc["work[side=left]", "mean"] == pytest.approx(0.5, abs=0.2)
 
 
@@ -282,6 +284,13 @@ def test_the_table_says_what_the_command_prints():
     assert (life["P(>30.5)"], life["P(<30.5)"]) == (0.7, 0.3)
     assert life["P(>30.5)_low"] == found["life"]["thresholds"]["30.5"]["above"]["low"]
     assert np.isnan(life["mean"]) and life["never"] == 40
+    b10 = found["life"]["b_lives"]["B10"]
+    assert (life["B10_low"], life["B10"], life["B10_high"]) == (
+        b10["low"],
+        b10["value"],
+        b10["high"],
+    )
+    assert 10 <= life["B10"] <= 11 and np.isnan(y["B10"])
     assert life["q0.9"] == life["q0.9_low"] == life["q0.9_high"] == np.inf
     numbers = table.drop(columns="units")
     assert all(dtype.kind in "if" for dtype in numbers.dtypes)

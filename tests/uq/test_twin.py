@@ -54,6 +54,8 @@ TRUTH = {
     ("patchy", "P(>1.5)"): share(lambda x1, y: (y > 1.5) & (x1 >= 0.2)),
     ("life", "P(<1.25)"): 0.2,
 }
+# x1 > log(2.5 - 0.3 x2)
+TRUTH_OF_SERIES = 1 - np.mean(np.log(2.5 - 0.3 * (np.arange(1000) + 0.5) / 1000))
 
 
 @pytest.mark.parametrize("replicates", [1, 4])
@@ -78,6 +80,54 @@ def test_plain_estimates_are_those_of_the_summary():
     above = entry["thresholds"]["2.5"]["above"]
     line = table.loc[("y", "P(>2.5)")]
     assert tuple(line[["plain", "plain_low", "plain_high"]]) == tuple(above.values())
+
+
+def series(samples=300, **analysis):
+    design = {"method": "monte-carlo", "samples": samples}
+    return study_of(
+        {
+            "study": {"name": "series", "model": "linear"},
+            "design": design,
+            "uncertain": {"x1": UNIFORM, "x2": UNIFORM},
+            "analysis": {"thresholds": {"y": 2.5}} | analysis,
+        },
+        "sample_models:SERIES",
+    )
+
+
+def test_settings_that_make_rows_cheap_are_a_twin_too():
+    ds = computed(series(twin={"terms": 3}))  # 1 + x1 + x1^2/2 for exp(x1)
+    found = with_twin(ds, "sample_models:SERIES")
+    assert (found["twin"], found["cheap_rows"]) == ("{terms = 3}", 3000)
+    for label, truth in (("mean", np.e - 1 + 0.15), ("P(>2.5)", TRUTH_OF_SERIES)):
+        entry = found["outputs"]["y"][label]
+        half = (entry["high"] - entry["low"]) / 2
+        plain = (entry["plain"]["high"] - entry["plain"]["low"]) / 2
+        assert abs(entry["value"] - truth) < 2 * half
+        assert half < 0.6 * plain
+    # The twin that is the model itself is worth its rows, and no more.
+    same = with_twin(computed(series(twin={"terms": 20})), "sample_models:SERIES")
+    assert same["outputs"]["y"]["mean"]["reduction"] == pytest.approx(11, rel=1e-6)
+
+
+def test_settings_of_a_twin_change_no_row_of_the_study():
+    assert series(twin={"terms": 2}).identity == series().identity
+    one, other = (computed(series(**more)) for more in ({"twin": {"terms": 2}}, {}))
+    assert one["y"].values.tobytes() == other["y"].values.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("twin", "words"),
+    [
+        ({"term": 2}, r"twin.term\]?.*did you mean 'terms'"),
+        ({"terms": 31}, "whole number within 1 to 30"),
+        (2, "must name an output, or be a table of settings"),
+        ("y", "or give a table of settings"),
+    ],
+)
+def test_wrong_settings_of_a_twin_are_refused_with_the_study(twin, words):
+    with pytest.raises(InputError, match=words):
+        series(twin=twin)
 
 
 def test_a_useless_twin_does_no_harm():

@@ -24,7 +24,7 @@ def main() -> NoReturn:
     for name, value in SINGLE_THREADED.items():
         os.environ.setdefault(name, value)
     try:
-        code = _run(sys.argv[1:] or ["--help"])
+        code = _run(sys.argv[1:])
         sys.stdout.flush()
     except (InputError, RunError) as error:
         for line in getattr(error, "lines", (str(error),)):
@@ -55,7 +55,10 @@ def _run(arguments: list[str]) -> int:
             line = f"{error.message}{nearest(error.option_name, options)}"
         else:
             line = " ".join(error.format_message().split())
-        raise InputError(f"uq: {line}") from None
+        context = getattr(error, "ctx", None)
+        command = context.command_path if context else "uq"
+        line = f"{line} See" if line.endswith("?") else f"{line.rstrip('.')}; see"
+        raise InputError(f"uq: {line} '{command} --help'") from None
 
 
 def _stop(number: int, frame: FrameType | None) -> NoReturn:

@@ -13,13 +13,22 @@ import typer
 from uq.literals import plain_line
 
 app = typer.Typer(
-    help="Probabilistic lifetime and sensitivity studies of vibro-impact machines.",
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
 
-ModelName = Annotated[str, typer.Argument(metavar="MODEL", help="As 'uq models' lists them.")]
+
+def _models(incomplete: str) -> list[str]:
+    """Return the names that a shell may complete to."""
+    from uq.registry import model_names
+
+    return [name for name in model_names() if name.startswith(incomplete)]
+
+
+ModelName = Annotated[
+    str,
+    typer.Argument(metavar="MODEL", help="As 'uq models' lists them.", autocompletion=_models),
+]
 StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
 ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.")]
 Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
@@ -41,12 +50,26 @@ Settings = Annotated[
     list[str] | None,
     typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
 ]
+Mixed = Annotated[
+    bool, typer.Option("--mixed", help="Keep rows that other code of the model computed.")
+]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
+
+
+@app.callback(invoke_without_command=True)
+def begin(context: typer.Context) -> None:
+    """Probabilistic lifetime and sensitivity studies of vibro-impact machines."""
+    if context.invoked_subcommand is None:
+        from uq.cli.guide import guide
+
+        guide()
 
 
 @app.command()
 def models(
-    name: Annotated[str | None, typer.Argument(help="Show this one in full.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(help="Show this one in full.", autocompletion=_models)
+    ] = None,
     json: Json = False,
 ) -> None:
     """List the models, or show all that one of them declares."""
@@ -144,6 +167,7 @@ def run(
     row_limit: RowLimit = None,
     model: ModelReference = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="Overwrite whatever OUT.nc is.")] = False,
+    mixed: Mixed = False,
     quiet: Quiet = False,
 ) -> int:
     """Run a study, or go on where it stopped; show the summary."""
@@ -154,6 +178,7 @@ def run(
         "scheduler": scheduler,
         "chunk_rows": chunk_rows,
         "row_limit": row_limit,
+        "mixed": mixed,
     }
     return studies.run(study, output, model, samples, fresh, quiet, options)
 
@@ -179,12 +204,14 @@ def extend(
     scheduler: Scheduler = None,
     row_limit: RowLimit = None,
     model: ModelReference = None,
+    mixed: Mixed = False,
     quiet: Quiet = False,
 ) -> int:
     """Give a result more samples; nothing is computed again."""
     from uq.cli import keeping
 
-    options = {"workers": workers, "scheduler": scheduler, "row_limit": row_limit}
+    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    options |= {"row_limit": row_limit, "mixed": mixed}
     return keeping.extend(result, samples, model, quiet, options)
 
 
@@ -197,12 +224,14 @@ def rerun(
     scheduler: Scheduler = None,
     row_limit: RowLimit = None,
     model: ModelReference = None,
+    mixed: Mixed = False,
     quiet: Quiet = False,
 ) -> int:
     """Compute the failed rows of a result again."""
     from uq.cli import keeping
 
-    options = {"workers": workers, "scheduler": scheduler, "row_limit": row_limit}
+    options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
+    options |= {"row_limit": row_limit, "mixed": mixed}
     return keeping.rerun(result, failed, setting or [], model, quiet, options)
 
 
@@ -262,6 +291,18 @@ def convergence(
     from uq.cli import estimates
 
     estimates.convergence(result, output, json)
+
+
+@app.command()
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A.nc", help="A result of 'uq run'.")],
+    second: Annotated[Path, typer.Argument(metavar="B.nc", help="Another, of the same model.")],
+    json: Json = False,
+) -> None:
+    """Show what two studies of one model have different."""
+    from uq.cli import comparing
+
+    comparing.compare(first, second, json)
 
 
 @app.command()

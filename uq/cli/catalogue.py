@@ -71,12 +71,14 @@ def show_list(listed: list[dict[str, str]]) -> None:
 def show(model: Mapping[str, Any]) -> None:
     """Print one model."""
     heading(model["name"], f"{model['title']} (version {model['version']})")
-    heading("\nParameters")
-    for name, parameter in model["parameters"].items():
-        low, high = parameter["bounds"]
-        unit = "" if parameter["unit"] == "1" else f" {parameter['unit']}"
-        value = f"{parameter['symbol']} = {parameter['nominal']!r}{unit}"
-        heading(f"  {name}", f"{value}, {number(low)} to {number(high)}")
+    heading("\nParameters", "with meaning and source")
+    lines = [_line(name, parameter) for name, parameter in model["parameters"].items()]
+    header = ("name", "symbol", "nominal", "admissible")
+    widths = [max(map(len, column)) for column in zip(header, *lines, strict=True)]
+    paragraph(_aligned(header, widths), indent=0)
+    for line, parameter in zip(lines, model["parameters"].values(), strict=True):
+        name, more = line[0].ljust(widths[0]), _aligned(line[1:], widths[1:])
+        heading(name, more)
         paragraph(parameter["meaning"])
         paragraph(parameter["source"])
     if model["settings"]:
@@ -96,6 +98,17 @@ def show(model: Mapping[str, Any]) -> None:
         heading("\nReferences")
     for reference in model["references"]:
         paragraph(reference)
+
+
+def _line(name: str, parameter: Mapping[str, Any]) -> tuple[str, str, str, str]:
+    unit = "" if parameter["unit"] == "1" else f" {parameter['unit']}"
+    bounds = " to ".join(map(number, parameter["bounds"]))
+    return name, parameter["symbol"], f"{parameter['nominal']!r}{unit}", bounds
+
+
+def _aligned(cells: tuple[str, ...], widths: list[int]) -> str:
+    padded = (cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
+    return "  ".join(padded).rstrip()
 
 
 def _allowed(setting: Mapping[str, Any]) -> str:

@@ -65,7 +65,7 @@ def verify(path: Path, model: str | None) -> int:
     words = {True: "right", False: "WRONG: the file is not what was written", None: "none"}
     console.print(f"checksum  {words[holds]}")
     ds = results.open_result(path)
-    others = verification.other_versions(ds)
+    others = verification.other_versions(ds, model)
     for other in others:
         console.print(f"{other.name}  {other.made} made it, {other.here} is here")
     if not others:

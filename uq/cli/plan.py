@@ -9,6 +9,7 @@ from uq.results import failed
 from uq.study import load_study
 from uq.widths import expected_widths
 
+_SURE = 1.2  # a forecast that may be further off is shown with its band
 _INDICES = ("S1", "ST")
 
 
@@ -26,6 +27,8 @@ def plan(
         "pilot": {"rows": cost.pilot_rows, "failed": int(failed(ds).sum())},
         "row_seconds": cost.row_seconds,
         "seconds": cost.seconds,
+        "seconds_low": cost.seconds_low,
+        "seconds_high": cost.seconds_high,
         "disk": {"result": cost.result_bytes, "run": cost.run_bytes},
         "widths": expected_widths(ds),
     }
@@ -37,11 +40,13 @@ def _show(path: str, description: str, cost: Cost, found: dict[str, Any]) -> Non
     processes = "one process" if cost.workers == 1 else f"{cost.workers} processes"
     failures = found["pilot"]["failed"]
     told = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
+    sure = cost.seconds_high < _SURE * cost.seconds
+    band = "" if sure else f"; {_clock(cost.seconds_low)} to {_clock(cost.seconds_high)}"
     grid(
         [
             ("rows", str(cost.rows), told),
             ("a row", f"{cost.row_seconds:.3g} s", "of one process"),
-            ("time", _clock(cost.seconds), f"with {processes}, once the model is compiled"),
+            ("time", _clock(cost.seconds), f"with {processes}, once the model is compiled{band}"),
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
         ]
     )

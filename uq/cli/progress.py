@@ -1,12 +1,14 @@
-"""How far a run is: one moving line on a terminal, a plain line now and then elsewhere."""
+"""How far a run is: a few moving lines on a terminal, plain lines now and then elsewhere."""
 
 import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import isinf
 
 from uq.interrupts import undone
 from uq.job import Progress, Report
+from uq.wording import duration, number
 
 _PLAIN_SECONDS = 10.0
 
@@ -25,28 +27,43 @@ def shown(quiet: bool) -> Iterator[Report]:
 class _Plain:
     def __init__(self) -> None:
         self._began = self._last = time.monotonic()
+        self._dashboard = ""
 
     def __call__(self, progress: Progress) -> None:
         now = time.monotonic()
+        if progress.dashboard != self._dashboard:
+            self._dashboard = progress.dashboard
+            print(f"dask dashboard: {self._dashboard}", file=sys.stderr, flush=True)
         if now - self._last >= _PLAIN_SECONDS:
             self._last = now
-            print(sentence(progress, now - self._began), file=sys.stderr, flush=True)
+            lines = [sentence(progress, now - self._began), *details(progress)]
+            print("; ".join(lines), file=sys.stderr, flush=True)
 
 
 def _moving() -> Iterator[Report]:
-    from rich.console import Console
+    from rich.console import Console, Group
+    from rich.live import Live
     from rich.progress import BarColumn, TextColumn
     from rich.progress import Progress as Bar
+    from rich.text import Text
 
     began = time.monotonic()
     console = Console(stderr=True, highlight=False)
-    columns = (BarColumn(bar_width=20), TextColumn("{task.description}", markup=False))
-    with Bar(*columns, console=console, transient=True) as bar, undone(bar.stop):
-        task = bar.add_task("starting", total=None)
+    columns = (BarColumn(bar_width=10), TextColumn("{task.description}", markup=False))
+    bar = Bar(*columns, console=console)
+    task = bar.add_task("starting", total=None)
+    with Live(bar, console=console, transient=True) as live, undone(live.stop):
+        dashboard = ""
 
         def show(progress: Progress) -> None:
+            nonlocal dashboard
             text = sentence(progress, time.monotonic() - began)
             bar.update(task, completed=progress.done, total=progress.total, description=text)
+            lines = [Text(line, no_wrap=True, overflow="ellipsis") for line in details(progress)]
+            live.update(Group(bar, *lines))
+            if progress.dashboard != dashboard:
+                dashboard = progress.dashboard
+                live.console.print(f"dask dashboard: {dashboard}", markup=False)
 
         yield show
 
@@ -59,6 +76,19 @@ def sentence(progress: Progress, seconds: float) -> str:
         f"{progress.done} of {progress.total} rows, {rate:.3g} rows/s, "
         f"{_clock(left)} left, {progress.failed} failed"
     )
+
+
+def details(progress: Progress) -> list[str]:
+    """Say how rows ended that are not sound, and what the others say so far; a line for each."""
+    lines = []
+    if lost := {label: n for label, n in progress.status.items() if n and label != "ok"}:
+        lines.append(", ".join(f"{label} {n}" for label, n in lost.items()))
+    for name, median in progress.medians.items():
+        told = duration(median) or f"{number(median)} s"
+        lines.append(f"median {name}: {'most rows do not end' if isinf(median) else told}")
+    if progress.shares:
+        lines.append(", ".join(f"{name} {share:.0%}" for name, share in progress.shares.items()))
+    return lines
 
 
 def _clock(seconds: float) -> str:

@@ -39,7 +39,7 @@ def simulate(
             f"{output}: exists, and is no trajectory of 'uq simulate'; choose another name"
         )
     if model.simulate is None and (output or plot):
-        raise InputError(f"model '{model.name}' gives no trajectory")
+        raise InputError(f"model '{model.name}' gives no trajectory; leave out -o and --plot")
     ds = run_once(model, given, chosen, trajectory=bool(output or plot))
     if output:
         store.write(ds, output)

@@ -15,6 +15,7 @@ import xarray as xr
 from uq import results, runner
 from uq.cli import progress, say_when_interrupted, tables
 from uq.cli.printing import console, grid, heading, number
+from uq.code import is_other_code
 from uq.contract import Status
 from uq.designs import DESIGNS
 from uq.job import Progress
@@ -103,7 +104,8 @@ def run(
         study = study.with_samples(samples)
     target = runner.output_path(study, output)
     if not fresh and (ds := runner.finished(study, target)) is not None:
-        note = f"{target} is complete already; nothing was computed (--fresh computes it again)"
+        by = ", by other code of the model" * is_other_code(ds.attrs, study.model_reference)
+        note = f"{target} is complete already{by}; nothing was computed (--fresh computes it again)"
     else:
         ds, note = carried_out(
             target, quiet, partial(runner.run, study, target, fresh=fresh, **options)
@@ -147,7 +149,7 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str) -> i
         console.print()
         console.print(note)
         name = shlex.quote(str(target))
-        console.print(f"Next: uq sensitivity {name}, or uq plot {name}")
+        console.print(f"Next: uq report {name} --open, or uq sensitivity {name}")
     return _verdict(study, ds)
 
 

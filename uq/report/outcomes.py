@@ -151,4 +151,5 @@ def life_table(found: list[Outcome]) -> Table | None:
         for one in lives
     ]
     header = ("lifetime", "unit", *names, "rows never ending", "rows censored")
-    return Table("B-lives: B10 is the time by which 10 % have ended", header, rows)
+    caption = "B-lives: B10 is the time by which 10 % have ended"
+    return without_empty_columns(Table(caption, header, rows))

@@ -10,12 +10,15 @@ from markupsafe import Markup, escape
 
 from uq.designs import DESIGNS
 from uq.elements import independent_rows, study_file_of
+from uq.elements_plot import occurring_regimes
 from uq.errors import InputError
+from uq.independent_inputs import independent_inputs
 from uq.input_plot import inputs
 from uq.literals import plain
-from uq.plots import histogram, lifetime
+from uq.plots import histogram, histogram_by_regime, lifetime, pairs, scatter
 from uq.provenance import provenance
 from uq.registry import find_model
+from uq.report.convergence import convergence_of
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
@@ -102,6 +105,10 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
     found = outcomes(ds, summary)
     methods = sensitivity_of(ds)
     lives = [one for one in found if one.entry["b_lives"]]
+    others = [one for one in found if one not in lives]
+    rows = independent_rows(ds)
+    several = len(occurring_regimes(rows)) > 1
+    spread = histogram_by_regime if several else histogram
     lost = int(failed(ds).sum())
     return {
         "title": str(ds.attrs["title"]),
@@ -114,10 +121,12 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
         "failed": lost,
         "max_failed": study.analysis.max_failed,
         "regimes": regime_table(summary) if summary["regime"] else None,
+        "pairs": _pairs(ds) if several and len(independent_inputs(rows)) > 1 else None,
+        "convergence": convergence_of(ds, found),
         "results": list(result_tables(found)),
-        "histograms": _pictures(ds, [one for one in found if one not in lives], histogram),
+        "histograms": _pictures(ds, others, spread, scatter),
         "lives": life_table(found),
-        "survival": _pictures(ds, lives, lifetime),
+        "survival": _pictures(ds, lives, lifetime, *[spread] * several, scatter),
         "notes": summary["notes"],
         "methods": methods,
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
@@ -145,12 +154,30 @@ def _facts(ds: xr.Dataset, summary: dict[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def _pictures(ds: xr.Dataset, found: list[Outcome], draw: Any) -> list[Picture]:
-    """Draw each output once, with all its elements."""
+_CAPTIONS: dict[Any, str] = {
+    histogram: "{name}: {meaning}",
+    lifetime: "{name}: {meaning}",
+    histogram_by_regime: "{name} by regime",
+    scatter: "{name} against the inputs that move it most",
+}
+
+
+def _pictures(ds: xr.Dataset, found: list[Outcome], *kinds: Any) -> list[Picture]:
+    """Draw each output once of each kind, with all its elements where the kind can."""
     if not independent_rows(ds).sizes["sample"]:
         return []
     names = dict.fromkeys(one.name.partition("[")[0] for one in found)
-    return [picture(draw(ds, name), f"{name}: {ds[name].attrs['long_name']}") for name in names]
+    return [
+        picture(
+            draw(ds, name), _CAPTIONS[draw].format(name=name, meaning=ds[name].attrs["long_name"])
+        )
+        for name in names
+        for draw in kinds
+    ]
+
+
+def _pairs(ds: xr.Dataset) -> Picture:
+    return picture(pairs(ds), "Rows by regime, over the inputs that decide it most")
 
 
 def _inputs_picture(ds: xr.Dataset) -> Picture | None:

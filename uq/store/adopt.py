@@ -10,10 +10,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq import results
+from uq.code import made_here
 from uq.columns import columns_of
 from uq.contract import Status
 from uq.evaluate import Chunk
-from uq.provenance import provenance
 from uq.sampling import Rows, row_block
 from uq.store.chunk_file import Block
 from uq.store.tally import Failures
@@ -61,7 +61,8 @@ def adopted(study: "Study", path: Path, all_rows: bool) -> Iterator[Adopted]:
     Adopted
     """
     ds = results.open_result(path)
-    made = {name: str(ds.attrs[name]) for name in provenance() if name in ds.attrs}
+    here = made_here(study.model_reference)
+    made = {name: str(ds.attrs[name]) for name in here if name in ds.attrs}
     for first in range(0, ds.sizes["sample"], _ROWS):
         some = ds.isel(sample=slice(first, first + _ROWS)).load()
         wanted = np.ones(some.sizes["sample"], np.bool_) if all_rows else ~results.failed(some)

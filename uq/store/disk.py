@@ -11,10 +11,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq import results
+from uq.code import made_here
 from uq.columns import columns_of
 from uq.errors import RunError
 from uq.evaluate import Chunk
-from uq.provenance import provenance
 from uq.sampling import Rows, rows
 from uq.store.chunk_file import Block, Piece, joined, load, pack, row_type, save, unpack
 from uq.store.files import reason
@@ -61,7 +61,7 @@ class DiskStore(Tally):
         self._records: list[RowsRecord] = []
         self._pending: list[Piece] = []
         self._pending_failures: Failures = {}
-        self._made = provenance()
+        self._made = made_here(study.model_reference)
         self._written = time.monotonic()
         self._cost = _FIRST_COST
 

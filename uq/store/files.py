@@ -31,17 +31,19 @@ def check_target(path: Path, size: int) -> None:
         raise InputError(f"{path}: is a folder; give the name of a file in it")
     folder = nearest_folder(path)
     if not folder.is_dir():
-        raise InputError(f"{path}: {folder} is a file, not a folder")
+        raise InputError(f"{path}: {folder} is a file, not a folder; choose another place with -o")
     try:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        raise InputError(f"{path}: cannot write in {folder}: {error.strerror}") from None
+        raise InputError(
+            f"{path}: cannot write in {folder}: {error.strerror}; choose another place with -o"
+        ) from None
     free = shutil.disk_usage(folder).free
     if free < size:
         raise InputError(
             f"{path}: the result takes about {size / 1e6:.0f} MB, "
-            f"and {folder} has {free / 1e6:.0f} MB left"
+            f"and {folder} has {free / 1e6:.0f} MB left; choose another place with -o"
         )
 
 

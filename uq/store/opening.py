@@ -7,10 +7,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from uq import results
 from uq.changes import refusal_to_extend, what_changed
+from uq.code import is_other_code, made_here
 from uq.errors import InputError
 from uq.interrupts import undone
-from uq.provenance import provenance
 from uq.store.adopt import adopted
 from uq.store.disk import DiskStore
 from uq.store.folder import clear, folder_of, history, locked
@@ -29,6 +30,7 @@ def keep(
     fresh: bool = False,
     again: Mapping[str, Any] | None = None,
     say: Callable[[str], object] = lambda _: None,
+    mixed: bool = False,
 ) -> Iterator[DiskStore]:
     """Keep the rows of a run on disk, beside those that are there.
 
@@ -45,6 +47,8 @@ def keep(
         of the study's.
     say : callable
         Called with a line for the user: what was found.
+    mixed : bool
+        Take over also rows that other code of the model computed.
 
     Yields
     ------
@@ -53,7 +57,8 @@ def keep(
     Raises
     ------
     InputError
-        When the rows that are kept are not of this study, or another process writes.
+        When the rows that are kept are not of this study, or other code computed them, or another
+        process writes.
     RunError
         When nothing can be written.
     """
@@ -62,6 +67,8 @@ def keep(
         records = [] if fresh else _usable(folder, study, again)
         if not records:
             clear(folder)
+        if not fresh and not mixed:
+            _check_code(study, path, records)
         store = DiskStore(study, path)
         with undone(store.close):
             if records:
@@ -73,7 +80,7 @@ def keep(
             store.settings = dict(again or {})
             if store.found:
                 say(f"{path}: {store.found} of {store.total} rows were done already")
-            for line in _other_versions(store):
+            for line in _other_versions(study, store):
                 say(f"{path}: {line}")
             yield store
 
@@ -155,8 +162,20 @@ def _run_record(study: "Study", store: DiskStore, again: bool) -> RunRecord:
     )
 
 
-def _other_versions(store: DiskStore) -> Iterator[str]:
-    here = provenance()
+def _check_code(study: "Study", path: Path, records: list[RunRecord | RowsRecord]) -> None:
+    """Refuse to go on with rows that other code of the model computed."""
+    made = [record.made for record in records if isinstance(record, RowsRecord)]
+    if not records and path.is_file():
+        made = [results.open_result(path).attrs]
+    if any(is_other_code(one, study.model_reference) for one in made):
+        raise InputError(
+            f"{path}: holds rows that other code of model '{study.model.name}' computed, whose "
+            "version was left as it was; start anew with uq run --fresh, or go on with --mixed"
+        )
+
+
+def _other_versions(study: "Study", store: DiskStore) -> Iterator[str]:
+    here = made_here(study.model_reference)
     for made in store.made:
         differing = [name for name in here if made.get(name) != here[name]]
         if differing:

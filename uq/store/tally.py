@@ -1,5 +1,6 @@
 """Counts of the rows of a run, wherever they are kept."""
 
+from collections import Counter
 from math import prod
 from typing import TYPE_CHECKING
 
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from uq.columns import columns_of, failed_rows
 from uq.contract import Status
+from uq.glimpse import Glimpse
 from uq.work import Work
 
 if TYPE_CHECKING:
@@ -36,6 +38,10 @@ class Tally:
     found : int
         Rows that were there from the start.
     failures : Failures
+    status : dict of str to int
+        Status label -> rows.
+    glimpse : Glimpse
+        Of the rows that arrived in this process.
     """
 
     def __init__(self, work: Work) -> None:
@@ -45,12 +51,15 @@ class Tally:
         self.failed = 0
         self.found = 0
         self.failures: Failures = {}
+        self.status: Counter[str] = Counter()
+        self.glimpse = Glimpse(work)
         self._bad_shapes = 0
 
     def count(self, rows: int, failed: int, status: dict[str, int], failures: Failures) -> None:
         """Count some rows."""
         self.done += rows
         self.failed += failed
+        self.status.update(status)
         self._bad_shapes += status.get(Status.BAD_SHAPE.label, 0)
         self.failures = joined_failures(self.failures, failures)
 

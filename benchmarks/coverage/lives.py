@@ -1,0 +1,163 @@
+"""Lifetimes that never end or are censored: survival, B-lives, shares, fitted laws."""
+
+import warnings
+
+import numpy as np
+import openturns as ot
+from scipy import stats
+
+from benchmarks.coverage.problems import LIFE, never_cdf, repeated, study_of
+from benchmarks.coverage.tally import Tally
+from uq.life_fit import life_fits
+from uq.lifetime import survival
+from uq.statistics import summarise
+
+B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
+TIMES = (0.3, 0.8)
+
+
+def lives(design, repetitions):
+    """Count bands, B-lives and shares of lives that never end, or are censored.
+
+    Parameters
+    ----------
+    design : {"monte-carlo", "latin-hypercube"}
+    repetitions : int
+
+    Returns
+    -------
+    list of Line
+    """
+    samples, replicates = (500, 1) if design == "monte-carlo" else (64, 8)
+    rows = (
+        f"{samples} independent rows"
+        if replicates == 1
+        else f"{design}, {replicates} replicates of {samples} rows"
+    )
+    analysis = {
+        "outputs": ["never", "cut", "left"],
+        "quantiles": [0.5],
+        "thresholds": {"left": 0.5, "never": 2.0},
+    }
+    study = study_of(design, samples, replicates, analysis=analysis)
+    tallies = {
+        name: Tally(f"{title}, {rows}", REASONS.get((design, name)))
+        for name, title in (
+            ("never", "life that may never end"),
+            ("cut", "life censored at a horizon"),
+            ("left", "life censored at random times"),
+        )
+    }
+    for ds in repeated(study, repetitions):
+        outputs = summarise(ds)["outputs"]
+        for name, tally in tallies.items():
+            cdf = never_cdf if name == "never" else LIFE.cdf  # alike below the plateau
+            for label, p in B_LIVES.items():
+                tally.entry(label, LIFE.ppf(p), outputs[name]["b_lives"][label])
+            curve = survival(ds, name)
+            for time in TIMES:
+                at = curve.sel(time=time, method="ffill")
+                tally.add(f"survival at {time}", 1 - cdf(time), float(at["low"]), float(at["high"]))
+        found = outputs["never"]["thresholds"]["2.0"]["below"]
+        tallies["never"].entry("P(< 2.0)", never_cdf(2.0), found)
+        found = outputs["left"]["thresholds"]["0.5"]["kaplan_meier"]["below"]
+        tallies["left"].entry("P(< 0.5)", LIFE.cdf(0.5), found)
+        if replicates == 1:
+            _rivals(tallies["left"], ds)
+    return [line for tally in tallies.values() for line in tally.lines()]
+
+
+def _rivals(tally, ds):
+    ended = ds["left_censored"].values == 0
+    values = ds["left"].values
+    curve = stats.ecdf(stats.CensoredData(uncensored=values[ended], right=values[~ended])).sf
+    for method in ("linear", "log-log"):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # undefined before the first end
+            band = curve.confidence_interval(method=method)
+        for time in TIMES:
+            ends = (float(end.evaluate(time)) for end in band)
+            tally.add(f"survival at {time}", LIFE.sf(time), *ends, by=f"scipy ecdf, {method}")
+
+
+FIT_ROWS = 60
+SHAPE, SCALE = 1.5, 1.0
+MEDIAN, SIGMA = 1.0, 0.8
+FITTED = {
+    "weibull": (
+        stats.weibull_min(SHAPE, scale=SCALE),
+        {"shape": SHAPE, "scale": SCALE},
+        {"rate": {"distribution": "uniform", "lower": 1.0, "upper": 1.0 + 1e-9}},
+    ),
+    "lognormal": (
+        stats.lognorm(SIGMA, scale=MEDIAN),
+        {"median": MEDIAN, "sigma": SIGMA},
+        {},
+    ),
+}
+
+
+def fits(law, censored, repetitions):
+    """Count the intervals of a fitted law, of the samples for which it is not refused.
+
+    Parameters
+    ----------
+    law : {"weibull", "lognormal"}
+    censored : bool
+        At the time by which 70 % have ended.
+    repetitions : int
+
+    Returns
+    -------
+    list of Line
+    """
+    truth, parameters, _ = FITTED[law]
+    laws = {
+        "rate": {"distribution": "uniform", "lower": 1.0, "upper": 1.0 + 1e-9},
+        "depth": {"distribution": "weibull", "shape": SHAPE, "scale": SCALE}
+        if law == "weibull"
+        else {"distribution": "lognormal", "median": MEDIAN, "sigma": SIGMA},
+    }
+    study = study_of("monte-carlo", FIT_ROWS, model="exponential-wear", laws=laws)
+    how = "30 % censored at a horizon" if censored else "complete"
+    tally = Tally(
+        f"{law} life, {FIT_ROWS} independent rows, {how}",
+        {"not refused": "the test refuses 5 % of samples of the true law"},
+    )
+    for ds in repeated(study, repetitions):
+        ds = _cut(ds, truth.ppf(0.7)) if censored else ds
+        fit = life_fits(ds, "life")["life"][law]
+        tally.add("not refused, where the law is true", 1.0, 1.0, 2.0 - ("refused" in fit) * 2)
+        if "refused" in fit:
+            continue
+        for name, found in fit["parameters"].items():
+            tally.entry(name, parameters[name], found)
+        for name, p in B_LIVES.items():
+            tally.entry(name, truth.ppf(p), fit[name])
+        if not censored:
+            _asymptotic(tally, law, ds["life"].values, parameters)
+    return tally.lines()
+
+
+def _cut(ds, horizon):
+    life = ds["life"].values
+    flag = {"role": "censored", "long_name": "whether life is only a lower bound"}
+    ds = ds.assign(life=("sample", np.minimum(life, horizon), ds["life"].attrs))
+    return ds.assign(life_censored=("sample", (life > horizon).astype(np.int8), flag))
+
+
+def _asymptotic(tally, law, life, parameters):
+    """Count what OpenTURNS gives: the normal law of maximum likelihood."""
+    sample = ot.Sample(np.log(life)[:, None])
+    if law == "weibull":
+        return
+    found = ot.NormalFactory().buildEstimator(sample).getParameterDistribution()
+    low, high = (
+        [found.getMarginal(i).computeQuantile(q)[0] for i in (0, 1)] for q in (0.025, 0.975)
+    )
+    by = "OpenTURNS NormalFactory of the logarithms"
+    tally.add("median", parameters["median"], np.exp(low[0]), np.exp(high[0]), by=by)
+    tally.add("sigma", parameters["sigma"], low[1], high[1], by=by)
+
+
+REASONS = {}

@@ -1,0 +1,51 @@
+"""The parts of the table: what can be counted by itself, each in under five minutes."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+from benchmarks.coverage import further, indices, lives, plain
+from benchmarks.coverage.tally import Line
+
+REPETITIONS = 2000
+
+
+class Part(NamedTuple):
+    """A part of the table.
+
+    Attributes
+    ----------
+    count : callable
+        ``count(repetitions)`` -> lines.
+    repetitions : int
+        Fewer where others are dear.
+    """
+
+    count: Callable[[int], list[Line]]
+    repetitions: int = REPETITIONS
+
+
+NULLS = ("rbd-fast", "delta", "pawn", "regional", "quantile", "hdmr")
+
+PARTS = {
+    **{f"plain-{name}": Part(partial(plain.plain, name)) for name in plain.DESIGNS},
+    "lives": Part(partial(lives.lives, "monte-carlo")),
+    "lives-replicates": Part(partial(lives.lives, "latin-hypercube")),
+    **{
+        f"fit-{law}{'-censored' * censored}": Part(partial(lives.fits, law, censored))
+        for law in lives.FITTED
+        for censored in (False, True)
+    },
+    "sobol": Part(indices.sobol),
+    "sobol-jump": Part(indices.sobol_of_jump),
+    "sobol-others": Part(indices.sobol_of_others, 500),
+    "sobol-scipy": Part(indices.sobol_of_scipy, 200),
+    "morris": Part(indices.morris),
+    **{f"null-{name}": Part(partial(indices.nulls, name)) for name in NULLS},
+    "bootstraps": Part(indices.bootstraps, 200),
+    "twin": Part(further.twin),
+    "stopped": Part(further.stopped),
+    "subset": Part(further.subset),
+    "subset-others": Part(further.subset_of_openturns, 200),
+    "importance": Part(further.importance),
+}

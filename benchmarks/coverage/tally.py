@@ -1,0 +1,104 @@
+"""Counting: how often an interval was given, and how often it held a number that is known."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import stats
+
+LOW, HIGH = 0.93, 0.97
+"""Where the coverage of an interval of 95 % should lie."""
+
+ENOUGH = 1000
+"""With fewer repetitions the coverage itself is not known to a per cent: its interval counts."""
+
+OURS = "uq"
+
+
+class Line(NamedTuple):
+    """What became of one interval over all repetitions.
+
+    Attributes
+    ----------
+    problem, what, by : str
+        The problem, the quantity, and whose interval it is.
+    repetitions, given, held : int
+    width : float
+        Median of the widths of those given; NaN for bounds on one side.
+    reason : str
+        Why its coverage does not lie between 93 and 97 %, or "".
+    """
+
+    problem: str
+    what: str
+    by: str
+    repetitions: int
+    given: int
+    held: int
+    width: float
+    reason: str
+
+    @property
+    def coverage(self):
+        """Share of the intervals given that held the truth, with its own interval (exact)."""
+        if not self.given:
+            return np.nan, np.nan, np.nan
+        found = stats.binomtest(self.held, self.given).proportion_ci()
+        return self.held / self.given, found.low, found.high
+
+    @property
+    def unexplained(self):
+        """Whether an interval of ours is off and nothing says why."""
+        if not self.given:
+            return False
+        value, low, high = self.coverage
+        if self.repetitions >= ENOUGH:
+            low = high = value
+        return self.by == OURS and not (low <= HIGH and high >= LOW) and not self.reason
+
+
+class Tally:
+    """The intervals of one problem.
+
+    Parameters
+    ----------
+    problem : str
+        What it is, with the design and its rows.
+    reasons : dict of str to str, optional
+        Beginning of the name of a quantity -> why its coverage lies elsewhere.
+    """
+
+    def __init__(self, problem, reasons=None):
+        self.problem, self.reasons = problem, reasons or {}
+        self._held = {}
+
+    def add(self, what, truth, low, high, by=OURS):
+        """Count one interval; an end that is None or NaN is not given."""
+        known = all(end is not None and not np.isnan(end) for end in (low, high))
+        held = (bool(low <= truth <= high), float(high) - float(low)) if known else None
+        self._held.setdefault((what, by), []).append(held)
+
+    def entry(self, what, truth, entry, by=OURS):
+        """Count the interval of an entry with ``low`` and ``high``."""
+        self.add(what, truth, entry["low"], entry["high"], by)
+
+    def lines(self):
+        """Return what was counted."""
+        return [self._line(what, by, held) for (what, by), held in self._held.items()]
+
+    def _line(self, what, by, held):
+        given = [one for one in held if one is not None]
+        widths = [width for _, width in given if np.isfinite(width)]
+        return Line(
+            self.problem,
+            what,
+            by,
+            len(held),
+            len(given),
+            sum(one for one, _ in given),
+            float(np.median(widths)) if widths else np.nan,
+            self._reason(what) if by == OURS else "",
+        )
+
+    def _reason(self, what):
+        fitting = [start for start in self.reasons if what.startswith(start)]
+        return self.reasons[max(fitting, key=len)] if fitting else ""

@@ -1,0 +1,118 @@
+"""A million rows of ten inputs and twenty outputs: time and memory of what is said of them.
+
+``python -m benchmarks.large``. Each command runs in a process of its own.
+"""
+
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from benchmarks.coverage.problems import Settings, computed, study_of
+from uq.contract import Model, Output, Parameter
+
+INPUTS, OUTPUTS = 10, 20
+
+
+def _input(i):
+    return Annotated[float, Parameter(f"x_{i}", "1", "a number", (0.0, 1.0), "none")]
+
+
+Ten = NamedTuple("Ten", [(f"x{i}", _input(i)) for i in range(INPUTS)])  # noqa: UP014
+Ten.__new__.__defaults__ = (0.5,) * INPUTS
+
+
+def _batch(x, seed, settings):
+    weights = np.random.default_rng(0).random((OUTPUTS, INPUTS)) ** 4
+    outputs = {
+        f"y{k}": np.sin(3 * x @ w) + x @ w + x[:, 0] * x[:, 1] for k, w in enumerate(weights)
+    }
+    return outputs, np.zeros(len(x), np.int8)
+
+
+LARGE = Model(
+    "large",
+    "ten inputs and twenty outputs",
+    "1",
+    Ten,
+    Settings,
+    {f"y{k}": Output("1", f"output {k}") for k in range(OUTPUTS)},
+    _batch,
+)
+LAWS = dict.fromkeys(Ten._fields, {"distribution": "uniform", "lower": 0.0, "upper": 1.0})
+ANALYSIS = {
+    "quantiles": [0.01, 0.05, 0.5, 0.95, 0.99],
+    "thresholds": {f"y{k}": [1.0] for k in range(OUTPUTS)},
+}
+DESIGNS = {
+    "plain": ("monte-carlo", 1_000_000, 1),
+    "replicates": ("sobol", 2**17, 8),
+    "crossed": ("saltelli", 2**13, 11),
+}
+COMMANDS = {
+    "summary": ("plain", ("summary",), 20),
+    "summary of 8 replicates": ("replicates", ("summary",), 20),
+    "Sobol' indices with intervals": ("crossed", ("sensitivity",), 60),
+    "RBD-FAST": ("plain", ("sensitivity", "--method", "rbd-fast"), None),
+    "delta": ("plain", ("sensitivity", "--method", "delta"), None),
+    "PAWN": ("plain", ("sensitivity", "--method", "pawn"), None),
+    "quantile-oriented": ("plain", ("sensitivity", "--method", "quantile"), None),
+    "HDMR, one output": ("plain", ("sensitivity", "--method", "hdmr", "--output", "y0"), None),
+}
+MOST_MEMORY = 3.0  # GB
+
+
+def main(chosen):
+    """Time the chosen commands, or all."""
+    late = []
+    with tempfile.TemporaryDirectory() as folder:
+        files = {}
+        for title, (name, arguments, most) in COMMANDS.items():
+            if chosen and not any(title.startswith(one) for one in chosen):
+                continue
+            if name not in files:
+                files[name] = _written(Path(folder), name)
+            seconds, memory = _timed([arguments[0], str(files[name]), *arguments[1:], "--json"])
+            asked = "" if most is None else f" (at most {most} s and {MOST_MEMORY:g} GB)"
+            print(f"{title:32} {seconds:6.1f} s, {memory:.2f} GB{asked}", flush=True)
+            if most is not None and (seconds > most or memory > MOST_MEMORY):
+                late.append(title)
+    return f"too slow or too large: {', '.join(late)}" if late else 0
+
+
+def _written(folder, name):
+    method, samples, replicates = DESIGNS[name]
+    path = folder / f"{name}.nc"
+    study = study_of(method, samples, replicates, "benchmarks.large:LARGE", LAWS, analysis=ANALYSIS)
+    ds = computed(study)
+    ds.to_netcdf(path)
+    print(f"{name}: {ds.sizes['sample']:,} rows, {path.stat().st_size / 1e6:.0f} MB", flush=True)
+    return path
+
+
+def _timed(arguments):
+    """Return the time of a command [s] and the most memory that it held [GB]."""
+    code = (
+        "import resource, sys\n"
+        "from uq.cli import main\n"
+        "try:\n"
+        "    main()\n"
+        "finally:\n"
+        "    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, file=sys.stderr)\n"
+    )
+    began = time.perf_counter()
+    ended = subprocess.run(
+        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, check=False
+    )
+    seconds = time.perf_counter() - began
+    if ended.returncode:
+        raise RuntimeError(ended.stderr)
+    return seconds, int(ended.stderr.split()[-1]) * 1024 / 1e9
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,8 @@
+"""A ball dropped on a plate: the machine of notebook 06, as a package of its own.
+
+While it lies in the folder one works in, ``uq run drop.toml --model bouncing_ball:MODEL`` finds it.
+"""
+
+from bouncing_ball.machine import MODEL
+
+__all__ = ["MODEL"]

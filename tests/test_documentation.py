@@ -1,0 +1,169 @@
+"""What the documentation names exists, its examples run, and what it quotes is what is printed."""
+
+import doctest
+import importlib
+import re
+import shutil
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+import yaml
+
+import uq as public
+from uq.errors import InputError
+from uq.registry import find_model, model_names
+from uq.study import study_from_text
+
+HOUSE = Path(__file__).parents[1]
+sys.path.insert(0, str(HOUSE / "docs"))
+
+import generated  # noqa: E402
+import pages  # noqa: E402
+
+SOURCES = {
+    str(path.relative_to(HOUSE)): path.read_text(encoding="utf-8")
+    for path in (HOUSE / "README.md", HOUSE / "CONTRIBUTING.md", *(HOUSE / "docs").rglob("*.md"))
+}
+every_source = pytest.mark.parametrize("name", SOURCES)
+
+EXAMPLES = sorted({f"uq.{module}" for module in public._MODULES.values()})
+
+
+def blocks(name, language):
+    """Return the fenced blocks of one language in a page."""
+    return re.findall(rf"^```{language}\n(.*?)^```", SOURCES[name], re.DOTALL | re.MULTILINE)
+
+
+@pytest.mark.parametrize("module", ["generated", "uq.contract", *EXAMPLES])
+def test_examples_in_docstrings_run(module, folder):
+    shutil.copytree(HOUSE / "studies", "studies")
+    found = doctest.testmod(importlib.import_module(module), extraglobs={"uq": public})
+    assert found.failed == 0
+
+
+def test_there_are_examples():
+    finder = doctest.DocTestFinder()
+    shown = {
+        module
+        for module in EXAMPLES
+        if any(test.examples for test in finder.find(importlib.import_module(module)))
+    }
+    assert len(shown) >= len(EXAMPLES) / 2
+
+
+@every_source
+def test_directives_stand_for_something(name):
+    assert "{{ " not in pages.expanded(SOURCES[name])
+
+
+@every_source
+def test_commands_and_their_options_exist(name):
+    known = generated.commands()
+    code = re.findall(r"`(uq [^`\n]+)`", SOURCES[name])
+    lines = [line for block in blocks(name, "sh") for line in block.splitlines()]
+    for command in (*code, *(line for line in lines if line.startswith("uq "))):
+        verb, *rest = command.partition("#")[0].split()[1:]
+        if verb in ("VERB", "--install-completion"):
+            continue
+        assert verb in known, command
+        options = {text for option in known[verb].params for text in option.opts} | {"--help"}
+        assert {word for word in rest if word.startswith("--")} <= options, command
+
+
+@every_source
+def test_studies_shown_are_accepted(name):
+    for block in blocks(name, "toml"):
+        refusals = {model: refusal(block, model) for model in models_of(block)}
+        assert not all(refusals.values()), (block, refusals)
+
+
+def models_of(block):
+    model = tomllib.loads(block).get("study", {}).get("model")
+    return [model] if model else model_names()
+
+
+def refusal(block, model):
+    """Return why a part of a study is refused, completed by the least that a study needs."""
+    data = tomllib.loads(block)
+    text = block
+    if "study" not in data:
+        text += f'\n[study]\nname = "shown"\nmodel = "{model}"\n'
+    if "design" not in data:
+        text += '\n[design]\nmethod = "monte-carlo"\nsamples = 64\n'
+    if "uncertain" not in data:
+        name, nominal = next(iter(find_model(model).nominal.items()))
+        upper = 0.999 * nominal + 0.001 * find_model(model).parameter(name).bounds[1]
+        law = f'{{distribution = "uniform", lower = {nominal!r}, upper = {upper!r}}}'
+        text += f"\n[uncertain]\n{name} = {law}\n"
+    try:
+        study_from_text(text, folder=HOUSE)
+    except InputError as error:
+        return error.lines
+    return None
+
+
+@every_source
+def test_python_shown_compiles_and_names_what_there_is(name):
+    for block in blocks(name, "python"):
+        compile(block, name, "exec")
+        assert set(re.findall(r"\buq\.(\w+)\(", block)) <= set(public.__all__)
+        for module, names in re.findall(r"^from ((?:uq|models)\.\S+) import (.*)$", block, re.M):
+            found = vars(importlib.import_module(module))
+            assert set(re.split(r", *", names)) <= found.keys()
+
+
+@every_source
+def test_files_modules_and_targets_named_exist(name):
+    text = SOURCES[name]
+    for study in re.findall(r"\bstudies/([\w-]+)\.toml", text):
+        assert study == "mine" or (HOUSE / f"studies/{study}.toml").is_file(), study
+    for module in re.findall(r"python -m ((?:models|benchmarks|uq)[.\w]*)", text):
+        assert importlib.util.find_spec(module), module
+    for path in re.findall(r"`((?:uq|models|tests|docs|studies|benchmarks)/[\w./-]*)`", text):
+        assert (HOUSE / path).exists(), path
+    for link in re.findall(r"\]\(((?:docs/)?[\w./-]+\.(?:md|png))[#)]", text):
+        inside = (HOUSE / name).parent / link
+        assert inside.is_file(), link
+    targets = re.findall(r"^(\w+):", (HOUSE / "Makefile").read_text(), re.M)
+    assert set(re.findall(r"(?:^|`)make (\w+)", text, re.M)) <= set(targets)
+
+
+def test_every_key_and_every_law_is_described():
+    described = "".join(pages.expanded(text) for text in SOURCES.values())
+    keys = [
+        f"| `{key}` |" for table in generated.STUDY_TABLES.values() for key in table.model_fields
+    ]
+    laws = [f'| `"{law}"` |' for law in generated.LAWS]
+    assert [line for line in keys + laws if line not in described] == []
+
+
+def test_the_citation_is_that_of_this_version():
+    citation = yaml.safe_load((HOUSE / "CITATION.cff").read_text())
+    project = tomllib.loads((HOUSE / "pyproject.toml").read_text())["project"]
+    assert citation["version"] == project["version"]
+    assert citation["license"] == project["license"]
+    cited = " ".join(text for name in generated.MACHINES for text in find_model(name).references)
+    assert [one["title"] for one in citation["references"] if one["title"] not in cited] == []
+    assert len(citation["references"]) == len(generated.MACHINES)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("module", "kept"),
+    [
+        ("models.vibrator.table1", "docs/outputs/vibrator-table1.txt"),
+        ("models.mole.table", "docs/outputs/mole-claims.txt"),
+    ],
+)
+def test_what_is_quoted_is_what_is_printed(module, kept, capsys):
+    importlib.import_module(module).main()
+    printed = capsys.readouterr().out
+    assert comparable(printed) == comparable((HOUSE / kept).read_text())
+
+
+def comparable(text):
+    """Return what does not depend on the processor: no chaos, no rounding errors."""
+    lines = [line for line in text.splitlines() if "chaotic" not in line]
+    return [re.sub(r" +-?(0\.0+|\S+e-1[5-9])(?!\S)", " 0", line) for line in lines]

@@ -1,0 +1,57 @@
+"""Rows of a model whose sources were edited are not mixed with those of before."""
+
+import shutil
+
+import pytest
+
+from uq.code import code_of
+
+FILES = {
+    "__init__.py": "",
+    "model.py": "from plant.parts import (\n    pump,\n    valve,\n)\nimport plant.tank\n",
+    "parts/__init__.py": "from ..laws import law\n",
+    "parts/pump.py": "def work():\n    from plant import late\n",
+    "parts/valve.py": "import numpy\n",
+    "laws.py": "law = 1\n",
+    "late.py": "when = 2\n",
+    "tank.py": "from .laws import law\n",
+    "other.py": "import plant.model\n",
+}
+
+
+@pytest.fixture
+def plant(folder, monkeypatch):
+    """Write a package, and return a function that tells the code of its model."""
+    monkeypatch.syspath_prepend(folder)
+    for name, text in FILES.items():
+        (folder / "plant" / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "plant" / name).write_text(text)
+    return lambda: code_of.__wrapped__("plant.model:MODEL")
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_code_is_what_a_model_imports_of_its_package(plant, folder, name):
+    before = plant()
+    file = folder / "plant" / name
+    file.write_text(file.read_text() + "# edited\n")
+    assert (plant() == before) == (name == "other.py")
+
+
+def test_code_is_the_same_wherever_it_lies(plant, folder, monkeypatch):
+    before = plant()
+    shutil.move(folder / "plant", folder / "elsewhere" / "plant")
+    monkeypatch.syspath_prepend(folder / "elsewhere")
+    assert plant() == before
+
+
+def test_a_module_of_one_file_is_a_model_too(folder, monkeypatch):
+    monkeypatch.syspath_prepend(folder)
+    (folder / "alone.py").write_text("a = 1\n")
+    before = code_of.__wrapped__("alone:MODEL")
+    (folder / "alone.py").write_text("a = 2\n")
+    assert code_of.__wrapped__("alone:MODEL") != before
+
+
+def test_installed_machines_have_codes_of_their_own():
+    assert len({code_of(name) for name in ("beam", "vibrator", "mole", "linear")}) == 4
+    assert code_of("linear") == code_of("models.analytic:LINEAR")

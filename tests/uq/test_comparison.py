@@ -1,0 +1,284 @@
+"""Two studies of one model: what differs, by how much, and how well that is known."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_output, with_status
+from scipy import stats
+
+import uq as api
+from uq.comparison import comparison
+from uq.contract import Status
+from uq.errors import InputError
+from uq.intervals import wilson_interval
+from uq.statistics import summarise
+from uq.store.files import write_result
+from uq.two_samples import Estimate, difference, sd_interval
+
+NARROW = {"distribution": "uniform", "lower": 0.3, "upper": 0.7, "source": "better made"}
+FOUR = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
+
+
+def study(uncertain, more=None, **design):
+    tables = {
+        "study": {"name": "one", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 200} | design,
+        "uncertain": uncertain,
+        "analysis": {"thresholds": {"y": [4.0]}},
+    }
+    return computed(study_of(tables | (more or {})))
+
+
+def width(found, estimate="mean"):
+    line = found.loc[("y", estimate)]
+    return line["high"] - line["low"]
+
+
+def share(hits, rows):
+    return Estimate(hits / rows, *wilson_interval(hits / rows, rows))
+
+
+def test_a_difference_of_shares_has_the_published_interval():
+    # Newcombe, Stat. Med. 17, 873 (1998), Table II, method 10.
+    found = difference(share(48, 80), share(56, 70), 0.0)
+    assert found == pytest.approx((0.2, 0.0524, 0.3339), abs=5e-5)
+    found = difference(share(0, 10), share(10, 10), 0.0)
+    assert found == pytest.approx((1.0, 0.6075, 1.0), abs=5e-5)
+
+
+def test_a_difference_of_paired_shares_has_the_published_interval():
+    # Newcombe, Stat. Med. 17, 2635 (1998), Table III, method 10: of 50 pairs 36 agree.
+    first = np.repeat([1.0, 1.0, 0.0, 0.0], [36, 2, 12, 0])
+    second = np.repeat([1.0, 0.0, 1.0, 0.0], [36, 2, 12, 0])
+    ds = study(FOUR, samples=50)
+    pair = [
+        asking(with_output(ds, "hit", hits), thresholds={"hit": [0.5]}) for hits in (first, second)
+    ]
+    line = api.compare(*pair).loc[("hit", "P(>0.5)")]
+    assert tuple(line[["difference", "low", "high"]]) == pytest.approx(
+        (0.2, 0.0569, 0.3404), abs=5e-5
+    )
+
+
+def test_pairs_of_rows_give_the_interval_of_students_paired_test():
+    one, other = study(FOUR), study(FOUR | {"x4": NARROW})
+    line = api.compare(one, other).loc[("y", "mean")]
+    test = stats.ttest_rel(other["y"].values, one["y"].values).confidence_interval()
+    assert (line["low"], line["high"]) == pytest.approx(tuple(test))
+    assert line["difference"] == pytest.approx(float(other["y"].mean() - one["y"].mean()))
+
+
+@pytest.mark.parametrize("estimate", ["mean", "sd", "quantile 0.5", "P(>4.0)"])
+@pytest.mark.parametrize("design", [{}, {"method": "sobol", "samples": 32, "replicates": 8}])
+def test_what_is_known_of_the_rows_decides_the_width(estimate, design):
+    one, narrow = study(FOUR, **design), FOUR | {"x4": NARROW}
+    pairs = width(api.compare(one, study(narrow, **design)), estimate)
+    strangers = width(api.compare(one, study(narrow, seed=8, **design)), estimate)
+    assert pairs < strangers
+
+
+def test_the_same_numbers_dealt_out_otherwise_are_reckoned_with_at_their_worst():
+    three = {name: law for name, law in FOUR.items() if name != "x3"}
+    found = comparison(study(FOUR), study(three))
+    assert found["pairing"] == "unknown" and "another seed" in found["notes"][0]
+    output = found["outputs"]["y"]
+    for one in (output["mean"], output["sd"], output["quantiles"]["0.5"]):
+        a, b, apart = one["a"], one["b"], one["difference"]
+        assert apart["high"] == pytest.approx(b["high"] - a["low"])
+        assert apart["low"] == pytest.approx(b["low"] - a["high"])
+
+
+def test_an_extended_study_shares_its_first_rows():
+    one, other = study(FOUR), study(FOUR, samples=400)
+    assert width(api.compare(one, other)) < width(
+        api.compare(one, study(FOUR, samples=400, seed=3))
+    )
+    found = comparison(one, other)
+    assert [(c["name"], c["a"], c["b"]) for c in found["changed"]] == [("samples", "200", "400")]
+
+
+def test_results_that_agree_have_no_interval_of_zero_width():
+    for design in ({}, {"method": "sobol", "samples": 32, "replicates": 8}):
+        found = api.compare(*[study(FOUR, **design)] * 2)
+        assert (found["difference"] == 0).all()
+        gap = (found["high"] - found["low"]).drop([("y", "mean"), ("y", "sd")])
+        assert ((gap > 0) | gap.isna()).all()
+    # The same scramble, a mean that Sobol' points integrate exactly: only rounding differs.
+    pair = [
+        study(FOUR | {"x4": law}, method="sobol", samples=64, replicates=8)
+        for law in (UNIFORM, NARROW)
+    ]
+    assert np.isnan(width(api.compare(*pair)))
+
+
+def test_each_side_is_what_its_own_summary_says():
+    pair = [study(FOUR), study(FOUR | {"x4": NARROW}, samples=300)]
+    found = comparison(*pair)["outputs"]["y"]
+    for key, ds in zip("ab", pair, strict=True):
+        entry = summarise(ds)["outputs"]["y"]
+        assert found["mean"][key] == {"value": entry["mean"], **entry["mean_interval"]}
+        assert found["sd"][key]["value"] == entry["sd"]
+        assert found["quantiles"]["0.5"][key] == entry["quantiles"]["0.5"]
+        assert found["thresholds"]["4.0"]["above"][key] == entry["thresholds"]["4.0"]["above"]
+
+
+def test_what_was_changed_is_named_and_what_it_bought():
+    one = study(FOUR)
+    found = comparison(one, study(FOUR | {"x4": NARROW}))
+    (change,) = found["changed"]
+    assert change == {
+        "kind": "input",
+        "name": "x4",
+        "a": "uniform(lower = 0.0, upper = 1.0)",
+        "b": "uniform(lower = 0.3, upper = 0.7)",
+    }
+    assert found["only"]["name"] == "x4"
+    assert found["only"]["sd"]["b"] == pytest.approx(0.4 * found["only"]["sd"]["a"])
+    ratio = found["outputs"]["y"]["sd"]["ratio"]
+    truth = ((1 + 4 + 9 + 0.16 * 16) / 30) ** 0.5
+    assert ratio["low"] < truth < ratio["high"] and ratio["high"] - ratio["low"] < 0.1
+    sourced = study(FOUR | {"x4": UNIFORM | {"source": "found in a drawer"}})
+    assert not comparison(one, sourced)["changed"]
+    fixed = {name: law for name, law in FOUR.items() if name != "x4"}
+    found = comparison(one, study(fixed, {"fixed": {"x4": 0.25}, "settings": {"fail_above": 0.9}}))
+    assert [(c["kind"], c["name"], c["b"]) for c in found["changed"]] == [
+        ("setting", "fail_above", "0.9"),
+        ("input", "x4", "0.25"),
+    ]
+    assert found["only"] is None  # the setting changes outputs too
+    both = study(FOUR | {"x4": NARROW, "x3": NARROW})
+    assert comparison(one, both)["only"] is None
+
+
+def test_ties_and_rank_correlations_are_told():
+    one = study({"x1": UNIFORM, "x2": UNIFORM})
+    tied = study({"x1": UNIFORM, "x2": {"equals": "x1"}})
+    assert comparison(one, tied)["changed"][0]["b"] == "equals x1"
+    together = {"parameters": ["x1", "x2"], "rank_correlation": [[1.0, 0.5], [0.5, 1.0]]}
+    found = comparison(one, study({"x1": UNIFORM, "x2": UNIFORM}, {"dependence": together}))
+    assert [(c["kind"], c["b"]) for c in found["changed"]] == [("dependence", "x1, x2")]
+    assert found["only"] is None
+
+
+def test_rows_that_never_end_or_fail_are_no_numbers():
+    never = with_output(linear(samples=64), "life", np.full(64, np.inf), "lifetime")
+    ends = with_output(linear(samples=64), "life", np.linspace(1, 2, 64), "lifetime")
+    never, ends = asking(never, outputs=["life"]), asking(ends, outputs=["life"])
+    found = comparison(never, ends)["outputs"]["life"]
+    assert found["quantiles"]["0.5"]["a"]["never"] and found["mean"]["a"]["value"] is None
+    nothing = {"value": None, "low": None, "high": None}
+    assert found["quantiles"]["0.5"]["difference"] == found["sd"]["ratio"] == nothing
+    lost = with_status(
+        with_output(ends, "life", np.full(64, np.nan), "lifetime"), slice(None), Status.RAISED
+    )
+    lost = asking(lost, outputs=["life"])
+    found = comparison(ends, lost)
+    assert found["b"]["status"] == {"ok": 0, "raised": 64}
+    assert found["outputs"]["life"]["b_lives"]["B10"]["difference"] == nothing
+    assert np.isnan(api.compare(ends, lost)["difference"]).all()
+
+
+def test_regimes_and_elements_that_both_have_are_compared():
+    found = comparison(kinds(samples=100), kinds(samples=200))
+    assert list(found["regime"]) == ["slow", "fast"]
+    assert found["regime"]["slow"]["a"]["count"] + found["regime"]["fast"]["a"]["count"] == 100
+    assert "life[side=left,depth=0.5]" in found["outputs"]
+    assert list(api.compare(kinds(samples=50), kinds(samples=50)).index[0]) == ["regime", "slow"]
+
+
+def test_studies_that_cannot_be_compared_are_refused_in_a_line(uq, folder):
+    morris = linear("morris", samples=8, replicates=2)
+    for name, ds in (("a", linear()), ("k", kinds()), ("m", morris)):
+        write_result(ds, folder / f"{name}.nc")
+    for pair, line in (
+        (("a.nc", "k.nc"), "model 'linear', the second of 'kinds': only studies of one model"),
+        (("a.nc", "m.nc"), "the second, a 'morris' design, do not follow the laws"),
+        (("a.nc", "none.nc"), "none.nc: no such file"),
+    ):
+        ended = uq("compare", *pair)
+        assert (ended.code, ended.out, ended.err.count("\n")) == (2, "", 1)
+        assert line in ended.err
+    with pytest.raises(InputError, match="no output in common"):
+        comparison(linear(), linear().rename(y="z"))
+
+
+def test_compare_on_the_command_line(uq, folder):
+    write_result(study(FOUR), folder / "a.nc")
+    write_result(study(FOUR | {"x4": NARROW}), folder / "b.nc")
+    ended = uq("compare", "a.nc", "b.nc")
+    words = " ".join(ended.out.split())
+    assert ended.code == 0 and ended.err == ""
+    for said in (
+        "A a.nc one (200 rows)",
+        "x4 A uniform(lower = 0.0, upper = 1.0) B uniform(lower = 0.3, upper = 0.7)",
+        "Only x4 differs (sd 0.2",
+        "less variance",
+        "rows of the same number are pairs",
+    ):
+        assert said in words, said
+    assert max(map(len, ended.out.splitlines())) <= 80
+    found = json.loads(uq("compare", "a.nc", "b.nc", "--json").out)
+    assert found["a"]["file"] == "a.nc" and found["pairing"] == "rows"
+    assert set(found["outputs"]["y"]["sd"]) == {"a", "b", "difference", "ratio"}
+    assert "\nnothing" in "\n".join(map(str.strip, uq("compare", "a.nc", "a.nc").out.splitlines()))
+
+
+def test_times_are_told_in_a_unit_people_use(uq, folder):
+    for name, factor in (("a", 1.0), ("b", 2.0)):
+        values = factor * 86400.0 * np.linspace(5, 15, 64)
+        ds = asking(with_output(linear(), "life", values, "lifetime"), outputs=["life"])
+        write_result(ds, Path(f"{name}.nc").absolute())
+    out = uq("compare", "a.nc", "b.nc").out
+    assert "life [days]" in out
+    assert next(line.split()[1:4] for line in out.splitlines() if "mean" in line) == [
+        "10",
+        "20",
+        "10",
+    ]
+
+
+def test_the_interval_of_a_scatter_suits_laws_with_heavy_and_light_tails():
+    rng = np.random.default_rng(1)
+    for law in (stats.uniform(), stats.norm(), stats.expon()):
+        held = 0
+        for _ in range(400):
+            low, high = sd_interval(law.rvs(200, random_state=rng))
+            held += low < law.std() < high
+        assert 0.91 < held / 400 < 0.98
+    assert np.isnan(sd_interval(np.ones(50))).all() and np.isnan(sd_interval(np.arange(3.0))).all()
+
+
+SOBOL = {"method": "sobol", "samples": 64, "replicates": 8}
+PLAIN = {"samples": 200}
+CASES = {
+    "strangers": (PLAIN, PLAIN, 10_000),
+    "pairs": (PLAIN, PLAIN, 0),
+    "extended": (PLAIN, {"samples": 400}, 0),
+    "replicates, strangers": (SOBOL, SOBOL, 10_000),
+    "replicates, pairs": (SOBOL, SOBOL, 0),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CASES)
+def test_differences_hold_the_truth_as_often_as_they_say(case):
+    design, other_design, apart = CASES[case]
+    laws = FOUR, FOUR | {"x4": NARROW}
+    truth = api.compare(*(study(one, samples=400_000, seed=i) for i, one in enumerate(laws)))
+    held = {key: [] for key in truth.index}
+    for seed in range(200):
+        found = api.compare(
+            study(laws[0], seed=seed, **design),
+            study(laws[1], seed=seed + apart, **other_design),
+        )
+        for key, line in found.iterrows():
+            if np.isfinite(line["low"]) and np.isfinite(line["high"]):
+                held[key].append(line["low"] <= truth.loc[key, "difference"] <= line["high"])
+    for key, one in held.items():
+        # Sobol' points integrate this mean to rounding: what is left of its difference is no error
+        # of sampling.
+        if not ("replicates" in case and key[1] == "mean"):
+            print(f"{case:24} {key[1]:16} {np.mean(one):6.1%} of {len(one)}")
+            assert np.mean(one) >= 0.9 and len(one) > 150, key

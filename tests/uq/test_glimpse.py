@@ -1,0 +1,37 @@
+"""What is kept of the rows of a run to say how it goes: evenly spaced, and never much of it."""
+
+import numpy as np
+import pytest
+from computed import UNIFORM, as_text
+
+from uq.evaluate import evaluate
+from uq.glimpse import Glimpse
+from uq.sampling import row_block
+from uq.study import study_from_text
+from uq.work import work_of
+
+
+@pytest.mark.parametrize("sizes", [(100_000,), (1,), (7, 1000, 3), (4096, 1, 4097)])
+def test_of_many_lives_an_even_part_is_kept(sizes):
+    study = study_from_text(
+        as_text(
+            {
+                "study": {"name": "wear", "model": "exponential-wear"},
+                "design": {"method": "monte-carlo", "samples": 8},
+                "uncertain": {"rate": UNIFORM},
+            }
+        )
+    )
+    glimpse, rows = Glimpse(work_of(study)), row_block(study, 0, 1)
+    chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
+    total = 30_000 if max(sizes) < 30_000 else max(sizes)
+    start = i = 0
+    while start < total:
+        stop = min(start + sizes[i % len(sizes)], total)
+        lives = {"life": np.arange(start, stop, dtype=float)}
+        glimpse.see(chunk._replace(columns=chunk.columns | lives))
+        start, i = stop, i + 1
+    (kept,) = (one._values for one in glimpse._lives.values())
+    assert 2000 < len(kept) <= 4096 and len(np.unique(np.diff(kept))) == 1
+    assert glimpse.medians["life"] == pytest.approx(total / 2, rel=1e-3)
+    assert glimpse.shares == {}

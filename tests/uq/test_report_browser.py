@@ -1,0 +1,109 @@
+"""The report in a real browser: on a desk, on a phone, on paper, and without script."""
+
+import io
+import re
+
+import numpy as np
+import pytest
+from browser import CHROMIUM, tab
+from computed import kinds, linear, with_output, with_status
+from matplotlib.image import imread
+
+from uq.contract import Status
+from uq.report import page
+
+HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>&amp;'
+ASKED = {"thresholds": {"life": 1.0}, "sensitivity": ["rbd-fast"]}
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    if CHROMIUM is None:
+        pytest.skip("needs a browser: Debian's package chromium")
+    with tab(tmp_path_factory.mktemp("browser")) as one:
+        yield one
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    ds = with_output(kinds(samples=100, analysis=ASKED), "odd", np.arange(100.0))
+    ds["odd"].attrs["long_name"] = HOSTILE
+    ds["x1"].attrs |= {"long_name": HOSTILE, "source": HOSTILE, "symbol": HOSTILE}
+    ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)
+    ds["status"].attrs["example_raised"] = HOSTILE
+    path = tmp_path_factory.mktemp("report") / "report.html"
+    path.write_text(page(ds, f"{HOSTILE}.nc"), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+@pytest.mark.parametrize("width", [400, 1400])
+def test_a_report_is_shown_without_complaint_or_request(browser, report, width, dark):
+    browser.open(report, width=width, dark=dark)
+    picture = imread(io.BytesIO(browser.picture()))
+    assert browser.complaints() == []
+    assert {re.match(r"(data:image|file:).*", one)[1] for one in browser.requests()} == {
+        "data:image",
+        "file:",
+    }
+    assert picture.shape[0] > 2000 and width - 20 < picture.shape[1] <= width  # a scroll bar
+    assert browser.value("document.documentElement.scrollWidth") <= width  # nothing sticks out
+    ground = picture[5, 5, :3].mean()
+    assert (ground < 0.2) == dark
+    assert abs(picture[..., :3].mean(axis=2) - ground).max() > 0.7  # the text stands out
+
+
+def test_names_with_markup_are_text(browser, report):
+    browser.open(report)
+    shown = browser.value("document.body.innerText")
+    assert shown.count(HOSTILE) >= 5
+    assert browser.value("document.title") != "" and browser.complaints() == []
+    assert browser.value("document.querySelectorAll('img[src=x], [onerror]').length") == 0
+    assert not any(name == "Page.javascriptDialogOpening" for name, _ in browser.events)
+
+
+def test_tables_sort_by_a_click_and_back(browser, report):
+    browser.open(report)
+    column = (
+        "(() => { const t = [...document.querySelectorAll('table')].find(t =>"
+        " t.caption.textContent.startsWith('Statistics'));"
+        " const i = [...t.tHead.rows[0].cells].findIndex(c => c.textContent === '50 % quantile');"
+        " {}; return [...t.tBodies[0].rows].map(r => Number(r.cells[i].dataset.key)) })()"
+    )
+    click = "t.tHead.rows[0].cells[i].querySelector('button').click()"
+    before = browser.value(column.replace("{}", ""))
+    up = browser.value(column.replace("{}", click))
+    down = browser.value(column.replace("{}", click))
+    assert sorted(before) == up == down[::-1] != before
+
+
+def test_the_table_of_contents_leads_to_every_section(browser, report):
+    browser.open(report)
+    links = "[...document.querySelectorAll('nav a')].map(a => a.getAttribute('href'))"
+    there = "[...document.querySelectorAll('main > section')].map(s => '#' + s.id)"
+    assert browser.value(links) == browser.value(there)
+
+
+def test_all_is_there_without_script(browser, report):
+    browser.open(report)
+    words = "['table', 'svg', 'p'].map(n => document.querySelectorAll(n).length).join()"
+    buttons = "document.querySelectorAll('button').length"
+    with_script = browser.value(words)
+    assert browser.value(buttons) > 0
+    browser.open(report, script=False)
+    assert browser.value(words) == with_script and browser.value(buttons) == 0
+
+
+def test_a_report_prints_on_a4(browser, report):
+    browser.open(report, dark=True)
+    pdf = browser.pdf()
+    assert pdf.startswith(b"%PDF-")
+    sizes = set(re.findall(rb"/MediaBox ?\[([^\]]+)\]", pdf))
+    assert {tuple(round(float(n)) for n in size.split()) for size in sizes} == {(0, 0, 595, 842)}
+
+
+def test_a_report_of_one_row_is_shown_too(browser, tmp_path):
+    path = tmp_path / "one.html"
+    path.write_text(page(linear(samples=1), "one.nc"), encoding="utf-8")
+    browser.open(path, width=400)
+    assert browser.complaints() == []

@@ -1,0 +1,40 @@
+"""What ``uq`` says when it is asked nothing: what to do next."""
+
+import shlex
+from pathlib import Path
+
+from uq.cli.printing import console, grid, heading
+
+_STEPS = (
+    ("uq models", "what there is to study"),
+    ("uq init beam > mine.toml", "a study to edit, each entry explained"),
+    ("uq check mine.toml", "is it in order, and what would it run?"),
+    ("uq run mine.toml", "compute it, into results/NAME.nc: its name in the file"),
+    ("uq report results/NAME.nc --open", "all that it says, in the browser"),
+)
+
+
+def guide() -> None:
+    """Print the way from nothing to a report, and what can be done with the files that are here."""
+    heading("uq", "lifetime and sensitivity studies of vibro-impact machines")
+    grid(_STEPS)
+    here = list(_with_what_is_here())
+    if here:
+        heading("\nWith what is here")
+        grid(here)
+    console.print("\nuq --help lists all commands; uq COMMAND --help explains one.")
+
+
+def _with_what_is_here() -> list[tuple[str, str]]:
+    lines = []
+    for folder, ending, verb, words in (
+        ("studies", "toml", "run {}", "run this study"),
+        ("results", "nc", "report {} --open", "read this result"),
+    ):
+        found = sorted(Path(folder).glob(f"*.{ending}"))
+        if found:
+            others = f"one of {len(found) - 1} others" if found[2:] else "1 other"
+            more = f", or {others} in {folder}/" if found[1:] else ""
+            name = shlex.quote(str(found[0]))
+            lines.append((f"uq {verb.format(name)}", words + more))
+    return lines
