@@ -15,7 +15,6 @@ from uq import results, runner
 from uq.contract import Status
 from uq.errors import InputError
 from uq.evaluate import KernelError, evaluate
-from uq.job import Progress
 from uq.sampling import row_block
 from uq.store import MemoryStore
 from uq.study import load_study
