@@ -41,14 +41,16 @@ def main():
         KEPT.mkdir(parents=True, exist_ok=True)
         kept = {"seconds": seconds, "lines": [line._asdict() for line in lines]}
         _file(name).write_text(json.dumps(kept, indent=1))
-    counted = [json.loads(_file(name).read_text()) for name in PARTS if _file(name).exists()]
+    done = [name for name in PARTS if _file(name).exists()]
+    counted = [json.loads(_file(name).read_text()) for name in done]
     lines = [Line(**line) for one in counted for line in one["lines"]]
-    if len(counted) < len(PARTS):
-        return f"{len(PARTS) - len(counted)} of {len(PARTS)} parts are not yet counted"
-    PAGE.write_text(page(lines, sum(one["seconds"] for one in counted)))
+    missing = [name for name in PARTS if name not in done]
+    PAGE.write_text(page(lines, sum(one["seconds"] for one in counted), missing))
     print(f"written: {PAGE}")
     off = [shown(line) for line in lines if line.unexplained]
-    return "\n".join(["off, and nothing says why:", *off]) if off else 0
+    if off:
+        return "\n".join(["off, and nothing says why:", *off])
+    return f"not yet counted: {', '.join(missing)}" if missing else 0
 
 
 def _file(name):

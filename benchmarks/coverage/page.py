@@ -14,7 +14,8 @@ many.
 - **covered**: share of the intervals given that held the truth, with the interval of that share
   (Clopper and Pearson, 95 %). Where ours lies outside 93 to 97 %, the last column says why. A
   tolerance bound has one side, and holds in 95 % of cases or more.
-- **of**: how many were given; a remark where a part of the repetitions gave none.
+- **of**: how many were given; a remark where a part of the repetitions gave none. `make coverage`
+  repeats 2,000 times; where this number is smaller, so is what the share is known to.
 - **width**: median width of the intervals given, in the unit of the estimate.
 
 Problems: *Ishigami's function*; a *function of two regimes* that jumps by 3 where x1 + x2 passes
@@ -30,8 +31,8 @@ bootstrap of others makes of such indices is counted in the table before it.
 """
 
 
-def page(lines, seconds):
-    """Return the page, from lines of all parts."""
+def page(lines, seconds, missing=()):
+    """Return the page, from the lines of all parts but those missing."""
     problems = {}
     for line in lines:
         problems.setdefault(line.problem, []).append(line)
@@ -42,6 +43,8 @@ def page(lines, seconds):
         f"{len(ours)} intervals of ours: {len(ours) - off} cover as said, {off} do not, for the"
         f" reasons given. Counted in {seconds / 60:.0f} minutes of one core.\n"
     )
+    if missing:
+        summary += f"\nNot counted yet: {', '.join(missing)}.\n"
     return "\n".join([HEAD, summary, *tables])
 
 

@@ -1,6 +1,7 @@
 """Every method over every kind of damage: the right answer, or a sentence that says why not."""
 
 import json
+from functools import cache
 
 import numpy as np
 import pytest
@@ -35,6 +36,7 @@ EXACT = dict.fromkeys(("S1", "ST", "shapley"), lambda i: i**2 / 30) | dict.fromk
 """Index of x_i for the sum, which is the rate of the life."""
 
 
+@cache
 def result(design, samples=256):
     """Return y = x1 + 2 x2 + 3 x3 + 4 x4, a life, a constant, and a regime that x4 decides."""
     ds = linear(design, samples=samples, replicates=1 if DESIGNS[design].independent else 4)

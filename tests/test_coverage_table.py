@@ -1,0 +1,84 @@
+"""The table of coverage: its truths, its counting, and what it says of an interval that is off."""
+
+import numpy as np
+import pytest
+
+from benchmarks.coverage import further, problems
+from benchmarks.coverage.page import page
+from benchmarks.coverage.parts import PARTS
+from benchmarks.coverage.tally import Tally
+
+ROWS = 200_000
+
+
+@pytest.fixture(scope="module")
+def big():
+    """Return many rows of the problems."""
+    return problems.computed(problems.study_of("monte-carlo", ROWS))
+
+
+def test_truths_are_those_of_many_rows(big):
+    known, upper = problems.jump(), big["regime"].values == 1
+    y, life = big["jump"].values, big["life"].values
+    near = 4 / np.sqrt(ROWS)
+    assert upper.mean() == pytest.approx(known["share"], abs=near)
+    assert y.mean() == pytest.approx(known["mean"], abs=near * y.std())
+    for name, rows in (("upper", upper), ("lower", ~upper)):
+        assert y[rows].mean() == pytest.approx(known["within"][name], abs=2 * near)
+    between = np.where(upper, y[upper].mean(), y[~upper].mean()).var() / y.var()
+    assert between == pytest.approx(known["between"], abs=near)
+    for p in (0.05, 0.5, 0.95):
+        for values, ppf in (
+            (y, problems.jump_ppf),
+            (big["ishigami"].values, problems.ishigami_ppf),
+            (life, problems.LIFE.ppf),
+        ):
+            assert np.mean(values < ppf(p)) == pytest.approx(p, abs=near)
+    assert np.mean(y[upper] < problems.jump_ppf(0.5, "upper")) == pytest.approx(0.5, abs=2 * near)
+    assert np.mean(big["never"].values < 2.0) == pytest.approx(problems.never_cdf(2.0), abs=near)
+    assert np.mean(np.isinf(big["never"].values)) == pytest.approx(
+        1 - problems.never_cdf(1e9), abs=near
+    )
+
+
+def test_indices_of_the_jump_are_those_of_many_rows(big):
+    known, y = problems.jump(), big["jump"].values
+    upper = (big["regime"].values == 1).astype(float)
+    for name in ("x1", "x2", "x3"):
+        parts = np.array_split(np.argsort(big[name].values), 400)
+        for values, truth in ((y, known["S1"]), (upper, known["event"]["S1"])):
+            first = np.var([values[part].mean() for part in parts]) / values.var()
+            assert first == pytest.approx(truth[name], abs=0.01)
+
+
+def test_the_rare_jump_is_as_rare_as_it_is_said_to_be():
+    u = np.random.default_rng(0).standard_normal((ROWS * 10, 3))
+    hits = int((further._jump(u) > 0).sum())
+    expected = further._jump_probability() * len(u)
+    assert abs(hits - expected) < 4 * np.sqrt(expected)
+
+
+def test_what_is_off_needs_a_reason():
+    lines = []
+    for reasons in ({}, {"mean": "a good reason"}):
+        tally = Tally("a problem", reasons)
+        for i in range(1000):
+            tally.add("mean", 0.0, -1.0, 1.0 if i % 2 else -0.5)
+            tally.add("median", 0.0, -1.0, 1.0 if i % 20 else -0.5)
+            tally.add("never given", 0.0, None, np.nan)
+            tally.add("mean", 0.0, 1.0, 2.0, by="somebody else")
+        lines.append(tally.lines())
+    assert [line.coverage[0] for line in lines[0][:2]] == [0.5, 0.95]
+    assert [line.unexplained for line in lines[0]] == [True, False, False, False]
+    assert not any(line.unexplained for line in lines[1])
+    shown = page(lines[1], 60.0)
+    assert "**mean** | uq | 50.0% (46.9% to 53.1%) | 1000 | 1.25 | a good reason |" in shown
+    assert "| mean | somebody else | 0.0%" in shown
+    assert "none given" in shown
+
+
+@pytest.mark.parametrize("name", ["plain-monte-carlo", "lives", "null-regional", "twin"])
+def test_parts_count_what_is_printed(name):
+    lines = PARTS[name].count(2)
+    assert all(line.repetitions == 2 for line in lines if line.by == "uq")
+    assert any(line.by == "uq" and line.given == 2 for line in lines)
