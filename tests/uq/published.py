@@ -54,7 +54,7 @@ def portfolio_indices():
 Twenty = NamedTuple(  # noqa: UP014 - twenty alike are not worth twenty lines
     "Twenty", [(f"x{i}", Annotated[float, _number(f"x_{i}")]) for i in range(1, 21)]
 )
-Twenty.__new__.__defaults__ = (0.5,) * 20
+Twenty._field_defaults.update(dict.fromkeys(Twenty._fields, 0.5))
 
 
 def morris_function(x):
