@@ -23,7 +23,7 @@ def _input(i):
 
 
 Ten = NamedTuple("Ten", [(f"x{i}", _input(i)) for i in range(INPUTS)])  # noqa: UP014
-Ten.__new__.__defaults__ = (0.5,) * INPUTS
+Ten._field_defaults.update(dict.fromkeys(Ten._fields, 0.5))
 
 
 def _batch(x, seed, settings):

@@ -251,13 +251,8 @@ def test_a_random_balance_design_feeds_rbd_fast(study):
 # The border to SALib: what is lacking never reaches it, and no seed is taken for none.
 
 # One design for each method, the last that feeds it; 'regional' takes regimes, not numbers.
-FED = [
-    (design, method)
-    for method, design in {
-        m: n for n, one in DESIGNS.items() if one.draw for m in one.feeds
-    }.items()
-    if method != "regional"
-]
+_LAST = {method: name for name, one in DESIGNS.items() if one.draw for method in one.feeds}
+FED = [(design, method) for method, design in _LAST.items() if method != "regional"]
 
 
 @pytest.mark.parametrize(("design", "method"), FED)
