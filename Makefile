@@ -8,7 +8,7 @@ NOTEBOOK := .venv/.installed-notebook
 DOCS := .venv/.installed-docs
 PIP := $(BIN)/python -m pip --disable-pip-version-check -qq install -c constraints.txt
 
-.PHONY: run test slow faults notebook notebooks docs bench coverage clean
+.PHONY: run test slow faults figures notebook notebooks docs bench coverage clean
 
 run: $(BASE)
 	@$(BIN)/uq run studies/beam-lifetime.toml
@@ -35,6 +35,10 @@ slow: $(TEST)
 # Kills, full disks, damaged files, done to real runs; a shorter selection is in "make test".
 faults: $(TEST)
 	@$(BIN)/python -m pytest tests/faults -m "slow or not slow"
+
+# The figures of the machines' papers from our data: docs/papers.md and docs/papers/*.svg.
+figures: $(BASE)
+	@$(BIN)/python docs/papers
 
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks

@@ -28,6 +28,7 @@ SOURCES = {
 }
 every_source = pytest.mark.parametrize("name", SOURCES)
 
+ROOT_OPTIONS = ("--help", "--install-completion", "--show-completion")
 EXAMPLES = sorted({f"uq.{module}" for module in public._MODULES.values()})
 
 
@@ -65,7 +66,7 @@ def test_commands_and_their_options_exist(name):
     lines = [line for block in blocks(name, "sh") for line in block.splitlines()]
     for command in (*code, *(line for line in lines if line.startswith("uq "))):
         verb, *rest = command.partition("#")[0].split()[1:]
-        if verb in ("VERB", "--install-completion"):
+        if verb == "VERB" or verb in ROOT_OPTIONS:
             continue
         assert verb in known, command
         options = {text for option in known[verb].params for text in option.opts} | {"--help"}

@@ -55,7 +55,7 @@ class Glimpse:
     @property
     def shares(self) -> dict[str, float]:
         """Share of each regime that occurs, the largest first."""
-        total = self._counts.sum()
+        total = int(self._counts.sum())
         pairs = zip(self._regimes, self._counts.tolist(), strict=True)
         found = {name: count / total for name, count in pairs if count}
         return dict(sorted(found.items(), key=lambda pair: -pair[1]))

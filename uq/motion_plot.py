@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -132,10 +133,20 @@ def plot_section(
     axes = panel_of(axes, 2.6)
     scales = _label_both(axes, ds, x, y)
     for i, (name, xs, ys) in enumerate(_families(ds, x, y, scales)):
-        size, many = 3.0 if len(xs) < 100 else 1.0, are_many(len(xs))
+        size, many = _point_size(xs, ys), are_many(len(xs))
         colour = COLOURS[i % len(COLOURS)]
         axes.plot(xs, ys, "o", ms=size, mew=0, color=colour, label=name, rasterized=many)
     return finish(axes)
+
+
+def _point_size(xs: Floats, ys: Floats) -> float:
+    """Return how large to draw points: larger where they are few, or fall on few places."""
+    points = np.stack([xs, ys], axis=1)
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) == 0:
+        return 1.0
+    places = np.unique(np.round(100 * points / np.ptp(points, axis=0).clip(1e-300)), axis=0)
+    return 3.0 if len(places) < 60 else 1.0
 
 
 def _label_both(axes: Axes, ds: xr.Dataset, x: str, y: str) -> tuple[Scale, Scale]:

@@ -7,6 +7,7 @@ from matplotlib.transforms import ScaledTranslation
 from uq.figure import legend, new_figure
 
 _MANY = 4000
+_SHORT = 30  # characters that fit beside each other
 
 
 def panel_of(axes: Axes | None, height: float) -> Axes:
@@ -17,14 +18,12 @@ def panel_of(axes: Axes | None, height: float) -> Axes:
     return axes
 
 
-def finish(axes: Axes, full: bool = False) -> Figure:
-    """Explain the curves of a panel; return its figure.
+def finish(axes: Axes) -> Figure:
+    """Explain the curves of a panel below it, where nothing is covered; return its figure.
 
     Parameters
     ----------
     axes : Axes
-    full : bool
-        Whether a panel among others has no room for the words inside: then they go below it.
 
     Returns
     -------
@@ -32,16 +31,16 @@ def finish(axes: Axes, full: bool = False) -> Figure:
     """
     figure = axes.get_figure(root=True)
     assert figure is not None
-    count = len(axes.get_legend_handles_labels()[1])
+    texts = axes.get_legend_handles_labels()[1]
+    count = len(texts)
     if len(figure.axes) == 1 and count:
         figure.set_figheight(figure.get_figheight() + 0.15 * count)
         legend(axes)
-    elif count and full:
-        below_label = ScaledTranslation(0, -0.5, figure.dpi_scale_trans)
-        place = axes.transAxes + below_label
-        axes.legend(loc="upper left", bbox_to_anchor=(0, 0), bbox_transform=place, borderaxespad=0)
     elif count:
-        axes.legend()
+        columns = count if len("".join(texts)) < _SHORT else 1
+        below_label = axes.transAxes + ScaledTranslation(0, -0.5, figure.dpi_scale_trans)
+        place = {"bbox_to_anchor": (0, 0), "bbox_transform": below_label}
+        axes.legend(loc="upper left", borderaxespad=0, ncols=columns, **place)
     return figure
 
 

@@ -172,7 +172,7 @@ def plot_basins(ds: xr.Dataset, outputs: Sequence[str] = (), axes: Axes | None =
         axes.plot([], [], "s", color=colour, mec="black", mew=0.4, label=text)
     axes.set_xlabel(label(across, scales[0]))
     axes.set_ylabel(label(up, scales[1], _BESIDE))
-    return finish(axes, full=True)
+    return finish(axes)
 
 
 def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:

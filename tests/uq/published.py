@@ -1,5 +1,6 @@
 """Functions that sensitivity methods were published with, as models."""
 
+from collections import namedtuple
 from itertools import combinations
 from typing import Annotated, NamedTuple
 
@@ -51,10 +52,10 @@ def portfolio_indices():
     return {"S1": first, "ST": first + shared, "shapley": first + shared / 2}
 
 
-Twenty = NamedTuple(  # noqa: UP014 - twenty alike are not worth twenty lines
-    "Twenty", [(f"x{i}", Annotated[float, _number(f"x_{i}")]) for i in range(1, 21)]
-)
-Twenty._field_defaults.update(dict.fromkeys(Twenty._fields, 0.5))
+Twenty = namedtuple("Twenty", [f"x{i}" for i in range(1, 21)], defaults=[0.5] * 20)
+Twenty.__annotations__ = {
+    name: Annotated[float, _number(name.replace("x", "x_"))] for name in Twenty._fields
+}
 
 
 def morris_function(x):

@@ -48,7 +48,7 @@ def test_no_argument_asks_what_to_do_next(uq, write_study, folder):
     ended = uq()
     assert (ended.code, ended.err) == (0, "")
     for step in ("uq models", "uq init beam > ", "uq check", "uq run", "uq report", "uq --help"):
-        assert f"{step} " in ended.out
+        assert step in ended.out
     assert "With what is here" not in ended.out
     (folder / "studies").mkdir()
     for name in ("one", "two"):
@@ -113,7 +113,7 @@ def test_one_model_is_shown_in_full(uq):
 
 
 def test_a_parameter_may_be_infinite_unless_given(uq):
-    assert "k = inf N m-1, 10000 to inf" in uq("models", "sample_models:MOUNTED").out
+    assert "k       inf N m-1  10000 to inf" in uq("models", "sample_models:MOUNTED").out
     described = strict_json(uq("models", "sample_models:MOUNTED", "--json").out)
     shown = described["parameters"]["mount_stiffness"]
     assert (shown["nominal"], shown["bounds"]) == (None, [1e4, None])
@@ -498,7 +498,7 @@ def test_progress_of_a_run_counts_and_glances_at_its_rows(folder, write_study):
     assert np.quantile(lives, 0.49) <= last.medians["life[side=left,depth=0.5]"]
     assert last.medians["life[side=left,depth=0.5]"] <= np.quantile(lives, 0.51)
     slow = float((ds["regime"] == 0).mean())
-    assert last.shares == {"slow": slow, "fast": 1 - slow}
+    assert last.shares == pytest.approx({"slow": slow, "fast": 1 - slow})
 
 
 def test_a_terminal_of_80_columns_holds_the_progress(monkeypatch):

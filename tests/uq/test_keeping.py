@@ -50,8 +50,9 @@ def test_what_cannot_be_extended_says_why(uq, write_study):
         "out.nc: a 'latin-hypercube' design cannot be extended: all its rows change with their "
         "number; run it anew, into another output or with --fresh\n"
     )
-    assert uq("extend", "out.nc", "--samples", 32).err == "--samples 32: out.nc has 64 already\n"
-    assert uq("extend", "none.nc", "--samples", 32).err == "none.nc: no such file\n"
+    fewer = uq("extend", "out.nc", "--samples", 32)
+    assert fewer.err == "--samples 32: out.nc has 64 already; ask for more\n"
+    assert uq("extend", "none.nc", "--samples", 32).err.startswith("none.nc: no such file; ")
     assert Path("out.nc").read_bytes() == before
 
 
@@ -151,7 +152,9 @@ def test_status_of_a_complete_result(uq, result):
         "process": None,
         "complete_rows": 200,
     }
-    assert uq("status", "none.nc") == (2, "", "none.nc: no such file\n")
+    none = uq("status", "none.nc")
+    assert (none.code, none.out) == (2, "")
+    assert none.err.startswith("none.nc: no such file; ")
 
 
 def test_verify_finds_a_flipped_bit_wherever_it_is(uq, result):
@@ -204,7 +207,8 @@ def test_a_result_of_another_version_of_the_model_is_not_taken_for_this_one(uq, 
         ended = uq(*verb)
         assert ended.code == 2
         assert ended.err == (
-            "out.nc: was computed with another model (version 0 of model 'ishigami', now 1)\n"
+            "out.nc: was computed with another model (version 0 of model 'ishigami', now 1); run "
+            "the study anew, into another output or with --fresh\n"
         )
 
 

@@ -56,7 +56,7 @@ ONE_FAULT = [
         {"design": {"method": "monte_carlo"}},
         "[design] method = \"monte_carlo\": no such design; did you mean 'monte-carlo'?"
         " (allowed: monte-carlo, latin-hypercube, sobol, halton, saltelli, morris,"
-        " morris-optimised, fast, rbd-fast, imported)",
+        " morris-optimised, shapley, fast, rbd-fast, imported)",
     ),
     (
         {"design": {"method": "saltelli", "samples": 1000}},
@@ -213,7 +213,7 @@ ONE_FAULT = [
     (
         {"analysis": {"sensitivity": ["sobl"]}},
         "[analysis] sensitivity[0] = \"sobl\": no such method; did you mean 'sobol'?"
-        " (allowed: rbd-fast, delta, pawn, hdmr, quantile, regional, sobol, morris, fast)",
+        " (allowed: rbd-fast, delta, pawn, hdmr, quantile, regional, sobol, morris, shapley, fast)",
     ),
     (
         {"analysis": {"sensitivity": ["sobol"]}},
@@ -337,7 +337,9 @@ def test_a_file_that_cannot_be_read_is_one_line(tmp_path):
     assert line("") == f"{tmp_path}: is a directory; a study is a TOML file"
     missing = f"{tmp_path}/beam-liftime.toml: no such file; did you mean 'beam-lifetime.toml'?"
     assert line("beam-liftime.toml") == missing
-    assert line("nowhere/x.toml") == f"{tmp_path}/nowhere/x.toml: no such file"
+    assert line("nowhere/x.toml") == (
+        f"{tmp_path}/nowhere/x.toml: no such file; 'uq init MODEL > x.toml' writes one to edit"
+    )
     assert line("latin.toml").endswith("not a text file in UTF-8 (byte 5 is 0xe9)")
     assert "cannot be read: " in line("loop.toml")
     assert "cannot be read: " in line("nul\0.toml")

@@ -9,7 +9,7 @@ _STEPS = (
     ("uq models", "what there is to study"),
     ("uq init beam > mine.toml", "a study to edit, each entry explained"),
     ("uq check mine.toml", "is it in order, and what would it run?"),
-    ("uq run mine.toml", "compute it, into results/NAME.nc: its name in the file"),
+    ("uq run mine.toml", "compute it, into results/NAME.nc"),
     ("uq report results/NAME.nc --open", "all that it says, in the browser"),
 )
 

@@ -1,0 +1,182 @@
+"""Figures 3 to 11 of Ho, Nguyen & Woo 2011, from the mole."""
+
+from collections.abc import Iterator
+from math import tau
+from typing import Any, NamedTuple
+
+import xarray as xr
+from shown import Shown, name_panels, sheet
+
+import uq
+from models.mole.explore import history, poincare_section
+from models.mole.parameters import QUASI_PERIODIC, Params, Settings
+from models.mole.periods import common_periods
+from models.mole.table import CLAIMS, closed_curves, described, responses
+
+PRINTED, PHYSICAL = Settings(formulation="as-printed"), Settings(formulation="physical")
+LONG = 10.0  # s, of a whole time history
+POINTS = 3000  # of a Poincare section
+SHORT = {"formulation": "as-printed", "transient": 100, "duration": 100}  # of a basin
+GRID = 24, 17  # points of a basin along displacement and velocity
+NOTE = """\
+J.-H. Ho, V.-D. Nguyen, K.-C. Woo, *Nonlinear dynamics of a new electro-vibro-impact system*,
+Nonlinear Dynamics 63 (2011) 35-49. The paper's equation (20) lacks the friction of the mole on the
+bar, so that energy is not conserved; the formulation `as-printed` is what it computed, `physical`
+restores what is lost. Figures show the former, and both in the narrow time windows. Figure 2
+compares with an inductance that was measured and is not published. A period counts common periods
+of control and half a mains cycle. The claims as a table: `python -m models.mole.table`."""
+
+
+class Case(NamedTuple):
+    """One of the paper's claims as both formulations have it.
+
+    Attributes
+    ----------
+    says : str
+        What the paper says.
+    params : Params
+    printed, physical : str
+        What they give, in words.
+    """
+
+    says: str
+    params: Params
+    printed: str
+    physical: str
+
+    def compared(self) -> str:
+        """Return the comparison as a sentence."""
+        return f"Paper: {self.says}. As printed: {self.printed}. Physical: {self.physical}."
+
+
+def shown() -> Iterator[Shown]:
+    """Yield the figures in the order of the paper."""
+    told = cases()
+    for number, frequency in ((3, 5.0), (4, 7.0), (5, 8.0), (6, 2.5), (7, 9.0)):
+        yield time_histories(number, told[f"{frequency:g} Hz", 0])
+    yield portrait(8, told["2.5 Hz", 0], 12)
+    yield portrait(9, told["13 Hz", 0], 65)
+    yield basins(told)
+    yield two_orbits(told)
+
+
+def cases() -> dict[tuple[str, int], Case]:
+    """Return the claims, by their label and how many of the same label come before."""
+    outputs = {name: responses(name) for name in ("as-printed", "physical")}
+    told: dict[tuple[str, int], Case] = {}
+    for i, claim in enumerate(CLAIMS):
+        params = Params(
+            control_frequency=claim.control_frequency,
+            initial_displacement=claim.start[0],
+            initial_velocity=claim.start[1],
+        )
+        words = (in_words(params, name, found, i) for name, found in outputs.items())
+        told[claim.label, (claim.label, 0) in told] = Case(claim.says, params, *words)
+    return told
+
+
+def in_words(params: Params, formulation: Any, outputs: Any, i: int) -> str:
+    """Say what one of the claims is in one formulation."""
+    curves = 0
+    if outputs["regime"][i] == QUASI_PERIODIC:
+        curves = closed_curves(params, Settings(formulation=formulation))
+    common = int(common_periods(params.control_frequency, params.supply_frequency))
+    rate, extent = outputs["progression_rate"][i], outputs["displacement_range"][i]
+    rate = round(rate, 4) + 0.0  # no minus sign before what is zero
+    return (
+        f"{described(outputs, i, common, curves)}, {rate * 1e3:.1f} mm/s, bar over "
+        f"{extent * 1e3:.1f} mm"
+    )
+
+
+def time_histories(number: int, case: Case) -> Shown:
+    """Draw the displacement of the bar, whole and from the third to the fourth second."""
+    whole = history(case.params, PRINTED, 0.0, LONG, points=20_000)
+    both = xr.concat(
+        [history(case.params, one, 3.0, 4.0) for one in (PRINTED, PHYSICAL)],
+        xr.DataArray(["as printed", "physical"], dims="formulation", name="formulation"),
+        combine_attrs="drop_conflicts",
+    )
+    figure, panels = sheet(2, 1, 2.0)
+    uq.plot_curve(whole, "displacement", "time", panels[0])
+    uq.plot_curve(both, "displacement", "time", panels[1])
+    name_panels(panels, ("as printed", "from the third to the fourth second"))
+    hertz = f"{case.params.control_frequency:g}"
+    return Shown(
+        f"Figure {number}: displacement of the bar at {hertz} Hz",
+        f"mole-{number}-{hertz.replace('.', '-')}-hz",
+        figure,
+        "Nominal mole from u = -0.022 m at rest.",
+        case.compared(),
+    )
+
+
+def portrait(number: int, case: Case, dropped: int) -> Shown:
+    """Draw a phase plane and the Poincare section, the first control periods dropped."""
+    frequency = case.params.control_frequency
+    orbit = history(case.params, PRINTED, dropped / frequency, (dropped + 40) / frequency, 40_000)
+    section = poincare_section(case.params, PRINTED, POINTS, dropped)
+    figure, panels = sheet(1, 2, 2.6)
+    uq.plot_phase_portrait(orbit, axes=panels[0])
+    uq.plot_section(section, axes=panels[1])
+    name_panels(panels, ("phase plane, 40 control periods", f"Poincaré section, {POINTS} periods"))
+    return Shown(
+        f"Figure {number}: phase plane and Poincaré section at {frequency:g} Hz",
+        f"mole-{number}-{frequency:g}-hz".replace(".", "-"),
+        figure,
+        f"As printed, from u = -0.022 m at rest; {dropped} control periods dropped; the section is "
+        "taken whenever the relay closes.",
+        case.compared(),
+    )
+
+
+def basins(told: dict[tuple[str, int], Case]) -> Shown:
+    """Draw the basins of attraction at four control frequencies."""
+    labels = ("29.5 rad/s", "31 rad/s", "32.8 rad/s", "47 rad/s")
+    axes = {
+        "initial_displacement": (-0.05, 0.005, GRID[0]),
+        "initial_velocity": (-2.0, 2.0, GRID[1]),
+    }
+    figure, panels = sheet(2, 2, 3.0)
+    shares = []
+    for panel, label in zip(panels, labels, strict=True):
+        fixed = {"control_frequency": told[label, 0].params.control_frequency}
+        ds = uq.basins("mole", axes, fixed, SHORT, by=["progression_rate"])
+        uq.plot_basins(ds, ["progression_rate"], panel)
+        shares.append(f"{label}: " + ", ".join(f"{share:.0%}" for share in ds["share"].values))
+    name_panels(panels, labels)
+    return Shown(
+        "Figure 10: basins of attraction",
+        "mole-10-basins",
+        figure,
+        f"As printed, {GRID[0]} x {GRID[1]} starts, {SHORT['transient']} control periods left out "
+        f"and {SHORT['duration']} looked at; attractors told apart by regime and progression rate.",
+        "The paper has chaos, period-2, period-1 and, at 47 rad/s, two period-1 attractors. Shares "
+        f"of the starts that lead to each of ours: {'; '.join(shares)}.",
+    )
+
+
+def two_orbits(told: dict[tuple[str, int], Case]) -> Shown:
+    """Draw phase planes and Poincare sections of both orbits at 47 rad/s."""
+    pair = [told["47 rad/s", i] for i in (0, 1)]
+    figure, panels = sheet(2, 2, 2.6)
+    frequency, dropped = 47 / tau, 37
+    names = []
+    for i, case in enumerate(pair):
+        begin, end = dropped / frequency, (dropped + 20) / frequency
+        orbit = history(case.params, PRINTED, begin, end, 20_000)
+        uq.plot_phase_portrait(orbit, axes=panels[2 * i])
+        section = poincare_section(case.params, PRINTED, 1000, dropped)
+        uq.plot_section(section, axes=panels[2 * i + 1])
+        start = (
+            f"from ({case.params.initial_displacement:g} m, {case.params.initial_velocity:g} m/s)"
+        )
+        names += [start, f"Poincaré section, {start}"]
+    name_panels(panels, names)
+    return Shown(
+        "Figure 11: the two attractors at 47 rad/s",
+        "mole-11-47-rad-s",
+        figure,
+        f"As printed; {dropped} control periods dropped; 20 shown, and 1000 points of a section.",
+        f"From the first start: {pair[0].compared()} From the second: {pair[1].compared()}",
+    )
