@@ -28,9 +28,10 @@ def section(one: Shown) -> str:
     """Write one figure's section of the page, and the figure's file."""
     drawn = one.drawn
     if not isinstance(drawn, str):
-        png, svg = write(drawn, DOCS / FOLDER / one.name)
-        png.unlink()
-        drawn = f"![{one.title}]({FOLDER}/{svg.name})"
+        for path in write(drawn, DOCS / FOLDER / one.name):
+            if path.suffix != ".svg":
+                path.unlink()
+        drawn = f"![{one.title}]({FOLDER}/{one.name}.svg)"
     return f"### {one.title}\n\n{drawn}\n\n{one.parameters}\n\n{one.comparison}\n"
 
 

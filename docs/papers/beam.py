@@ -213,7 +213,7 @@ def made(worn: dict[float, xr.Dataset]) -> str:
     """Say how the wear histories were made."""
     reach = " and ".join(f"{WIDEST[omega]:g} at omega = {omega:g}" for omega in worn)
     return (
-        f"Nominal beam from rest, gaps as new and alike, worn to {reach} (in initial gaps) within "
-        f"{PERIODS} forcing periods; dotted lines: the regime changes. The right site "
-        "is the paper's site 1, that which begins with the larger work-rate."
+        f"Nominal beam from rest, gaps as new and alike, worn until both gaps are {reach} "
+        f"(in initial gaps) within {PERIODS} forcing periods; dotted lines: the regime changes. "
+        "The right site is the paper's site 1, that which begins with the larger work-rate."
     )

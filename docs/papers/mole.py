@@ -17,7 +17,7 @@ PRINTED, PHYSICAL = Settings(formulation="as-printed"), Settings(formulation="ph
 LONG = 10.0  # s, of a whole time history
 POINTS = 3000  # of a Poincare section
 SHORT = {"formulation": "as-printed", "transient": 100, "duration": 100}  # of a basin
-GRID = 24, 17  # points of a basin along displacement and velocity
+GRID = 21, 15  # points of a basin along displacement and velocity
 NOTE = """\
 J.-H. Ho, V.-D. Nguyen, K.-C. Woo, *Nonlinear dynamics of a new electro-vibro-impact system*,
 Nonlinear Dynamics 63 (2011) 35-49. The paper's equation (20) lacks the friction of the mole on the

@@ -1,6 +1,7 @@
 """Table 1 and Figures 5 to 8 of Michalczyk & Cieplok 2014, from the vibrator."""
 
 from collections.abc import Iterator
+from math import tau
 from typing import Any
 
 import numpy as np
@@ -77,9 +78,11 @@ def run_up(p: Any, found: Any, row: int) -> Shown:
     figure = uq.plot_history(ds, ["disphasing_angle", "alpha", ["speed_1", "speed_2"]])
     end = float(ds["time"][-1])
     last = ds["trajectory"].sel(time=slice(end - 0.2, None))
-    angle = float(last.sel(quantity="disphasing_angle").mean())
+    unwrapped = float(last.sel(quantity="disphasing_angle").mean())
+    turns = round(unwrapped / tau)
+    angle = unwrapped - turns * tau
     turn = float(np.ptp(last.sel(quantity="alpha").values)) / 2
-    steady, amplitude = found.disphasing[row], found.angular_amplitude[row]
+    steady, amplitude = found.disphasing[row], tidy(found.angular_amplitude[row])
     return Shown(
         f"Figure {row + 5}: start-up of the machine in row {row + 1} of Table 1",
         f"vibrator-{row + 5}-row-{row + 1}",
@@ -87,9 +90,10 @@ def run_up(p: Any, found: Any, row: int) -> Shown:
         f"Damping ratio {given['damping_ratio']:g}, k_x = {given['stiffness_x']:.3g} N/m, h = "
         f"{given['support_offset']:g} m; both motors switched on at t = 0, at rest, both "
         "unbalances hanging down.",
-        f"In the last 0.2 s of {end:.0f} s the angle is {tidy(angle):.4f} rad "
+        f"In the last 0.2 s of {end:.0f} s the angle, but for {abs(turns)} whole turns, is "
+        f"{tidy(angle):.4f} rad "
         f"({tidy(steady):.4f} rad on the periodic orbit) and the body turns by {turn:.1e} rad "
-        f"({amplitude:.1e} rad on the orbit): motions of the springs die out with a time constant "
+        f"({amplitude:.2g} rad on the orbit): motions of the springs die out with a time constant "
         f"of seconds, so that the angle settles within the figure and the rotation does not. The "
         "paper's curves are legible in kind only: synchronised at a small constant angle, as "
         "here.",
