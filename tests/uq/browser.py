@@ -101,7 +101,7 @@ def tab(folder):
             address = next(one for one in json.load(answer) if one["type"] == "page")
         socket = loop.run_until_complete(_connected(address["webSocketDebuggerUrl"]))
         yield Tab(loop, socket)
-        socket.close()
+        loop.run_until_complete(_closed(socket))
     finally:
         os.killpg(browser.pid, signal.SIGTERM)
         browser.wait(_SECONDS)
@@ -110,6 +110,10 @@ def tab(folder):
 
 async def _connected(address):
     return await websocket_connect(address, max_message_size=2**28)
+
+
+async def _closed(socket):
+    socket.close()
 
 
 def _port(folder):

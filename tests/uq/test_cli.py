@@ -77,8 +77,8 @@ def test_a_shell_completes_verbs_options_and_models(uq, monkeypatch, typed, comp
     monkeypatch.setenv("COMP_CWORD", str(len(typed.split()) - 1))
     ended = uq()
     assert (ended.code, ended.out.split(), ended.err) == (0, completed, "")
-    monkeypatch.delenv("_UQ_COMPLETE")
-    assert "complete -o default -F _uq_completion uq" in uq("--show-completion", "bash").out
+    monkeypatch.setenv("_UQ_COMPLETE", "source_bash")
+    assert "complete -o default -F _uq_completion uq" in uq().out
 
 
 def test_models_are_listed(uq):

@@ -263,9 +263,12 @@ def test_quantiles_are_a_table_to_print():
 
 def test_numbers_on_logarithmic_axes_are_plain():
     ds = with_output(linear(samples=200), "wide", np.geomspace(1e-3, 1e4, 200))
-    for figure in (plots.histogram(ds, "wide"), plots.scatter(ds, "wide")):
+    for figure, tick in (
+        (plots.histogram(ds, "wide"), "0.01"),
+        (plots.scatter(ds, "wide"), "0.001"),
+    ):
         figure.draw_without_rendering()
-        assert "mathdefault" not in words(figure) and "0.001" in words(figure)
+        assert "mathdefault" not in words(figure) and tick in words(figure).split()
 
 
 def test_words_and_units_of_axes():

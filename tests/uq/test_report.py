@@ -213,13 +213,19 @@ def test_reports_that_cannot_be_made_are_refused_in_a_line(uq, folder):
     write_result(linear(samples=8), path)
     before = path.read_bytes()
     for arguments, line in (
-        (("none.nc",), "none.nc: no such file\n"),
+        (
+            ("none.nc",),
+            "none.nc: no such file; did you mean 'out.nc'?; 'uq run STUDY' makes results\n",
+        ),
         (
             ("out.nc", "-o", "out.nc"),
             "out.nc: is the result itself; give the report another name\n",
         ),
         (("out.nc", "-o", "."), ".: is a folder; give the name of a file in it\n"),
-        (("out.nc", "-o", "out.nc/a.html"), "out.nc/a.html: {0}/out.nc is a file, not a folder\n"),
+        (
+            ("out.nc", "-o", "out.nc/a.html"),
+            "out.nc/a.html: {0}/out.nc is a file, not a folder; choose another place with -o\n",
+        ),
     ):
         ended = uq("report", *arguments)
         assert (ended.code, ended.out, ended.err) == (2, "", line.format(folder))

@@ -64,13 +64,18 @@ def test_a_write_that_is_cut_short_can_be_undone(folder, monkeypatch):
     assert everything(folder) == []
 
 
+ELSEWHERE = "choose another place with -o"
+
+
 @pytest.mark.parametrize(
     ("path", "words"),
     [
         ("folder", "folder: is a folder; give the name of a file in it"),
-        ("file/out.nc", "file/out.nc: {here}/file is a file, not a folder"),
-        ("/proc/out.nc", "/proc/out.nc: cannot write in /proc: No such file or directory"),
-        ("/proc/a/b.nc", "/proc/a/b.nc: cannot write in /proc: No such file or directory"),
+        ("file/out.nc", f"file/out.nc: {{here}}/file is a file, not a folder; {ELSEWHERE}"),
+        *(
+            (path, f"{path}: cannot write in /proc: No such file or directory; {ELSEWHERE}")
+            for path in ("/proc/out.nc", "/proc/a/b.nc")
+        ),
     ],
 )
 def test_a_target_that_cannot_be_written_is_refused(folder, path, words):

@@ -71,11 +71,11 @@ def _method(ds: xr.Dataset, name: str) -> Method:
         used += (
             f", {found['groups_dropped']} groups dropped for lack of a value in some of their rows"
         )
-    subjects = (_subject(ds, target, entry) for target, entry in found["outputs"].items())
+    subjects = (_subject(ds, name, *one) for one in found["outputs"].items())
     return Method(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Subject:
+def _subject(ds: xr.Dataset, method: str, name: str, entry: Mapping[str, Any]) -> Subject:
     words = " ".join(subject(ds, name).split())
     if "refused" in entry:
         return Subject(name, words, refused=entry["refused"])
@@ -87,7 +87,8 @@ def _subject(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Subject:
         (f"Second order, of {name}", pairs, {}),
     )
     tables = tuple(_table(*one) for one in told if one[1])
-    drawn = picture(bars(ds, name, entry), f"Sensitivity indices of {name}") if kinds else None
+    caption = f"Sensitivity indices of {name} by {method}"
+    drawn = picture(bars(ds, name, entry), caption) if kinds else None
     leading = _ranking(kinds)[0] if kinds else ""
     return Subject(name, words, "", tables, drawn, tuple(entry["notes"]), leading)
 
