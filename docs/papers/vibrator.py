@@ -90,9 +90,10 @@ def run_up(p: Any, found: Any, row: int) -> Shown:
         f"Damping ratio {given['damping_ratio']:g}, k_x = {given['stiffness_x']:.3g} N/m, h = "
         f"{given['support_offset']:g} m; both motors switched on at t = 0, at rest, both "
         "unbalances hanging down.",
-        f"In the last 0.2 s of {end:.0f} s the angle, but for {abs(turns)} whole turns, is "
-        f"{tidy(angle):.4f} rad "
-        f"({tidy(steady):.4f} rad on the periodic orbit) and the body turns by {turn:.1e} rad "
+        f"In the last 0.2 s of {end:.0f} s the angle, less {abs(turns)} whole turn"
+        f"{'s' * (abs(turns) != 1)}, is "
+        f"{angle:z.4f} rad "
+        f"({steady:z.4f} rad on the periodic orbit) and the body turns by {turn:.1e} rad "
         f"({amplitude:.2g} rad on the orbit): motions of the springs die out with a time constant "
         f"of seconds, so that the angle settles within the figure and the rotation does not. The "
         "paper's curves are legible in kind only: synchronised at a small constant angle, as "
