@@ -543,7 +543,14 @@ def test_without_a_terminal_progress_is_plain_lines(capsys, monkeypatch):
 
 
 def test_progress_is_a_sentence():
-    assert sentence(Progress(100, 400, 3), 2.0) == (
+    assert sentence(Progress(100, 400, 3), 50.0) == (
         "100 of 400 rows, 50 rows/s, 0:06 left, 3 failed"
     )
     assert sentence(Progress(1, 3601, 0), 1.0).endswith("1:00:00 left, 0 failed")
+
+
+def test_the_time_that_a_model_compiles_is_not_taken_for_that_of_its_rows():
+    pace = progress.Pace()
+    assert pace(Progress(10, 400, 0), 60.0) == 0.0
+    assert sentence(Progress(10, 400, 0), 0.0) == "10 of 400 rows, 0 failed"
+    assert pace(Progress(110, 400, 0), 62.0) == pytest.approx(50.0)

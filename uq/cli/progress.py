@@ -24,19 +24,35 @@ def shown(quiet: bool) -> Iterator[Report]:
         yield _Plain()
 
 
+class Pace:
+    """Rows per second since the first arrived: before that, a model may have been compiled."""
+
+    def __init__(self) -> None:
+        self._first: tuple[int, float] | None = None
+
+    def __call__(self, progress: Progress, now: float) -> float:
+        """Return the pace at some time [s]; 0 while it is not known."""
+        if self._first is None:
+            self._first = progress.done, now
+        done, began = self._first
+        return (progress.done - done) / (now - began) if now > began else 0.0
+
+
 class _Plain:
     def __init__(self) -> None:
-        self._began = self._last = time.monotonic()
+        self._last = time.monotonic()
+        self._pace = Pace()
         self._dashboard = ""
 
     def __call__(self, progress: Progress) -> None:
         now = time.monotonic()
+        pace = self._pace(progress, now)
         if progress.dashboard != self._dashboard:
             self._dashboard = progress.dashboard
             print(f"dask dashboard: {self._dashboard}", file=sys.stderr, flush=True)
         if now - self._last >= _PLAIN_SECONDS:
             self._last = now
-            lines = [sentence(progress, now - self._began), *details(progress)]
+            lines = [sentence(progress, pace), *details(progress)]
             print("; ".join(lines), file=sys.stderr, flush=True)
 
 
@@ -47,7 +63,7 @@ def _moving() -> Iterator[Report]:
     from rich.progress import Progress as Bar
     from rich.text import Text
 
-    began = time.monotonic()
+    pace = Pace()
     console = Console(stderr=True, highlight=False)
     columns = (BarColumn(bar_width=10), TextColumn("{task.description}", markup=False))
     bar = Bar(*columns, console=console)
@@ -57,7 +73,7 @@ def _moving() -> Iterator[Report]:
 
         def show(progress: Progress) -> None:
             nonlocal dashboard
-            text = sentence(progress, time.monotonic() - began)
+            text = sentence(progress, pace(progress, time.monotonic()))
             bar.update(task, completed=progress.done, total=progress.total, description=text)
             lines = [Text(line, no_wrap=True, overflow="ellipsis") for line in details(progress)]
             live.update(Group(bar, *lines))
@@ -68,14 +84,13 @@ def _moving() -> Iterator[Report]:
         yield show
 
 
-def sentence(progress: Progress, seconds: float) -> str:
-    """Say how far a run is after some seconds."""
-    rate = (progress.done - progress.found) / seconds if seconds > 0 else 0.0
-    left = (progress.total - progress.done) / rate if rate else 0.0
-    return (
-        f"{progress.done} of {progress.total} rows, {rate:.3g} rows/s, "
-        f"{_clock(left)} left, {progress.failed} failed"
-    )
+def sentence(progress: Progress, pace: float) -> str:
+    """Say how far a run is, at some rows per second; 0 if that is not known."""
+    said = f"{progress.done} of {progress.total} rows, "
+    if pace:
+        left = (progress.total - progress.done) / pace
+        said += f"{pace:.3g} rows/s, {_clock(left)} left, "
+    return f"{said}{progress.failed} failed"
 
 
 def details(progress: Progress) -> list[str]:
