@@ -58,4 +58,4 @@ def _outputs(found: Sequence[Outcome]) -> Iterator[str]:
 def _leading(methods: Sequence[Method]) -> Iterator[str]:
     subjects = [one for method in methods[:1] for one in method.subjects if one.leading]
     for one in subjects[:_MOST]:
-        yield f"{one.name}: {one.leading} matters most ({methods[0].name})."
+        yield f"{one.name}: {one.leading} ({methods[0].name})."

@@ -25,7 +25,8 @@ class Subject(NamedTuple):
     picture : Picture or None
     notes : list of str
     leading : str
-        The input with the largest index, or "".
+        The input with the largest index, and that; "" where none is larger than that of an input
+        without effect.
     """
 
     name: str
@@ -89,8 +90,15 @@ def _subject(ds: xr.Dataset, method: str, name: str, entry: Mapping[str, Any]) -
     tables = tuple(_table(*one) for one in told if one[1])
     caption = f"Sensitivity indices of {name} by {method}"
     drawn = picture(bars(ds, name, entry), caption) if kinds else None
-    leading = _ranking(kinds)[0] if kinds else ""
-    return Subject(name, words, "", tables, drawn, tuple(entry["notes"]), leading)
+    return Subject(name, words, "", tables, drawn, tuple(entry["notes"]), _leading(kinds, dummy))
+
+
+def _leading(kinds: Mapping[str, Any], dummy: Mapping[str, float]) -> str:
+    if not kinds:
+        return ""
+    kind, first = list(kinds)[-1], _ranking(kinds)[0]
+    value = kinds[kind][first]["value"] or 0.0
+    return f"{first} matters most, {kind} = {value:.2g}" if value > dummy.get(kind, 0.0) else ""
 
 
 def _is_index(value: Any) -> bool:
