@@ -171,7 +171,7 @@ def test_a_terminal_shows_progress_and_gets_its_cursor_back(started):
     process, _ = started("SLEEPING", "--workers", "0", seconds=0.05, stderr=theirs)
     os.close(theirs)
     shown = b""
-    while b" of 10000 rows, " not in shown:
+    while b" rows/s, " not in shown:
         shown += os.read(ours, 10_000)
     to_process(process)
     process.wait(PATIENCE)
@@ -183,4 +183,4 @@ def test_a_terminal_shows_progress_and_gets_its_cursor_back(started):
     assert shown.count(hidden) == shown.count(visible) == 1
     assert shown.rindex(visible) > shown.rindex(hidden)
     assert b"interrupted after " in shown.rpartition(visible)[2]
-    assert b" rows/s, " in shown and b" left, 0 failed" in shown
+    assert b" of 10000 rows, " in shown and b" left, 0 failed" in shown
