@@ -3,8 +3,8 @@
 A model's version is its author's promise; this is what the files say.
 """
 
+import ast
 import hashlib
-import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib.util import find_spec, resolve_name
@@ -12,9 +12,6 @@ from pathlib import Path
 
 from uq.provenance import provenance
 from uq.registry import module_of
-
-# Texts that only look like an import do no harm: there is no such file.
-_IMPORT = re.compile(r"^[ \t]*(?:from[ \t]+([.\w]+)[ \t]+)?import[ \t]+(\([^)]*\)|.*)", re.M)
 
 
 def made_here(reference: str) -> dict[str, str]:
@@ -69,7 +66,7 @@ def code_of(reference: str) -> str:
                 sources[name] = file.read_bytes()
                 above = name.rpartition(".")[0]
                 within = name if file.stem == "__init__" else above
-                todo |= {above or package, *_imported(sources[name].decode(), within)}
+                todo |= {above or package, *_imported(sources[name], within)}
         todo = {name for name in todo - set(sources) if name.partition(".")[0] == package}
     whole = hashlib.sha256()
     for name, source in sorted(sources.items()):
@@ -86,14 +83,11 @@ def _folder(package: str) -> Path:
     return Path(spec.origin).parents[1 if spec.submodule_search_locations else 0]
 
 
-def _imported(source: str, within: str) -> Iterator[str]:
+def _imported(source: bytes, within: str) -> Iterator[str]:
     """Yield the modules that a source imports anywhere, and names that might be some."""
-    for origin, names in _IMPORT.findall(source):
-        for name in re.findall(r"[.\w]+", names):
-            if not origin:
-                yield name
-            elif not origin.startswith("."):
-                yield from (origin, f"{origin}.{name}")
-            elif within:
-                base = resolve_name(origin, within)
-                yield from (base, f"{base}.{name}")
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and (within or not node.level):
+            base = resolve_name("." * node.level + (node.module or ""), within)
+            yield from (base, *(f"{base}.{alias.name}" for alias in node.names))

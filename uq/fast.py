@@ -10,7 +10,7 @@ from SALib.analyze.fast import compute_orders
 
 from uq.curves import HARMONICS
 from uq.elements import Floats
-from uq.groups import grouped_rows
+from uq.groups import grouped_rows, whole_groups
 from uq.intervals import is_constant
 from uq.targets import Index, Indices, RefusedError
 
@@ -28,10 +28,6 @@ class Curves(NamedTuple):
 
     order: NDArray[np.intp]
     parameters: tuple[str, ...]
-
-    def whole(self, values: Floats) -> NDArray[np.bool_]:
-        """Return which curves, shape (R, d), have a value at each of their points."""
-        return np.asarray(np.isfinite(values[self.order]).all(axis=2))
 
 
 def curves(ds: xr.Dataset) -> Curves:
@@ -81,7 +77,7 @@ def fast_indices(design: Curves, values: Floats) -> Indices:
     A. Saltelli, S. Tarantola, K. P.-S. Chan, "A quantitative model-independent method for global
     sensitivity analysis of model output", Technometrics 41, 39-56 (1999).
     """
-    y, whole = values[design.order], design.whole(values)
+    y, whole = values[design.order], whole_groups(values, design.order)
     for name, own in zip(design.parameters, whole.T, strict=True):
         if not own.any():
             raise RefusedError(f"none of {len(whole)} curves for {name} has a value in each row")

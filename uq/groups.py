@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.elements import flags
+from uq.elements import Floats, flags
 from uq.errors import InputError
 
 
@@ -38,3 +38,20 @@ def grouped_rows(ds: xr.Dataset) -> tuple[NDArray[np.intp], tuple[str, ...]]:
             order = order.reshape(ds.attrs["replicates"], -1, len(labels))
             return order, tuple(label for _, label in labels)
     raise InputError("rows of the design are missing: its indices need whole groups")
+
+
+def whole_groups(values: Floats, order: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Return which groups have a value in each of their rows.
+
+    Parameters
+    ----------
+    values : ndarray of float64, shape (S,)
+        NaN where a row has none.
+    order : ndarray of int, shape (..., rows of a group)
+        The rows of each group.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+    """
+    return np.asarray(np.isfinite(values[order]).all(axis=-1))

@@ -12,6 +12,7 @@ from uq.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.errors import InputError, nearest
 from uq.fast import curves, fast_indices
 from uq.given_data import given_data_indices
+from uq.groups import whole_groups
 from uq.independent_inputs import are_dependent, independent_inputs, notes_on_inputs
 from uq.morris import morris_indices, trajectories
 from uq.regimes_of import within_regime
@@ -194,7 +195,8 @@ def _estimate(
             indices = indices._replace(notes=indices.notes + notes)
         except RefusedError as refusal:
             indices = str(refusal)
-        whole = np.isfinite(target.values) if design is None else design.whole(target.values)
+        alone = np.arange(target.values.size)[:, None]
+        whole = whole_groups(target.values, alone if design is None else design.order)
         found.append(_Found(target, indices, whole, ds.sizes["sample"] // whole.size))
     return method, found
 

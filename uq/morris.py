@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.elements import Floats
-from uq.groups import grouped_rows
+from uq.groups import grouped_rows, whole_groups
 from uq.independent_inputs import independent_inputs
 from uq.intervals import is_constant, scatter_interval
 from uq.targets import Index, Indices, RefusedError
@@ -42,10 +42,6 @@ class Trajectories(NamedTuple):
     parameters: tuple[str, ...]
     direction: Floats
     optimised: bool
-
-    def whole(self, values: Floats) -> NDArray[np.bool_]:
-        """Return which trajectories, shape (R, N), have a value at each of their points."""
-        return np.asarray(np.isfinite(values[self.order]).all(axis=2))
 
 
 def trajectories(ds: xr.Dataset) -> Trajectories:
@@ -106,7 +102,7 @@ def morris_indices(design: Trajectories, values: Floats) -> Indices:
     F. Campolongo, J. Cariboni, A. Saltelli, "An effective screening design for sensitivity analysis
     of large models", Environ. Model. Softw. 22, 1509-1518 (2007).
     """
-    whole = design.whole(values)
+    whole = whole_groups(values, design.order)
     kept = int(whole.sum())
     if kept < MIN_TRAJECTORIES:
         raise RefusedError(

@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.elements import Floats
-from uq.groups import grouped_rows
+from uq.groups import grouped_rows, whole_groups
 from uq.independent_inputs import independent_inputs
 from uq.intervals import is_constant, scatter_interval
 from uq.targets import Index, Indices, RefusedError
@@ -31,10 +31,6 @@ class Paths(NamedTuple):
     order: NDArray[np.intp]
     parameters: tuple[str, ...]
     changed: NDArray[np.bool_]
-
-    def whole(self, values: Floats) -> NDArray[np.bool_]:
-        """Return which paths, shape (n,), have a value at each of their points."""
-        return np.asarray(np.isfinite(values[self.order]).all(axis=1))
 
 
 def paths(ds: xr.Dataset) -> Paths:
@@ -93,7 +89,7 @@ def shapley_indices(design: Paths, values: Floats) -> Indices:
     .. [1] T. Goda, "A simple algorithm for global sensitivity analysis with Shapley effects",
        Reliab. Eng. Syst. Saf. 213, 107702 (2021).
     """
-    whole = design.whole(values)
+    whole = whole_groups(values, design.order)
     kept = int(whole.sum())
     if kept < MIN_PATHS:
         raise RefusedError(f"only {kept} of {whole.size} paths are whole; {MIN_PATHS} are needed")

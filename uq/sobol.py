@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from SALib.analyze.sobol import first_order, second_order, total_order
 
 from uq.elements import Floats
-from uq.groups import grouped_rows
+from uq.groups import grouped_rows, whole_groups
 from uq.intervals import is_constant, scatter_interval
 from uq.targets import Index, Indices, RefusedError
 
@@ -35,10 +35,6 @@ class Crossed(NamedTuple):
     def parameters(self) -> tuple[str, ...]:
         """The parameters, in the design's order."""
         return tuple(label[3:] for label in self.place if label.startswith("AB_"))
-
-    def whole(self, values: Floats) -> NDArray[np.bool_]:
-        """Return which groups, shape (R, N), have a value in each of their rows."""
-        return np.asarray(np.isfinite(values[self.order]).all(axis=2))
 
     @property
     def ends(self) -> list[int]:
@@ -91,7 +87,7 @@ def sobol_indices(design: Crossed, values: Floats) -> Indices:
     A. Saltelli et al., "Variance based sensitivity analysis of model output. Design and estimator
     for the total sensitivity index", Comput. Phys. Commun. 181, 259-270 (2010).
     """
-    y, whole = values[design.order], design.whole(values)
+    y, whole = values[design.order], whole_groups(values, design.order)
     kept = int(whole.sum())
     if kept < MIN_GROUPS:
         raise RefusedError(f"only {kept} of {whole.size} groups are whole; {MIN_GROUPS} are needed")
