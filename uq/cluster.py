@@ -41,13 +41,13 @@ class Workers:
     Attributes
     ----------
     client : distributed.Client
-    local : bool
-        Whether this process started them.
+    own : int
+        Processes that this process started, 0 on somebody's cluster.
     """
 
-    def __init__(self, client: Client, watch: Callable[[int, bool], None], local: bool) -> None:
+    def __init__(self, client: Client, watch: Callable[[int, bool], None], own: int = 0) -> None:
         self.client = client
-        self.local = local
+        self.own = own
         self._watch = watch
 
     @property
@@ -127,7 +127,7 @@ def local(count: int) -> Iterator[Workers]:
         stack.enter_context(undone(processes.kill))
         for _ in range(count):
             processes.start()
-        yield Workers(client, processes.watch, local=True)
+        yield Workers(client, processes.watch, own=count)
 
 
 @contextmanager
@@ -163,7 +163,7 @@ def remote(address: str) -> Iterator[Workers]:
             ) from None
         _check_versions(client, f"--scheduler {address}")
         try:
-            yield Workers(client, _Presence(client, address).watch, local=False)
+            yield Workers(client, _Presence(client, address).watch)
         finally:
             if client.status == "running":
                 client.run(end_children, on_error="ignore")

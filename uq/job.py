@@ -24,9 +24,11 @@ if TYPE_CHECKING:
 CHUNK_SECONDS = 0.5
 """Work in a chunk, unless the caller says how many rows."""
 
-_BLOCK_SECONDS = 2.0  # longest chunk for the sake of a whole block of the kernel
+# Longest chunk for the sake of a whole block of the kernel: half a block may take as long.
+_BLOCK_SECONDS = 5.0
 _FIRST_ROWS = 16
 _IN_FLIGHT = 4  # chunks at least, also while workers start
+_LAST_SHARE = 1 / 8  # of a chunk: smaller ones towards the end would waste work
 _GROWTH = 4  # of the chunks of the pilot
 _LIMIT_SHARE = 0.25  # of the time limit of a row, for a whole chunk
 _CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
@@ -157,13 +159,12 @@ class Job:
         flight = Flight(self.work, task_of(self.work), crew, self._row_limit)
         while not self.complete:
             threads = crew.threads
+            sharing = max(1, threads or crew.own)
             # No more chunks in flight than keep the workers busy.
-            while self._untaken and len(flight) < max(_IN_FLIGHT, 2 * threads):
-                # Towards the end smaller ones, so that all workers finish together.
-                share = ceil(self._untaken / max(1, threads))
-                flight.send(*self._take(min(self._chunk_rows(), self._whole(share))))
-            if crew.local and not threads and self._untaken:
-                self._here(self._chunk_rows())
+            while self._untaken and len(flight) < max(_IN_FLIGHT, 2 * sharing):
+                flight.send(*self._take(self._shared(sharing)))
+            if crew.own and not threads and self._untaken:
+                self._here(self._shared(sharing))
             for start, some, chunk, seconds in flight.landed():
                 self._row_seconds = seconds / len(some.x)
                 self._keep(start, some, chunk)
@@ -213,6 +214,12 @@ class Job:
         if self._wish:
             return self._whole(min(self._wish, most) if self._row_limit else self._wish)
         return min(self._whole(most), chunk_rows(self.work, self._row_seconds))
+
+    def _shared(self, threads: int) -> int:
+        """Return the rows of the next chunk: all threads are to finish together."""
+        size = self._chunk_rows()
+        share = max(ceil(self._untaken / threads), int(_LAST_SHARE * size))
+        return min(size, self._whole(share))
 
     def _whole(self, size: float) -> int:
         """Round up to whole groups of the design."""

@@ -1,5 +1,6 @@
 """What a study will cost: a few of its rows are run, spread over all of them."""
 
+import subprocess
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -13,11 +14,12 @@ import xarray as xr
 from scipy import special
 
 from uq import computing, results
+from uq.environment import command, inherited
 from uq.errors import InputError
 from uq.evaluate import Chunk, joined
 from uq.interrupts import undone
 from uq.isolation import Isolated, task_of
-from uq.job import chunk_rows
+from uq.job import CHUNK_SECONDS, chunk_rows
 from uq.sampling import Rows
 from uq.store import row_bytes
 from uq.study import Study
@@ -27,13 +29,14 @@ PILOT_SECONDS = 8.0
 """Time for the pilot, once the model is compiled."""
 
 _FIRST_ROWS = 16
+_GROWTH = 4
 _FILE_BYTES = 30_000  # names, units, the study
 _CHUNKS_AT_LEAST = 2  # per process
 _GOLDEN = (5**0.5 - 1) / 2
-# What a run does beside its rows takes this many times the start of a process: a busy computer is
-# slow in both.
-_RUN_STARTS = 6.0
-_WORKERS_STARTS = 10.0
+# What a run does beside its rows takes this many times what loading its packages takes: a busy
+# computer is slow in both.
+_RUN_LOADS = 1.5
+_WORKERS_LOADS = 2.0
 
 
 class Cost(NamedTuple):
@@ -93,18 +96,18 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
         crew = [Isolated(task_of(work)) for _ in range(processes)]
         for process in crew:
             stack.enter_context(undone(process.close))
-        began = time.perf_counter()
-        crew[0].start()
-        start_seconds = time.perf_counter() - began
-        some, chunks, row = _sample(work, crew, _warm_up(work, crew))
+        load_seconds = _load_seconds()
+        row_seconds, pilot_seconds = _warm_up(work, crew)
+        some, chunks, row = _sample(work, crew, row_seconds)
     kept = row_bytes(study) * work.total
     constants = len(study.model.parameter_names) - len(study.uncertain)
     size = _FILE_BYTES + kept - 8 * constants * work.total  # a constant is one number in the result
     alone = row.seconds * work.total
     if workers is None and alone < computing.SHORT_SECONDS:
         processes = 1
-    starts = _RUN_STARTS + (_WORKERS_STARTS if workers or processes > 1 else 0.0)
-    beside = starts * start_seconds
+    beside = _RUN_LOADS * load_seconds
+    if workers or processes > 1:
+        beside += _WORKERS_LOADS * load_seconds + pilot_seconds
     low, seconds, high = (
         alone / processes * share + beside
         for share in (max(0.0, 1 - row.error), 1.0, 1 + row.error)
@@ -126,14 +129,33 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
     return cost, results.build(study, rows, chunk.columns, chunk.status, failures)
 
 
-def _warm_up(work: Work, crew: list[Isolated]) -> float:
-    """Compile the model in one process, load it in the others; return the time of a row."""
-    first = work.block(0, min(work.total, work.group * ceil(_FIRST_ROWS / work.group)))
+def _load_seconds() -> float:
+    """Return how long a new process takes to load what a run needs [s]."""
+    began = time.perf_counter()
+    subprocess.run(command("uq.cli.studies"), env=inherited(), stdin=subprocess.DEVNULL, check=True)
+    return time.perf_counter() - began
+
+
+def _warm_up(work: Work, crew: list[Isolated]) -> tuple[float, float]:
+    """Compile the model in one process, load it in the others.
+
+    Then one takes more and more rows, as a run does before it starts workers: return the time of
+    a row, and of all those rows.
+    """
+    size, seconds = min(work.total, work.group * ceil(_FIRST_ROWS / work.group)), 0.0
+    first = work.block(0, size)
     for process in crew:
         process.evaluate(first.x, first.seed)
-    began = time.perf_counter()
-    crew[0].evaluate(first.x, first.seed)
-    return (time.perf_counter() - began) / len(first.x)
+    while True:
+        rows = work.block(0, size)
+        began = time.perf_counter()
+        crew[0].evaluate(rows.x, rows.seed)
+        last = time.perf_counter() - began
+        seconds += last
+        grown = min(_GROWTH * size, chunk_rows(work, last / size), work.total)
+        if seconds > CHUNK_SECONDS or grown <= size:
+            return last / size, seconds
+        size = grown
 
 
 def _sample(
