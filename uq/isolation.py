@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _SINGLE_CRASHES = 2
 _PARTS = 8  # of rows that crashed: more would be small for kernels, fewer would crash more often
 _STARTS = 3
-_FIRST_SECONDS = 2.0  # a first call loads compiled code
+_FIRST_SECONDS = 5.0  # a first call loads compiled code: 1 s, more where the computer is busy
 _DYING_SECONDS = 5.0
 _POLL_SECONDS = 0.2  # so that an interrupt is seen
 

@@ -371,6 +371,10 @@ MISTAKES = {
     "run small.toml --workers 1 --scheduler tcp://x:1": "workers and scheduler exclude each other",
     "simulate ishigamy": "no such model 'ishigamy'; did you mean 'ishigami'?",
     "simulate linear --set x1": "--set x1: write it as NAME=VALUE with a number",
+    "simulate linear --set x1=-1e400": (
+        "--set x1=-1e400: -1e400 is too large for a number; write it as inf if infinity is meant\n"
+    ),
+    "simulate beam --setting horizon=1e400": "--setting horizon=1e400: 1e400 is too large",
     "simulate linear --set x1=much": "--set x1=much: write it as NAME=VALUE with a number",
     "simulate linear --set x1=nan": "x1 = nan: ",
     "simulate linear --set x1=inf": "x1 = inf: must lie within 0.0 to 1.0 [1]",
@@ -470,7 +474,7 @@ MUCH = Progress(
     1_000_000_000,
     4_567,
     status={"ok": 1, "non-finite": 123_456_789, "raised": 1_234_567},
-    median=("a_life_with_a_long_name[depth=2]", 1e9),
+    median=("a_life_with_a_name[depth=2]", 1e9),
     shares={f"regime-with-a-long-name-{i}": 0.2 for i in range(5)},
     dashboard="http://127.0.0.1:8787/status",
 )
@@ -572,8 +576,8 @@ def test_plain_lines_stay_short(capsys, monkeypatch):
     _, *lines = capsys.readouterr().err.splitlines()
     assert max(map(len, lines)) <= 120
     assert lines[1].endswith("; non-finite 123456789, raised 1234567")
-    assert lines[2].endswith("; median a_life_with_a_long_name[depth=2]: 31.7 years")
-    assert lines[3].endswith("; median life: 1 s; slow 25%, fast 75%")
+    assert lines[2].endswith("; median a_life_with_a_name[depth=2]: 31.7 years")
+    assert lines[3].endswith("failed; median life: 1 s; slow 25%, fast 75%")
 
 
 def test_a_model_that_compiles_is_told_of_once(capsys):

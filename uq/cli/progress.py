@@ -55,7 +55,7 @@ class _Plain:
             return
         now = time.monotonic()
         pace = self._pace(progress, now)
-        if progress.dashboard != self._dashboard:
+        if progress.dashboard not in ("", self._dashboard):
             self._dashboard = progress.dashboard
             _print(f"dask dashboard: {self._dashboard}")
         if now - self._last >= _PLAIN_SECONDS:
@@ -95,7 +95,7 @@ def _moving() -> Iterator[Report]:
             bar.update(task, completed=progress.done, total=progress.total, description=text)
             lines = [Text(line, no_wrap=True, overflow="ellipsis") for line in details(progress)]
             live.update(Group(bar, *lines))
-            if progress.dashboard != dashboard:
+            if progress.dashboard not in ("", dashboard):
                 dashboard = progress.dashboard
                 live.console.print(f"dask dashboard: {dashboard}", markup=False)
 
