@@ -156,11 +156,13 @@ def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call
     assert out.read_bytes() == undisturbed
 
 
-def test_a_read_only_folder_is_refused(study, call, injected):
+def test_a_read_only_folder_is_refused(study, undisturbed, call, injected):
     as_nobody = {"UQ_TEST_USER": "65534"} if os.geteuid() == 0 else {}
     with tempfile.TemporaryDirectory() as name:
         closed = Path(name)
         (closed / study.name).write_bytes(study.read_bytes())
+        there = closed / "there.nc"
+        there.write_bytes(undisturbed)
         closed.chmod(0o555)
         for output in (closed / "out.nc", closed / "new" / "out.nc"):
             code, said = call("run", closed / study.name, *MODEL, "-o", output, **as_nobody)
@@ -168,7 +170,14 @@ def test_a_read_only_folder_is_refused(study, call, injected):
             injected("read-only folder")
             why = "Permission denied; choose another place with -o"
             assert said == f"{output}: cannot write in {closed}: {why}\n"
-        assert [path.name for path in closed.iterdir()] == [study.name]
+        model = (*MODEL[:2], "--quiet")
+        refused = call("extend", there, "--samples", "1600", *model, **as_nobody)
+        assert refused == (
+            2,
+            f"{there}: cannot write in {closed}: Permission denied; copy it elsewhere\n",
+        )
+        assert call("status", there, **as_nobody)[0] == 0
+        assert sorted(path.name for path in closed.iterdir()) == sorted([study.name, there.name])
         closed.chmod(0o700)
 
 

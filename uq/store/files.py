@@ -30,20 +30,19 @@ def check_target(path: Path, size: int) -> None:
     if os.path.isdir(path):
         raise InputError(f"{path}: is a folder; give the name of a file in it")
     folder = nearest_folder(path)
+    remedy = "copy it elsewhere" if path.is_file() else "choose another place with -o"
     if not folder.is_dir():
-        raise InputError(f"{path}: {folder} is a file, not a folder; choose another place with -o")
+        raise InputError(f"{path}: {folder} is a file, not a folder; {remedy}")
     try:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        raise InputError(
-            f"{path}: cannot write in {folder}: {error.strerror}; choose another place with -o"
-        ) from None
+        raise InputError(f"{path}: cannot write in {folder}: {error.strerror}; {remedy}") from None
     free = shutil.disk_usage(folder).free
     if free < size:
         raise InputError(
             f"{path}: the result takes about {size / 1e6:.0f} MB, "
-            f"and {folder} has {free / 1e6:.0f} MB left; choose another place with -o"
+            f"and {folder} has {free / 1e6:.0f} MB left; {remedy}"
         )
 
 
@@ -132,8 +131,8 @@ def nearest_folder(path: Path) -> Path:
 
 
 def reason(error: Exception, path: Path) -> str:
-    """Say why a write failed: HDF5 reports a full disk as "HDF error"."""
+    """Say why a write failed: HDF5 reports a full disk, or a quota, as "HDF error"."""
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     free = shutil.disk_usage(nearest_folder(path)).free
-    return f"{error} ({free / 1e6:.0f} MB left on the disk)"
+    return f"{error} ({free / 1e6:.0f} MB left on the disk, unless there is a quota)"
