@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 
 import numpy as np
 import psutil
@@ -77,6 +78,22 @@ def test_workers_are_started_for_longer_studies_only(
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = runner.compute(load_study(path, "sample_models:PROCESS"))
     assert len(set(ds["y"].values)) == processes
+
+
+def test_a_worker_that_died_is_replaced(tidy):
+    def workers():
+        living = [one for one in psutil.Process().children() if one.status() != "zombie"]
+        return {child for child in living if "uq.worker" in child.cmdline()}
+
+    with cluster.local(1) as crew:
+        crew.client.wait_for_workers(1)
+        (first,) = workers()
+        first.kill()
+        end = time.monotonic() + 60
+        while not workers() - {first}:
+            assert time.monotonic() < end, "waited in vain"
+            crew.watch()
+            time.sleep(0.05)
 
 
 def test_an_existing_cluster_is_used(write_study, tidy):

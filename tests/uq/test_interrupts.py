@@ -3,6 +3,7 @@
 import contextlib
 import os
 import pty
+import shutil
 import signal
 import subprocess
 import sys
@@ -147,6 +148,16 @@ def test_a_request_to_terminate_is_obeyed_too(started):
     _, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 143
     assert err.startswith("interrupted")
+
+
+def test_a_child_that_computes_ends_with_a_process_that_is_killed(started):
+    process, mark = started("SLEEPING", seconds=100.0)
+    wait_until(mark.exists)
+    children = psutil.Process(process.pid).children()
+    assert any("uq.child" in child.cmdline() for child in children)
+    process.kill()
+    assert psutil.wait_procs(children, PATIENCE)[1] == []
+    shutil.rmtree("results")
 
 
 def test_in_a_script_it_is_the_exception_of_python(started):

@@ -212,6 +212,18 @@ def test_a_result_of_another_version_of_the_model_is_not_taken_for_this_one(uq, 
         )
 
 
+def test_a_result_of_other_code_goes_further_on_request_alone(uq, write_study):
+    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    with netCDF4.Dataset("out.nc", "a") as file:
+        file.setncattr("code", "0")
+    verb = ("extend", "out.nc", "--samples", 20)
+    refused = uq(*verb)
+    assert refused.code == 2
+    assert refused.err.startswith("out.nc: holds rows that other code of model 'ishigami' computed")
+    assert uq(*verb, "--mixed").code == 0
+    assert api.open_result("out.nc").attrs["code"].startswith("0; ")
+
+
 def test_rows_of_other_versions_are_named_in_the_result(uq, write_study):
     uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
     with netCDF4.Dataset("out.nc", "a") as file:

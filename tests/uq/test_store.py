@@ -11,7 +11,7 @@ import xarray as xr
 from uq import store
 from uq.errors import InputError, RunError
 from uq.interrupts import undo_all
-from uq.store import files
+from uq.store import chunk_file, files
 
 DS = xr.Dataset({"a": ("sample", np.arange(100_000.0))})
 
@@ -35,6 +35,13 @@ def test_a_failed_write_leaves_nothing_and_keeps_what_was_there(folder):
         _write_with_file_limit(Path("out.nc"))
     assert everything(folder) == ["out.nc"]
     assert xr.load_dataset("out.nc").sizes == {"sample": 1}
+
+
+def test_a_chunk_that_cannot_be_written_leaves_nothing(folder):
+    (folder / "0-3.rows").mkdir()  # a name that no file can take
+    with pytest.raises(OSError, match="directory"):
+        chunk_file.save(folder / "0-3.rows", np.arange(3))
+    assert everything(folder) == ["0-3.rows"]
 
 
 def _write_with_file_limit(path):
