@@ -11,11 +11,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import uq
-from uq import results, runner
+from uq import job, results, runner
 from uq.contract import Status
 from uq.errors import InputError
 from uq.evaluate import KernelError, evaluate
-from uq.job import chunk_rows
 from uq.sampling import row_block
 from uq.store import MemoryStore
 from uq.study import load_study
@@ -42,7 +41,7 @@ def test_every_design_gives_the_same_bits_for_any_chunk_size(write_study, design
 
 @pytest.mark.parametrize(("seconds", "rows"), [(1e-3, 1024), (0.004, 1024), (0.1, 50), (20.0, 1)])
 def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_study, seconds, rows):
-    assert chunk_rows(work_of(load_study(write_study())), seconds) == rows
+    assert job.chunk_rows(work_of(load_study(write_study())), seconds) == rows
 
 
 @settings(
