@@ -2,7 +2,7 @@
 
 import subprocess
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from math import ceil, gcd
@@ -71,7 +71,9 @@ class Cost(NamedTuple):
     run_bytes: int
 
 
-def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
+def pilot(
+    study: Study, workers: int | None = None, compiling: Callable[[], object] = lambda: None
+) -> tuple[Cost, xr.Dataset]:
     """Run a few rows of a study, as many at the same time as the whole run would.
 
     Parameters
@@ -79,6 +81,8 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
     study : Study
     workers : int, optional
         As in `uq.run`.
+    compiling : callable
+        Called when the model begins to be compiled.
 
     Returns
     -------
@@ -93,7 +97,7 @@ def pilot(study: Study, workers: int | None = None) -> tuple[Cost, xr.Dataset]:
     work = work_of(study)
     processes = min(workers or (1 if workers == 0 else CORES), work.total // work.group)
     with ExitStack() as stack:
-        crew = [Isolated(task_of(work)) for _ in range(processes)]
+        crew = [Isolated(task_of(work), None, compiling) for _ in range(processes)]
         for process in crew:
             stack.enter_context(undone(process.close))
         load_seconds = _load_seconds()

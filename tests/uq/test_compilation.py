@@ -1,9 +1,14 @@
 """Whoever waits for numba hears of it, whether it was there from the start or comes later."""
 
+import os
+import pty
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+
+COMMAND = Path(sys.executable).with_name("uq")
 
 LATE = """
 heard = []
@@ -32,3 +37,17 @@ def test_compilation_is_heard_of(program):
     program = f"from uq.compilation import compilation\n{program}"
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert (ended.returncode, ended.stderr) == (0, "")
+
+
+def test_who_looks_at_a_terminal_is_told(folder):
+    ours, theirs = pty.openpty()
+    command = [COMMAND, "simulate", "sample_models:SPINNING", "--json"]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    ended = subprocess.run(command, stdout=subprocess.PIPE, stderr=theirs, env=environment)
+    os.close(theirs)
+    said = os.read(ours, 1000).decode()
+    os.close(ours)
+    assert (ended.returncode, said) == (
+        0,
+        "compiling the model: once, and it may take a minute\r\n",
+    )

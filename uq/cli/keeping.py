@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from uq import further, results, verification
+from uq.cli import progress
 from uq.cli.printing import console, duration, grid, heading
 from uq.cli.single import literal
 from uq.cli.studies import carried_out, end
+from uq.compilation import compilation
 from uq.errors import InputError
 
 
@@ -70,7 +72,8 @@ def verify(path: Path, model: str | None) -> int:
         console.print(f"{other.name}  {other.made} made it, {other.here} is here")
     if not others:
         console.print("versions  the same as here")
-    rows, differences = verification.recompute(path, model)
+    with compilation(progress.say_compiling):
+        rows, differences = verification.recompute(path, model)
     for line in differences:
         console.print(f"computed again, differs in {line}")
     equal = len(rows) - len(differences)

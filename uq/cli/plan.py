@@ -4,6 +4,7 @@ from typing import Any
 
 from uq.cli.catalogue import finite
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
+from uq.cli.progress import say_compiling
 from uq.planning import Cost, pilot
 from uq.results import failed
 from uq.study import load_study
@@ -20,7 +21,7 @@ def plan(
     study = load_study(path, model)
     if samples is not None:
         study = study.with_samples(samples)
-    cost, ds = pilot(study, workers)
+    cost, ds = pilot(study, workers, say_compiling)
     found = {
         "rows": cost.rows,
         "workers": cost.workers,

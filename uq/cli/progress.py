@@ -4,6 +4,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from math import isinf
 
 from uq.interrupts import undone
@@ -24,6 +25,13 @@ def shown(quiet: bool) -> Iterator[Report]:
         yield from _moving()
     else:
         yield _Plain()
+
+
+@cache
+def say_compiling() -> None:
+    """Say once, to somebody who looks, that a model is being compiled."""
+    if sys.stderr.isatty():
+        _print(_COMPILING)
 
 
 class Pace:

@@ -11,6 +11,8 @@ import xarray as xr
 from uq import results, store
 from uq.cli.catalogue import finite
 from uq.cli.printing import duration, grid, heading, number, print_json
+from uq.cli.progress import say_compiling
+from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.elements import elements_of
 from uq.errors import InputError
@@ -41,7 +43,8 @@ def simulate(
         )
     if model.simulate is None and (output or plot):
         raise InputError(f"model '{model.name}' gives no trajectory; leave out -o and --plot")
-    ds = run_once(model, given, chosen, trajectory=bool(output or plot))
+    with compilation(say_compiling):
+        ds = run_once(model, given, chosen, trajectory=bool(output or plot))
     if output:
         store.write(ds, output)
     if plot:
