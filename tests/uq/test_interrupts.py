@@ -156,7 +156,10 @@ def test_a_child_that_computes_ends_with_a_process_that_is_killed(started):
     children = psutil.Process(process.pid).children()
     assert any("uq.child" in child.cmdline() for child in children)
     process.kill()
-    assert psutil.wait_procs(children, PATIENCE)[1] == []
+    alive = psutil.wait_procs(children, PATIENCE)[1]
+    for child in alive:
+        child.kill()
+    assert alive == []
     shutil.rmtree("results")
 
 
