@@ -62,10 +62,19 @@ READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "d
 """What a child says; with the last two goes a chunk or an exception."""
 
 
-def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> None:
+def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.Thread:
     """End this process, from a thread, when the pipe that is its standard input closes.
 
     It does so when the process that holds the other end stops, however that ends.
+
+    Parameters
+    ----------
+    cleanup : callable
+        Called before.
+
+    Returns
+    -------
+    threading.Thread
     """
 
     def wait() -> None:
@@ -75,7 +84,9 @@ def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> None:
         cleanup()
         os._exit(0)
 
-    threading.Thread(target=wait, daemon=True).start()
+    thread = threading.Thread(target=wait, daemon=True)
+    thread.start()
+    return thread
 
 
 def main(handle: str) -> None:

@@ -10,11 +10,16 @@ import sys
 
 from uq.child import end_with_parent
 
+_GOODBYE_SECONDS = 2.0
+
 
 def main(address: str, folder: str) -> None:
     """Serve the scheduler at `address` until the parent process is gone."""
-    end_with_parent(lambda: shutil.rmtree(folder, ignore_errors=True))
-    asyncio.run(_serve(address, folder))
+    guard = end_with_parent(lambda: shutil.rmtree(folder, ignore_errors=True))
+    try:
+        asyncio.run(_serve(address, folder))
+    finally:  # the scheduler lives in the parent: if that is gone, there is something to remove
+        guard.join(_GOODBYE_SECONDS)
 
 
 async def _serve(address: str, folder: str) -> None:

@@ -184,10 +184,12 @@ def test_a_lock_of_another_host_is_respected(study, under_way, call, injected):
 @pytest.mark.parametrize("chunk_rows", [1, 7, 1000])
 @pytest.mark.parametrize("workers", [0, 1, 2, 4])
 def test_kills_with_workers_and_any_chunks(
-    study, undisturbed, start, call, injected, workers, chunk_rows
+    study, undisturbed, start, call, folder, injected, workers, chunk_rows
 ):
     options = (*MODEL[:2], "--workers", workers, "--quiet", "--chunk-rows", chunk_rows)
-    run = start("run", study, *options, UQ_TEST_SECONDS="0.002")
+    (folder / "temporary").mkdir()
+    temporary = {"TMPDIR": str(folder / "temporary")}
+    run = start("run", study, *options, UQ_TEST_SECONDS="0.002", **temporary)
     until(lambda: list(ROWS.glob("*.rows")) or not run.process.is_alive())
     run.process.join(0.5)
     family = []
@@ -196,5 +198,6 @@ def test_kills_with_workers_and_any_chunks(
     run.kill()
     injected("SIGKILL of a run with workers" if workers else "SIGKILL of a run")
     assert psutil.wait_procs(family, PATIENCE)[1] == []
+    assert not list((folder / "temporary").iterdir())
     assert call("run", study, *options)[0] == 0
     assert OUT.read_bytes() == undisturbed
