@@ -123,7 +123,7 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
         "regimes": regime_table(summary) if summary["regime"] else None,
         "pairs": _pairs(ds) if several and len(independent_inputs(rows)) > 1 else None,
         "convergence": convergence_of(ds, found),
-        "results": list(result_tables(found)),
+        "results": list(result_tables(found, study.analysis.tolerance)),
         "histograms": _pictures(ds, others, spread, scatter),
         "lives": life_table(found),
         "survival": _pictures(ds, lives, lifetime, *[spread] * several, scatter),
