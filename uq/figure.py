@@ -3,6 +3,7 @@
 import re
 import textwrap
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -78,9 +79,9 @@ def roomy(axes: Axes, ticks: int = 6) -> None:
         axes.locator_params(axis="x", nbins=count)
         low, high = sorted(axes.get_xlim())
         shown = [tick for tick in axes.get_xticks() if low <= tick <= high]
-        if sum(len(text) + 1 for text in axes.xaxis.get_major_formatter().format_ticks(shown)) <= (
-            _CHARACTERS * ticks
-        ):
+        widths = [len(text) for text in axes.xaxis.get_major_formatter().format_ticks(shown)]
+        gaps = np.diff(shown) / (high - low) * _CHARACTERS * ticks
+        if all(gap >= (a + b) / 2 + 1 for gap, (a, b) in zip(gaps, pairwise(widths), strict=True)):
             return
 
 

@@ -27,6 +27,7 @@ MEANING = {
     "ST": "with all interactions (ST)",
     "delta": "Borgonovo's delta",
     "pawn": "PAWN, median",
+    "mu": "mean effect (mu)",
     "sigma": "scatter of effects (sigma)",
     "mu_star": "mean magnitude of effects (mu*)",
     "shapley": "Shapley effect",

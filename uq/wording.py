@@ -83,7 +83,7 @@ def brief(entry: Entry, per: float = 1.0) -> tuple[str, str]:
         return known(entry, per=per) if value is None else f"{value / per:.3g}", interval(
             entry, per
         )
-    decimals = -floor(log10(width))
+    decimals = -floor(log10(width / 3))
     ends = {end: round(entry[end] / per, decimals) + 0.0 for end in ("value", "low", "high")}
     return number(ends["value"]), f"{number(ends['low'])} to {number(ends['high'])}"
 

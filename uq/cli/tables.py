@@ -14,7 +14,8 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
     """Print what `uq.statistics.summarise` found."""
     design = f"{ds.attrs['design']}, {summary['samples']} rows"
     if summary["rows_used"] < summary["samples"]:
-        design += f", statistics from the {summary['rows_used']} independent ones"
+        some = summary["rows_used"]
+        design += f", statistics from the {some} independent ones" if some else ", none independent"
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {design}")
     grid([(label, str(count), _example(ds, label)) for label, count in summary["status"].items()])
     if summary["regime"]:

@@ -108,14 +108,21 @@ def _leading(
 ) -> str:
     if not kinds:
         return ""
-    kind, first = list(kinds)[-1], _ranking(kinds)[0]
-    value = kinds[kind][first]["value"] or 0.0
+    kind, (first, *others) = list(kinds)[-1], _ranking(kinds)
+    entry = kinds[kind][first]
+    value = entry["value"] or 0.0
     if value <= dummy.get(kind, 0.0):
         return ""
+    told, low = kind if kind == method else f"{method}: {kind}", entry.get("low")
+    if others and low is not None and low < (kinds[kind][others[0]]["value"] or 0.0):
+        return (
+            f"Which input matters most to {words} is not settled "
+            f"({told} of {first} is {index_interval(entry, kind)})."
+        )
     if kind in _SHARES and value < _LEAST:
-        return f"No input alone does much to {words} ({method}: no {kind} is above {value:.2g})."
+        return f"No input alone does much to {words} ({told} is {value:.2g} at most)."
     name = sentence(with_symbol(ds[first]), width=1000)
-    return f"{name} matters most to {words} ({method}: {kind} = {value:.2g})."
+    return f"{name} matters most to {words} ({told} = {value:.2g})."
 
 
 def _is_index(value: Any) -> bool:
