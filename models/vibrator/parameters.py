@@ -383,7 +383,7 @@ def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
 OUTPUTS: Mapping[str, Output] = {
     "disphasing_angle": Output(
         "rad",
-        "disphasing angle psi_1 - psi_2, mean of a revolution",
+        "disphasing angle psi_1 - psi_2, mean of one turn",
         "angle",
         may_be_undefined=True,
     ),
