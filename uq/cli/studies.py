@@ -150,7 +150,8 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str) -> i
         console.print()
         console.print(note)
         name = shlex.quote(str(target))
-        console.print(f"Next: uq report {name} --open, or uq sensitivity {name}")
+        console.print(f"Next: uq report {name} --open", soft_wrap=True)
+        console.print(f"      uq sensitivity {name}", soft_wrap=True)
     return _verdict(study, ds)
 
 
