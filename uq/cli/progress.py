@@ -90,7 +90,7 @@ def _moving() -> Iterator[Report]:
     console = Console(stderr=True, highlight=False)
     columns = (BarColumn(bar_width=10), TextColumn("{task.description}", markup=False))
     bar = Bar(*columns, console=console)
-    task = bar.add_task("starting; a model that is new here is compiled first", total=None)
+    task = bar.add_task("starting", total=None)
     with Live(bar, console=console, transient=True) as live, undone(live.stop):
         dashboard = ""
 
