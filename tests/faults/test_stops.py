@@ -152,6 +152,7 @@ def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_w
     # Its number is that of another process, or of one after the computer was started anew.
     words = (ROWS / "lock").read_text().split("\n")
     (ROWS / "lock").write_text("\n".join([str(os.getpid()), *words[1:]]))
+    injected("lock whose process number is in use again")
     assert json.loads(call("status", OUT, "--json")[1])["state"] == "interrupted"
     assert call("run", study, *MODEL) == (0, "")
     assert OUT.read_bytes() == undisturbed
