@@ -14,6 +14,7 @@ LAYERS = {
     "contract": {"contract"},
     "ground": {
         "columns",
+        "compilation",
         "environment",
         "errors",
         "interrupts",
