@@ -53,7 +53,7 @@ def table(header: Sequence[str], lines: Iterable[Sequence[str]]) -> str:
 
 
 def formula(symbol: str) -> str:
-    r"""Write a symbol of a declaration, such as ``k_tra`` or ``Omega/2 pi``, for mathematics.
+    r"""Write a symbol of a declaration, such as ``k_tra`` or ``Omega/(2 pi)``, for mathematics.
 
     >>> print(formula("omega_s1"), formula("m e_1"), formula("X0"))
     $\omega_{\mathrm{s1}}$ $m e_{1}$ $X_{0}$

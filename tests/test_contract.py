@@ -74,6 +74,11 @@ def test_parameters_are_documented(model):
         assert parameter.unit not in TIME_UNITS, name
 
 
+def test_one_symbol_means_one_thing(model):
+    symbols = [model.parameter(name).symbol for name in model.parameter_names]
+    assert sorted(set(symbols)) == sorted(symbols)
+
+
 def test_nominal_values_lie_within_bounds_that_leave_room(model):
     for name, nominal in model.nominal.items():
         low, high = model.parameter(name).bounds

@@ -47,9 +47,8 @@ def test_committed_outputs_are_of_one_whole_run(path):
     assert path.stat().st_size < 1_000_000
     notebook = nbformat.read(path, as_version=4)
     counts = [cell.execution_count for cell in notebook.cells if cell.cell_type == "code"]
-    if outputs(notebook):
-        assert counts == list(range(1, len(counts) + 1))
-        assert any("image/png" in output.get("data", {}) for output in outputs(notebook))
+    assert counts == list(range(1, len(counts) + 1))
+    assert any("image/png" in output.get("data", {}) for output in outputs(notebook))
     text = str(outputs(notebook))
     assert str(HOUSE) not in text and str(Path.home()) not in text
     assert not [o for o in outputs(notebook) if "ename" in o or o.get("name") == "stderr"]

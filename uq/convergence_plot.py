@@ -5,11 +5,12 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
 from uq.convergence import running_estimates
 from uq.elements import independent_rows, named_elements
 from uq.elements_plot import label, look, told_in
-from uq.figure import COLOURS, LINES, legend, new_figure, sentence, styled
+from uq.figure import COLOURS, LINES, legend, new_figure, sentence, styled, with_symbol
 
 
 @styled
@@ -68,8 +69,7 @@ def index_convergence(
     leading = last["estimate"].tolist()[: len(COLOURS)]
     figure, (axes,) = new_figure(2.1, entries=len(leading))
     for i, estimate in enumerate(leading):
-        attrs = ds[estimate.removeprefix("ST ")].attrs
-        name = sentence(f"{attrs['long_name']} ({attrs['symbol']})", width=60)
+        name = sentence(with_symbol(ds[estimate.removeprefix("ST ")]), width=60)
         colour, line = COLOURS[i], LINES[i % len(LINES)]
         _curve(axes, own[own["estimate"] == estimate], 1.0, colour, line, name)
     axes.set_ylabel("Total index (ST) [1]")
@@ -92,6 +92,7 @@ def _curve(
 
 def _finish(axes: Axes, ds: xr.Dataset) -> None:
     axes.set_xscale("log", base=2)
+    axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.minorticks_off()
     replicates = int(ds.attrs["replicates"])

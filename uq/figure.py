@@ -3,6 +3,7 @@
 import re
 import textwrap
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,9 @@ WIDTH = 3.4
 """One column of a journal [inch]."""
 
 DOTS_PER_INCH = 200
+
+_CHARACTERS = 6
+"""Of a number beside each of the ticks that an axis has room for."""
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
@@ -70,8 +74,15 @@ def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure
 
 def roomy(axes: Axes, ticks: int = 6) -> None:
     """Have so few ticks on a horizontal axis, not yet logarithmic, that long numbers have room."""
-    axes.locator_params(axis="x", nbins=ticks)
     whole_numbers(axes.xaxis)
+    for count in range(ticks, 0, -1):
+        axes.locator_params(axis="x", nbins=count)
+        low, high = sorted(axes.get_xlim())
+        shown = [tick for tick in axes.get_xticks() if low <= tick <= high]
+        widths = [len(text) for text in axes.xaxis.get_major_formatter().format_ticks(shown)]
+        gaps = np.diff(shown) / (high - low) * _CHARACTERS * ticks
+        if all(gap >= (a + b) / 2 + 1 for gap, (a, b) in zip(gaps, pairwise(widths), strict=True)):
+            return
 
 
 def whole_numbers(axis: Axis) -> None:
@@ -102,6 +113,17 @@ def legend(axes: Axes) -> None:
 
 
 @styled
+def lay_out(figure: Figure) -> None:
+    """Give everything in a figure its place, for all files alike."""
+    figure.set_dpi(DOTS_PER_INCH)
+    FigureCanvasAgg(figure)
+    if engine := figure.get_layout_engine():
+        for _ in range(2):  # in its first place an axis may have other ticks, with longer numbers
+            engine.execute(figure)
+        figure.set_layout_engine("none")  # it would be done again for each file
+
+
+@styled
 def write(figure: Figure, path: Path) -> list[Path]:
     """Write a figure as PNG, SVG and PDF, the same bytes each time, and return their paths.
 
@@ -116,10 +138,8 @@ def write(figure: Figure, path: Path) -> list[Path]:
     list of Path
     """
     png, svg, pdf = (path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg", "pdf"))
-    # Figure.savefig draws twice for each file, only to lay out what the first drawing lays out.
-    figure.set_dpi(DOTS_PER_INCH)
+    lay_out(figure)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
-    figure.set_layout_engine("none")  # the others have the layout of the first
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": None})
     FigureCanvasPdf(figure).print_pdf(
         pdf, metadata={"CreationDate": None, "Creator": None, "Producer": None}
@@ -162,14 +182,21 @@ def place_in_words(element: Element, variable: xr.DataArray) -> str:
 
 def named_input(parameter: xr.DataArray, width: int = 44) -> str:
     """Return the name of an input for an axis: its symbol tells apart those of one meaning."""
-    attrs = parameter.attrs
-    return sentence(f"{attrs['long_name']} ({attrs['symbol']})", attrs["units"], width)
+    return sentence(with_symbol(parameter), parameter.attrs["units"], width)
+
+
+def with_symbol(parameter: xr.DataArray) -> str:
+    """Return what an input is, and its symbol, which stays in one piece."""
+    symbol = str(parameter.attrs["symbol"]).replace(" ", "\u00a0")
+    return f"{parameter.attrs['long_name']} ({symbol})"
 
 
 def is_wide(values: Floats) -> bool:
-    """Whether positive values crowd so far down that a logarithmic axis shows them better."""
-    low, middle, high = np.quantile(values, (0.005, 0.5, 0.995)) if len(values) else (0.0,) * 3
-    return bool(low > 0 and high > 30 * low and middle - low < (high - low) / 4)
+    """Whether values, all positive, crowd so far down that a logarithmic axis shows them better."""
+    if len(values) == 0 or values.min() <= 0:
+        return False
+    low, middle, high = np.quantile(values, (0.005, 0.5, 0.995))
+    return bool(high > 30 * low and middle - low < (high - low) / 4)
 
 
 def thinned(count: int, most: int = 1000) -> np.ndarray[Any, np.dtype[np.intp]]:

@@ -9,7 +9,16 @@ from matplotlib.figure import Figure
 
 from uq.elements import named_elements
 from uq.errors import InputError
-from uq.figure import COLOURS, legend, new_figure, place_in_words, sentence, styled
+from uq.figure import (
+    COLOURS,
+    legend,
+    new_figure,
+    place_in_words,
+    roomy,
+    sentence,
+    styled,
+    with_symbol,
+)
 from uq.indices import sensitivities
 from uq.time_units import time_unit
 
@@ -18,6 +27,7 @@ MEANING = {
     "ST": "with all interactions (ST)",
     "delta": "Borgonovo's delta",
     "pawn": "PAWN, median",
+    "mu": "mean effect (mu)",
     "sigma": "scatter of effects (sigma)",
     "mu_star": "mean magnitude of effects (mu*)",
     "shapley": "Shapley effect",
@@ -77,11 +87,12 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
     kinds = [kind for kind, value in entry.items() if _is_bar(kind, value)]
     parameters = sorted(entry[kinds[-1]], key=lambda p: float(entry[kinds[-1]][p]["value"]))
     labels = [_named(ds[parameter]) for parameter in parameters]
-    lines = [max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels]
-    figure, (axes,) = new_figure(0.8 + 0.13 * sum(lines), entries=2)
-    thickness = 0.8 / len(kinds)
+    lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
+    figure, (axes,) = new_figure(0.8 + 0.13 * lines.sum(), entries=2)
+    middle = np.cumsum(lines) - lines / 2
+    thickness = 0.8 * lines.min() / len(kinds)
     for i, kind in enumerate(kinds):
-        y = np.arange(len(parameters)) + 0.4 - thickness * (i + 0.5)
+        y = middle + thickness * (len(kinds) / 2 - i - 0.5)
         found = [entry[kind][parameter] for parameter in parameters]
         table = np.array([(one["value"], one["low"], one["high"]) for one in found], dtype=float)
         value, ends = table[:, 0], table[:, 1:].T
@@ -96,7 +107,9 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
     if shares:
         low, high = axes.get_xlim()
         axes.set_xlim(max(low, -0.25), min(high, 1.25))
-    axes.set_yticks(range(len(labels)), labels)
+    axes.set_yticks(middle, labels)
+    axes.set_ylim(0, lines.sum())
+    roomy(axes, ticks=3)  # the labels take most of the width
     known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
     axis = "Sensitivity index [1]" if shares else "Effect, in the unit of the output"
     axes.set_xlabel(axis + known * ",\nwith 95 % interval")
@@ -107,7 +120,7 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
 
 def _named(parameter: xr.DataArray) -> str:
     """Return the full name of a parameter; the symbol tells apart those of the same meaning."""
-    return sentence(f"{parameter.attrs['long_name']} ({parameter.attrs['symbol']})", width=30)
+    return sentence(with_symbol(parameter), width=30)
 
 
 def subject(ds: xr.Dataset, name: str) -> str:

@@ -208,7 +208,7 @@ def pairs(ds: xr.Dataset) -> Figure:
             if i == size - 1:
                 _name_input(axes, rows, across, width=22, ticks=6 if size == 1 else 3)
             if j == 0:
-                axes.set_ylabel(named_input(rows[down], width=22))
+                axes.set_ylabel(named_input(rows[down], width=18))
     panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
     legend(panels[0, 0])
     return figure

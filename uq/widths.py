@@ -93,7 +93,8 @@ def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> floa
     reach = min(max(half, 2 * spread / np.sqrt(m)), p - 1 / (m + 1), m / (m + 1) - p)
     if reach < half:
         return None
-    low, high = np.quantile(values, [p - reach, p + reach], method="weibull")
+    with np.errstate(invalid="ignore"):  # between a life that ends and one that never does
+        low, high = np.quantile(values, [p - reach, p + reach], method="weibull")
     return float((high - low) * half / reach) if np.isfinite(high - low) else None
 
 

@@ -1,7 +1,7 @@
 """Numbers, intervals and laws in the words of a table, on a terminal and in a report."""
 
 from collections.abc import Mapping
-from math import isfinite
+from math import floor, isfinite, log10
 from typing import Any
 
 from uq.literals import shown
@@ -60,6 +60,55 @@ def interval(entry: Entry, per: float = 1.0) -> str:
     """Return the ends of the interval of an entry; nothing where it has none, or both never."""
     ends = [known(entry, end, per) if end in entry else "-" for end in ("low", "high")]
     return "" if ends in (["-", "-"], ["never", "never"]) else " to ".join(ends)
+
+
+def brief(entry: Entry, per: float = 1.0) -> tuple[str, str]:
+    """Return an estimate for a sentence, no more exact than it is known, and its interval.
+
+    Parameters
+    ----------
+    entry : dict
+    per : float
+        What the numbers are divided by: the length of a unit.
+
+    Returns
+    -------
+    tuple of str
+        The interval is "" where there is none.
+    """
+    low, high = entry.get("low"), entry.get("high")
+    width = (high - low) / per if low is not None and high is not None else 0.0
+    if not width > 0:
+        value = entry["value"]
+        return known(entry, per=per) if value is None else f"{value / per:.3g}", interval(
+            entry, per
+        )
+    decimals = -floor(log10(width / 3))
+    ends = {end: round(entry[end] / per, decimals) + 0.0 for end in ("value", "low", "high")}
+    return number(ends["value"]), f"{number(ends['low'])} to {number(ends['high'])}"
+
+
+def percent(share: float) -> str:
+    """Return a share in per cent: to a tenth, or to two digits where it is smaller."""
+    return f"{100 * share:.1f} %" if share >= 0.01 or share == 0 else f"{100 * share:.2g} %"
+
+
+def index(entry: Entry, key: str, kind: str) -> str:
+    """Return a sensitivity index to three decimals.
+
+    Morris' measures have the unit of the output.
+    """
+    if entry[key] is None:
+        return "-"
+    if kind in ("mu", "sigma", "mu_star"):
+        return f"{entry[key]:.3g}"
+    return f"{round(entry[key], 3) + 0.0:.3f}"  # no minus sign before what is zero
+
+
+def index_interval(entry: Entry, kind: str) -> str:
+    """Return the ends of the interval of an index; nothing where it has none."""
+    ends = [index(entry, end, kind) for end in ("low", "high")]
+    return "" if ends == ["-", "-"] else " to ".join(ends)
 
 
 def law(stated: Any) -> str:

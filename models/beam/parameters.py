@@ -81,7 +81,7 @@ class Params(NamedTuple):
     forcing_frequency: Annotated[
         float,
         Parameter(
-            "Omega/2 pi",
+            "Omega/(2 pi)",
             "Hz",
             "frequency of the force",
             (1.0, 1800.0),
@@ -171,7 +171,7 @@ class Params(NamedTuple):
     random_force_level: Annotated[
         float,
         Parameter(
-            "S",
+            "S_F",
             "N2 Hz-1",
             "one-sided spectral level of the random force at the tip",
             (0.0, 1e3),

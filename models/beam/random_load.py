@@ -1,13 +1,13 @@
-"""The random load: a stationary Gaussian force at the tip, of level S within a band.
+"""The random load: a stationary Gaussian force at the tip, of level S_F within a band.
 
 By spectral representation (Shinozuka 1971) the force is a sum of J lines,
 
-    f(t) = sum_j sqrt(2 S D_j E_j) cos(2 pi f_j t + phi_j),
+    f(t) = sum_j sqrt(2 S_F D_j E_j) cos(2 pi f_j t + phi_j),
 
 with f_j at a random place of the j-th of J sub-bands, D_j wide, E_j exponential of mean 1 and phi_j
-any phase. Whatever the sub-bands, it is then Gaussian at each instant, its variance is S times the
-width of the band, and its expected spectrum is flat. A line acts through the exact steady response,
-as the harmonic force does, so that nothing is sampled.
+any phase. Whatever the sub-bands, it is then Gaussian at each instant, its variance is S_F times
+the width of the band, and its expected spectrum is flat. A line acts through the exact steady
+response, as the harmonic force does, so that nothing is sampled.
 
 Sub-bands of equal width would leave a sharp resonance to one line, or to none: the beam's own are
 some 0.3 Hz wide. So only half of their edges lie evenly, and the others at equal shares of the
@@ -18,9 +18,9 @@ the row's seed and the number of the epoch, after each epoch of 2/d + 200/B, wit
 d and the bandwidth B: a few times as long as beam and force remember. The force never repeats, and
 the time mean of a work-rate tends to its mean over all realisations, that of the process. From
 epoch to epoch the force jumps, and the steady response with it; what the modes lack then they keep
-as free vibration. The jumps blur the band, to a level of S B/(2 pi^2 |f - f_low| |f - f_high|) over
-the epoch outside. Where that would make the tip vary more than 1 % by modes that lie outside, the
-epoch is longer, up to 30 times.
+as free vibration. The jumps blur the band, to a level of
+S_F B/(2 pi^2 |f - f_low| |f - f_high|) over the epoch outside. Where that would make the tip vary
+more than 1 % by modes that lie outside, the epoch is longer, up to 30 times.
 
 Time is counted in whole forcing periods, and phases from the beginning of the epoch, so that
 neither a long run nor where it is interrupted makes a difference.
@@ -41,7 +41,7 @@ LOAD = np.dtype(
 """A beam's random load.
 
 power
-    2 S/(T X0^2), T the forcing period: squared amplitude per unit of D_j and E_j [N2 m-2]; 0 for
+    2 S_F/(T X0^2), T the forcing period: squared amplitude per unit of D_j and E_j [N2 m-2]; 0 for
     no random load.
 edges
     Of the sub-bands, in turns per forcing period.
@@ -256,7 +256,7 @@ def tip_deviation(
     Returns
     -------
     ndarray, shape (n,)
-        In initial gaps: the root of the integral of S |H|^2.
+        In initial gaps: the root of the integral of S_F |H|^2.
     """
     node, weight = np.polynomial.legendre.leggauss(_NODES)
     variance = np.empty(len(load))

@@ -109,7 +109,11 @@ class Params(NamedTuple):
     supply_frequency: Annotated[
         float,
         Parameter(
-            "Omega/2pi", "Hz", "frequency of the supply", (1.6, 1500.0), "assumed: European mains"
+            "Omega/(2 pi)",
+            "Hz",
+            "frequency of the supply",
+            (1.6, 1500.0),
+            "assumed: European mains",
         ),
     ] = 50.0
     control_frequency: Annotated[
@@ -172,10 +176,14 @@ def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
 
 OUTPUTS: Mapping[str, Output] = {
     "progression_rate": Output("m s-1", "mean velocity of the mole"),
-    "progression_rate_error": Output("m s-1", "standard error of it, 0 where the motion repeats"),
+    "progression_rate_error": Output(
+        "m s-1", "standard error of the mean velocity, 0 where the motion repeats"
+    ),
     "peak_contact_force": Output("N", "largest force of the stop on the bar"),
     "impact_work_rate": Output("W", "mean power of the contact force on the mole"),
-    "impact_work_rate_error": Output("W", "standard error of it, 0 where the motion repeats"),
+    "impact_work_rate_error": Output(
+        "W", "standard error of the impact work-rate, 0 where the motion repeats"
+    ),
     "impacts_per_period": Output("1", "contacts per control period"),
     "displacement_range": Output("m", "largest less smallest displacement u"),
     "electrical_power": Output("W", "mean power drawn from the supply"),
@@ -183,7 +191,9 @@ OUTPUTS: Mapping[str, Output] = {
     "lyapunov_exponent": Output(
         "s-1", "largest Lyapunov exponent, natural logarithm, progression left out"
     ),
-    "lyapunov_exponent_error": Output("s-1", "standard error of it, 0 where the motion repeats"),
+    "lyapunov_exponent_error": Output(
+        "s-1", "standard error of the Lyapunov exponent, 0 where the motion repeats"
+    ),
     "regime": Output("1", "kind of settled response", "category", categories=REGIMES),
     "period": Output("1", "common periods after which the response repeats, 0 if it does not"),
 }

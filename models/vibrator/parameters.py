@@ -382,10 +382,13 @@ def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
 
 OUTPUTS: Mapping[str, Output] = {
     "disphasing_angle": Output(
-        "rad", "mean of psi_1 - psi_2 over one revolution", "angle", may_be_undefined=True
+        "rad",
+        "disphasing angle psi_1 - psi_2, mean of one turn",
+        "angle",
+        may_be_undefined=True,
     ),
     "theory_disphasing_angle": Output(
-        "rad", "psi_1 - psi_2 by the averaged theory", "angle", may_be_undefined=True
+        "rad", "disphasing angle by the averaged theory", "angle", may_be_undefined=True
     ),
     "angular_amplitude": Output("rad", "amplitude of the body's rotation, first harmonic"),
     "stroke_left": Output("m", "half peak-to-peak displacement along xi of the left deck end"),
@@ -399,7 +402,7 @@ OUTPUTS: Mapping[str, Output] = {
         may_be_undefined=True,
     ),
     "synchronisation_time": Output(
-        "s", "last time the angle is more than 0.05 rad off its steady mean", "lifetime"
+        "s", "time until the disphasing angle stays within 0.05 rad of its mean", "lifetime"
     ),
     "max_excursion": Output("m", "largest displacement of C during the start"),
     "regime": Output(

@@ -103,3 +103,11 @@ def test_plan_shows_all_of_it(uq, write_study):
     }
     assert plan["disk"]["run"] >= plan["disk"]["result"] > 0
     assert plan["widths"]["y"]["mean"] > 0
+
+
+def test_a_quantile_at_a_life_that_never_ends_has_no_width(write_study):
+    path = write_study(samples=200, uncertain=("x1",), law=NORMAL)
+    ds = runner.compute(load_study(path, "sample_models:KINDS"), workers=0)
+    quantiles = expected_widths(ds)["life[side=left,depth=0.5]"]["quantiles"]
+    assert quantiles["0.95"] is None
+    assert quantiles["0.05"] > 0

@@ -1,4 +1,5 @@
 import xml.etree.ElementTree as ElementTree
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from uq import plots
 from uq.convergence import running_estimates
 from uq.convergence_plot import index_convergence
 from uq.errors import InputError
-from uq.figure import file_name, powers, sentence
+from uq.figure import file_name, lay_out, powers, roomy, sentence
 from uq.index_plot import index_bars
 from uq.indices import sensitivities
 from uq.statistics import summarise
@@ -278,3 +279,43 @@ def test_words_and_units_of_axes():
     assert sentence("a pure number", "1") == "A pure number"
     assert powers("kg m-1") == "kg m⁻¹"
     assert file_name("sobol", "P(life[depth=0.1]<1e6)") == "sobol-P_life_depth_0.1_1e6"
+
+
+def test_values_with_a_zero_among_them_have_no_logarithmic_axis():
+    values = np.r_[np.zeros(2), np.geomspace(1e-3, 1e3, 998)]
+    figure = plots.histogram(with_output(linear(samples=1000), "wide", values), "wide")
+    assert figure.axes[0].get_xscale() == "linear"
+    assert figure.axes[0].get_xlim()[0] <= 0
+
+
+def test_labels_of_three_lines_keep_apart():
+    ds = linear(samples=64, analysis={"sensitivity": ["rbd-fast"]})
+    for name in ("x1", "x2", "x3", "x4"):
+        ds[name].attrs["long_name"] = (
+            "bearing torque of the vibrator over its centrifugal force, mean"
+        )
+    figure = index_bars(ds, "y")
+    lay_out(figure)
+    boxes = [label.get_window_extent() for label in figure.axes[0].get_yticklabels()]
+    boxes.sort(key=lambda box: box.y0)
+    assert boxes[0].height > 2.5 * 8 * figure.dpi / 72  # three lines of 8 points
+    assert all(one.y1 <= other.y0 for one, other in pairwise(boxes))
+
+
+def test_nothing_sticks_out_of_a_figure():
+    ds = linear(samples=400)
+    y = ds["y"].values
+    ds = with_output(ds, "angle", 0.14 * (y - y.mean()) / y.std())
+    ds["angle"].attrs["long_name"] = "mean of psi_1 - psi_2 over one revolution"
+    figure = plots.scatter(ds, "angle")
+    lay_out(figure)
+    for axes in figure.axes:
+        assert axes.yaxis.label.get_window_extent().x0 >= 0
+
+
+def test_long_numbers_have_room():
+    axes = Figure().subplots()
+    axes.set_xlim(7e4, 5.2e5)
+    roomy(axes, ticks=3)
+    shown = [tick for tick in axes.get_xticks() if 7e4 <= tick <= 5.2e5]
+    assert 1 <= len(shown) <= 2

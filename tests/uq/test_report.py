@@ -237,5 +237,19 @@ def test_an_input_leads_only_where_it_is_told_from_one_without_effect():
     noise = np.random.default_rng(2).random(512)
     ds = with_output(linear(samples=512), "noise", noise)
     words = read(asking(ds, outputs=["y", "noise"], sensitivity=["rbd-fast"])).words
-    assert re.search(r"y: x4 matters most, S1 = 0\.[45]\d* \(rbd-fast\)", words)
-    assert not re.search(r"noise: \w+ matters most", words)
+    assert re.search(r"Independent input \(x_4\) matters most to \w.*S1 = 0\.[45]\d*\)\.", words)
+    assert words.count("matters most to") == 1
+
+
+def test_no_input_leads_while_intervals_overlap():
+    words = read(linear("saltelli", samples=4, replicates=2)).plain_words
+    assert "Which input matters most to" in words and "is not settled" in words
+    words = read(linear("saltelli", samples=64, replicates=8)).plain_words
+    assert "Independent input (x_4) matters most to" in words
+
+
+def test_of_an_output_without_any_value_nothing_is_drawn():
+    ds = linear(samples=32, settings={"fail_above": -1.0})
+    found = read(ds)
+    assert "32 rows failed" in found.plain_words
+    assert found.tags.count("figure") == 1  # of the inputs

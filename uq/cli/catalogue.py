@@ -103,7 +103,7 @@ def show(model: Mapping[str, Any]) -> None:
 def _line(name: str, parameter: Mapping[str, Any]) -> tuple[str, str, str, str]:
     unit = "" if parameter["unit"] == "1" else f" {parameter['unit']}"
     bounds = " to ".join(map(number, parameter["bounds"]))
-    return name, parameter["symbol"], f"{parameter['nominal']!r}{unit}", bounds
+    return name, parameter["symbol"], f"{parameter['nominal']:.6g}{unit}", bounds
 
 
 def _aligned(cells: tuple[str, ...], widths: list[int]) -> str:

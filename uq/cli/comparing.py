@@ -38,7 +38,10 @@ def _show(found: dict[str, Any]) -> None:
         heading(f"\n{name}{f' [{unit}]' if unit != '1' else ''}")
         lines = []
         for label, one in estimates_of(output):
-            lines.append((label, *_cells(one, 1.0 if label.startswith("P(") else per)))
+            if label.startswith("P("):
+                lines.append((_probability(label, per), *_cells(one)))
+                continue
+            lines.append((label, *_cells(one, per)))
             if label == "sd" and one["ratio"]["value"] is not None:
                 lines.append(("sd, B over A", "", "", *_apart(one["ratio"], 1.0, 1.0)))
         grid(lines, header=_HEADER)
@@ -69,6 +72,11 @@ def _unit(output: Entry) -> tuple[str, float]:
         return output["units"], 1.0
     unit = time_unit(abs(typical))
     return unit.name, unit.seconds
+
+
+def _probability(label: str, per: float) -> str:
+    """Return ``P(>86400.0)`` with its threshold in the unit of the table: ``P(> 24)``."""
+    return f"{label[:3]} {number(float(label[3:-1]) / per)})"
 
 
 def _cells(one: Entry, per: float = 1.0) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 import shlex
 from pathlib import Path
 
-from uq.cli.printing import console, grid, heading
+from uq.cli.printing import console, grid, heading, paragraph
 
 _STEPS = (
     ("uq models", "what there is to study"),
@@ -21,7 +21,9 @@ def guide() -> None:
     here = list(_with_what_is_here())
     if here:
         heading("\nWith what is here")
-        grid(here)
+        for command, words in here:
+            console.print(f"  {command}", soft_wrap=True)
+            paragraph(words, indent=6)
     console.print("\nuq --help lists all commands; uq COMMAND --help explains one.")
 
 

@@ -7,14 +7,15 @@ import xarray as xr
 
 from uq.b_lives import B_LIVES
 from uq.cli.printing import console, grid, heading, paragraph
-from uq.wording import Entry, duration, interval, known, number
+from uq.wording import Entry, duration, index, index_interval, interval, known, number
 
 
 def show_summary(ds: xr.Dataset, summary: Entry) -> None:
     """Print what `uq.statistics.summarise` found."""
     design = f"{ds.attrs['design']}, {summary['samples']} rows"
     if summary["rows_used"] < summary["samples"]:
-        design += f", statistics from the {summary['rows_used']} independent ones"
+        some = summary["rows_used"]
+        design += f", statistics from the {some} independent ones" if some else ", none independent"
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {design}")
     grid([(label, str(count), _example(ds, label)) for label, count in summary["status"].items()])
     if summary["regime"]:
@@ -127,25 +128,10 @@ def _ranked(table: Mapping[str, Any], dummy: Mapping[str, float]) -> Iterator[li
     last = list(table.values())[-1]
     for label in sorted(last, key=lambda label: -(last[label]["value"] or 0.0)):
         cells = (
-            (_index(one[label], "value", kind), _index_interval(one[label], kind))
+            (index(one[label], "value", kind), index_interval(one[label], kind))
             for kind, one in table.items()
         )
         yield [label, *(text for pair in cells for text in pair)]
     if dummy:
-        cells = ((_index(dummy, kind, kind), "") for kind in table)
+        cells = ((index(dummy, kind, kind), "") for kind in table)
         yield ["(an input without effect)", *(text for pair in cells for text in pair)]
-
-
-def _index(entry: Entry, key: str, kind: str) -> str:
-    """Return an index to three decimals: names of inputs need the room of the others.
-
-    Morris' measures have the unit of the output.
-    """
-    if entry[key] is None:
-        return "-"
-    return f"{entry[key]:.3g}" if kind in ("mu", "sigma", "mu_star") else f"{entry[key]:.3f}"
-
-
-def _index_interval(entry: Entry, kind: str) -> str:
-    ends = [_index(entry, end, kind) for end in ("low", "high")]
-    return "" if ends == ["-", "-"] else " to ".join(ends)

@@ -52,7 +52,8 @@ def convergence_of(ds: xr.Dataset, found: list[Outcome]) -> Convergence:
         return Convergence(None, [], "there is no output with numbers", [])
     errors = enough(ds)
     told = [one for one in found if one.name in errors.index]
-    rows = [_row(one, cast(pd.Series, errors.loc[one.name])) for one in told]
+    lines = ((one, cast(pd.Series, errors.loc[one.name])) for one in told)
+    rows = [_row(one, line) for one, line in lines if line[["sampling", "own"]].notna().any()]
     header = ("output", "unit", "estimate", "half-width of its interval", "error of the rows")
     table = without_empty_columns(Table("Error of sampling", header, rows)) if rows else None
     warnings = [

@@ -5,7 +5,7 @@ from typing import Any
 
 from uq.report.indices import Method
 from uq.report.outcomes import Outcome
-from uq.wording import interval, known
+from uq.wording import brief, known, percent
 
 _MOST = 6
 """Outputs, and targets, of which there is a sentence."""
@@ -37,7 +37,7 @@ def _regimes(summary: Mapping[str, Any]) -> Iterator[str]:
     seen = [(label, one) for label, one in summary["regime"].items() if one["count"]]
     seen.sort(key=lambda pair: -pair[1]["count"])
     if seen:
-        shares = (f"{label} {100 * one['share']:.1f} %" for label, one in seen)
+        shares = (f"{label} {percent(one['share'])}" for label, one in seen)
         yield f"Regimes: {', '.join(shares)}."
 
 
@@ -48,9 +48,8 @@ def _outputs(found: Sequence[Outcome]) -> Iterator[str]:
         if median is None or known(median) == "-":
             continue
         unit = one.unit_cell.text
-        ends = interval(median, one.unit.seconds)
         words = f"{one.words[:1].upper()}{one.words[1:]}: median"
-        value = known(median, per=one.unit.seconds)
+        value, ends = brief(median, one.unit.seconds)
         told = value if value in ("never", "beyond the horizon") else f"{value} {unit}".strip()
         yield f"{words} {told}{f' (95 % interval {ends})' if ends else ''}."
 
@@ -58,4 +57,4 @@ def _outputs(found: Sequence[Outcome]) -> Iterator[str]:
 def _leading(methods: Sequence[Method]) -> Iterator[str]:
     subjects = [one for method in methods[:1] for one in method.subjects if one.leading]
     for one in subjects[:_MOST]:
-        yield f"{one.name}: {one.leading} ({methods[0].name})."
+        yield one.leading

@@ -6,10 +6,15 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from uq.errors import InputError
+from uq.figure import sentence, with_symbol
 from uq.index_plot import bars, subject
 from uq.indices import methods, sensitivities
 from uq.report.pictures import Picture, picture
-from uq.report.table import Cell, Table, estimate
+from uq.report.table import Cell, Table
+from uq.wording import index, index_interval
+
+_SHARES, _LEAST = ("S1", "ST", "shapley"), 0.05
+"""Of these shares of a variance, less than that is not worth a sentence of its own."""
 
 
 class Subject(NamedTuple):
@@ -25,8 +30,8 @@ class Subject(NamedTuple):
     picture : Picture or None
     notes : list of str
     leading : str
-        The input with the largest index, and that; "" where none is larger than that of an input
-        without effect.
+        A sentence on the input with the largest index; "" where none is larger than that of an
+        input without effect.
     """
 
     name: str
@@ -90,15 +95,34 @@ def _subject(ds: xr.Dataset, method: str, name: str, entry: Mapping[str, Any]) -
     tables = tuple(_table(*one) for one in told if one[1])
     caption = f"Sensitivity indices of {name} by {method}"
     drawn = picture(bars(ds, name, entry), caption) if kinds else None
-    return Subject(name, words, "", tables, drawn, tuple(entry["notes"]), _leading(kinds, dummy))
+    leading = _leading(ds, method, f"{words[:1].lower()}{words[1:]}", kinds, dummy)
+    return Subject(name, words, "", tables, drawn, tuple(entry["notes"]), leading)
 
 
-def _leading(kinds: Mapping[str, Any], dummy: Mapping[str, float]) -> str:
+def _leading(
+    ds: xr.Dataset,
+    method: str,
+    words: str,
+    kinds: Mapping[str, Any],
+    dummy: Mapping[str, float],
+) -> str:
     if not kinds:
         return ""
-    kind, first = list(kinds)[-1], _ranking(kinds)[0]
-    value = kinds[kind][first]["value"] or 0.0
-    return f"{first} matters most, {kind} = {value:.2g}" if value > dummy.get(kind, 0.0) else ""
+    kind, (first, *others) = list(kinds)[-1], _ranking(kinds)
+    entry = kinds[kind][first]
+    value = entry["value"] or 0.0
+    if value <= dummy.get(kind, 0.0):
+        return ""
+    told, low = kind if kind == method else f"{method}: {kind}", entry.get("low")
+    if others and low is not None and low < (kinds[kind][others[0]]["value"] or 0.0):
+        return (
+            f"Which input matters most to {words} is not settled "
+            f"({told} of {first} is {index_interval(entry, kind)})."
+        )
+    if kind in _SHARES and value < _LEAST:
+        return f"No input alone does much to {words} ({told} is {value:.2g} at most)."
+    name = sentence(with_symbol(ds[first]), width=1000)
+    return f"{name} matters most to {words} ({told} = {value:.2g})."
 
 
 def _is_index(value: Any) -> bool:
@@ -116,10 +140,15 @@ def _ranking(kinds: Mapping[str, Any]) -> list[str]:
 
 def _table(caption: str, kinds: Mapping[str, Any], dummy: Mapping[str, float]) -> Table:
     rows = [
-        (Cell(label), *(estimate(one[label]) for one in kinds.values()))
+        (Cell(label), *(_cell(one[label], kind) for kind, one in kinds.items()))
         for label in _ranking(kinds)
     ]
     if dummy:
-        limits = (estimate({"value": dummy.get(kind)}) for kind in kinds)
+        limits = (_cell({"value": dummy.get(kind)}, kind) for kind in kinds)
         rows.append((Cell("(an input without effect)"), *limits))
     return Table(caption, ("input", *kinds), rows)
+
+
+def _cell(entry: Mapping[str, Any], kind: str) -> Cell:
+    ends = {"low": None, "high": None, **entry}
+    return Cell(index(entry, "value", kind), index_interval(ends, kind), entry["value"])

@@ -10,7 +10,7 @@ from uq.elements import elements_of, independent_rows
 from uq.figure import place_in_words, powers
 from uq.report.table import Cell, Table, count, estimate, without_empty_columns
 from uq.time_units import TimeUnit, time_unit
-from uq.wording import number
+from uq.wording import number, percent
 
 Summary = Mapping[str, Any]
 """What `uq.statistics.summarise` returns."""
@@ -25,7 +25,7 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
     for label, found in summary["status"].items():
         example = str(ds["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
         share = found / max(summary["samples"], 1)
-        cells = (Cell(str(found), key=float(found)), Cell(f"{100 * share:.2f} %", key=share))
+        cells = (Cell(str(found), key=float(found)), Cell(percent(share), key=share))
         rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
     header = ("status", "rows", "share", "meaning", "the first such row said")
     return without_empty_columns(Table("Status of all rows", header, rows))
@@ -34,10 +34,15 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
 def regime_table(summary: Summary) -> Table:
     """Return the share of each regime among the independent rows."""
     rows = [
-        (Cell(label), count(one["count"]), estimate(one, key="share"))
-        for label, one in summary["regime"].items()
+        (Cell(label), count(one["count"]), _share(one)) for label, one in summary["regime"].items()
     ]
     return Table("Regimes, with 95 % intervals", ("regime", "rows", "share"), rows)
+
+
+def _share(entry: Mapping[str, Any]) -> Cell:
+    ends = [entry[end] for end in ("low", "high")]
+    interval = "" if None in ends else " to ".join(map(percent, ends))
+    return Cell(percent(entry["share"]), interval.replace(" % to", " to"), entry["share"])
 
 
 class Outcome:
@@ -89,8 +94,15 @@ def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     return found
 
 
-def result_tables(found: list[Outcome]) -> Iterator[Table]:
-    """Yield the tables of statistics, of tolerance bounds and of thresholds; no empty ones."""
+def result_tables(found: list[Outcome], tolerance: tuple[float, float] | None) -> Iterator[Table]:
+    """Yield the tables of statistics, of tolerance bounds and of thresholds; no empty ones.
+
+    Parameters
+    ----------
+    found : list of Outcome
+    tolerance : tuple of float, optional
+        Coverage and confidence of the bounds.
+    """
     if not found:
         return
     probabilities = list(found[0].entry["quantiles"])
@@ -99,13 +111,18 @@ def result_tables(found: list[Outcome]) -> Iterator[Table]:
     rows = [tuple(_statistics(one)) for one in found]
     yield without_empty_columns(Table("Statistics, with 95 % intervals", header, rows))
     bounded = [one for one in found if one.entry["tolerance"]]
-    if bounded:
+    if bounded and tolerance is not None:
         rows = [
             (one.label, one.unit_cell, *(one.cell(one.entry["tolerance"], end) for end in _ENDS))
             + (count(one.entry["tolerance"]["rows_needed"]),)
             for one in bounded
         ]
-        yield Table("Tolerance bounds", ("output", "unit", *_ENDS, "rows needed"), rows)
+        coverage, confidence = (f"{100 * share:g} %" for share in tolerance)
+        caption = (
+            f"Tolerance bounds: with {confidence} confidence each, {coverage} of all lie above the "
+            f"lower, and {coverage} below the upper"
+        )
+        yield Table(caption, ("output", "unit", *_ENDS, "rows needed"), rows)
     rows = [row for one in found for row in _thresholds(one)]
     if rows:
         header = ("output", "threshold", "P(above)", "P(below)", "note")

@@ -9,7 +9,7 @@ import xarray as xr
 from markupsafe import Markup, escape
 
 from uq.designs import DESIGNS
-from uq.elements import independent_rows, study_file_of
+from uq.elements import elements_of, independent_rows, study_file_of
 from uq.elements_plot import occurring_regimes
 from uq.errors import InputError
 from uq.independent_inputs import independent_inputs
@@ -123,7 +123,7 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
         "regimes": regime_table(summary) if summary["regime"] else None,
         "pairs": _pairs(ds) if several and len(independent_inputs(rows)) > 1 else None,
         "convergence": convergence_of(ds, found),
-        "results": list(result_tables(found)),
+        "results": list(result_tables(found, study.analysis.tolerance)),
         "histograms": _pictures(ds, others, spread, scatter),
         "lives": life_table(found),
         "survival": _pictures(ds, lives, lifetime, *[spread] * several, scatter),
@@ -143,7 +143,8 @@ def _facts(ds: xr.Dataset, summary: dict[str, Any]) -> list[tuple[str, str]]:
     design = ds.attrs["design"]
     rows = f"{summary['samples']}"
     if summary["rows_used"] < summary["samples"]:
-        rows += f", statistics from {summary['rows_used']} independent ones"
+        some = summary["rows_used"]
+        rows += f", statistics from {some} independent ones" if some else ", none independent"
     replicates = f", {ds.attrs['replicates']} replicates" if ds.attrs["replicates"] > 1 else ""
     return [
         ("Model", f"{ds.attrs['model']}, version {ds.attrs['model_version']}"),
@@ -164,14 +165,18 @@ _CAPTIONS: dict[Any, str] = {
 
 def _pictures(ds: xr.Dataset, found: list[Outcome], *kinds: Any) -> list[Picture]:
     """Draw each output once of each kind, with all its elements where the kind can."""
-    if not independent_rows(ds).sizes["sample"]:
-        return []
     names = dict.fromkeys(one.name.partition("[")[0] for one in found)
+    there = {
+        element.output
+        for element in elements_of(independent_rows(ds), list(names))
+        if element.present.any()
+    }
     return [
         picture(
             draw(ds, name), _CAPTIONS[draw].format(name=name, meaning=ds[name].attrs["long_name"])
         )
         for name in names
+        if name in there
         for draw in kinds
     ]
 

@@ -12,13 +12,12 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from uq.figure import styled
+from uq.figure import lay_out, styled
 from uq.literals import plain
 
 HEAVIEST_SVG = 300_000
 """Longer drawings, of thousands of points, become images [characters]."""
 
-_IMAGE_DOTS_PER_INCH = 200
 _NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
 
 
@@ -47,6 +46,7 @@ def picture(figure: Figure, caption: str) -> Picture:
         would be longer than `HEAVIEST_SVG`.
     """
     drawn = StringIO()
+    lay_out(figure)
     # Identifiers of two figures in one page must not meet.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": caption}):
         FigureCanvasSVG(figure).print_svg(drawn, metadata=_NO_METADATA)
@@ -57,7 +57,6 @@ def picture(figure: Figure, caption: str) -> Picture:
 
 def _image(figure: Figure, caption: str) -> Markup:
     png = BytesIO()
-    figure.set_dpi(_IMAGE_DOTS_PER_INCH)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
     data = base64.b64encode(png.getvalue()).decode()
     return Markup('<img alt="{}" src="data:image/png;base64,{}">').format(caption, data)

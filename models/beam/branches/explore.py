@@ -110,7 +110,7 @@ def continue_orbit(
     branch = trace(path, orbit, stable_only, largest_step)
     frequencies = branch.values if parameter == "forcing_frequency" else forcing
     unit, meaning = _ABOUT[parameter]
-    about = {"units": unit, "long_name": meaning}
+    about = _named(unit, meaning)
     ds = _labelled(params, tuning, branch.orbits, np.broadcast_to(frequencies, len(branch.orbits)))
     ds = ds.merge(_events(params, branch.events, about)).assign_attrs(end=branch.end)
     return ds.assign_coords({parameter: ("point", branch.values, about)})
@@ -166,12 +166,13 @@ def follow_wear(
     frequencies = np.full(len(worn.orbits), params.forcing_frequency)
     ds = _labelled(params, tuning, worn.orbits, frequencies)
     scaled = [event._replace(value=event.value * x0) for event in worn.events]
-    ds = ds.merge(_events(params, scaled, {"units": "m", "long_name": "right gap"}))
+    ds = ds.merge(_events(params, scaled, _named("m", "right gap")))
     nondimensional = worn.time * 2 * np.pi * tuning.fundamental / tuning.forcing
     wear = params.wear_coefficient / params.contact_area * params.contact_stiffness * x0
+    time = worn.time / (params.forcing_frequency * wear)
     return ds.assign_attrs(end=worn.end).assign_coords(
-        time=("point", worn.time / (params.forcing_frequency * wear), {"units": "s"}),
-        nondimensional_time=("point", nondimensional, {"units": "1", "long_name": "T (eq 12)"}),
+        time=("point", time, _named("s", "time of wear")),
+        nondimensional_time=("point", nondimensional, _named("1", "T (eq 12)")),
     )
 
 
@@ -248,7 +249,7 @@ def _labelled(
     }
     return xr.Dataset(
         {
-            name: (dims, values, {"units": unit, "long_name": meaning})
+            name: (dims, values, _named(unit, meaning))
             for name, (dims, values, unit, meaning) in variables.items()
         },
         {"site": list(SITES)},
@@ -261,13 +262,19 @@ def _events(params: Params, events: Sequence[Event], about: dict[str, str]) -> x
     before = [event.before for event in events]
     after = [event.after is not None and event.after.is_stable for event in events]
     gaps = params.initial_gap * np.array([o.gaps for o in before]).reshape(-1, 2)
+    multipliers = np.array([abs(o.multipliers[0]) for o in before], float)
+    stable_before = np.array([o.is_stable for o in before], bool)
     return xr.Dataset(
         {
             "event_value": ("event", np.array([event.value for event in events], float), about),
-            "event_gaps": (("event", "site"), gaps, {"units": "m"}),
-            "event_multiplier": ("event", np.array([abs(o.multipliers[0]) for o in before], float)),
-            "event_stable_before": ("event", np.array([o.is_stable for o in before], bool)),
-            "event_stable_after": ("event", np.array(after, bool)),
+            "event_gaps": (("event", "site"), gaps, _named("m", "gap of each site at the event")),
+            "event_multiplier": ("event", multipliers, _named("1", "largest multiplier before")),
+            "event_stable_before": ("event", stable_before, _named("1", "stable before it")),
+            "event_stable_after": ("event", np.array(after, bool), _named("1", "stable after it")),
         },
         {"event": np.array([event.kind for event in events], str)},
     )
+
+
+def _named(unit: str, meaning: str) -> dict[str, str]:
+    return {"units": unit, "long_name": meaning}

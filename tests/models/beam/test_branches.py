@@ -156,6 +156,8 @@ def test_wear_at_561_ends_by_complex_multipliers():
 
 def test_wear_at_99_ends_by_grazing():
     ds = follow_wear(at_omega(9.9), stop=3 * X0)
+    named = [*ds.data_vars.values(), ds.time, ds.nondimensional_time]
+    assert all(v.attrs["units"] and v.attrs["long_name"] for v in named)
     assert ds.end == "grazing"
     last = ds.gaps[-1] / X0
     assert last.max() == pytest.approx(2.63, abs=0.02)

@@ -1,0 +1,31 @@
+"""Numbers in sentences and tables are no more exact than they are known."""
+
+import pytest
+
+from uq.wording import brief, index, percent
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high", "told"),
+    [
+        (2.0268, 1.9863, 2.0841, ("2.03", "1.99 to 2.08")),
+        (13607.0, 13500.0, 13710.0, ("13610", "13500 to 13710")),
+        (-0.0425, -0.0457, 0.0001, ("-0.04", "-0.05 to 0")),
+        (1.42e-4, 1.39e-4, 1.45e-4, ("0.000142", "0.000139 to 0.000145")),
+        (0.012345, None, None, ("0.0123", "")),
+        (2.0, 2.0, 2.0, ("2", "2 to 2")),
+    ],
+)
+def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, told):
+    assert brief({"value": value, "low": low, "high": high}) == told
+
+
+def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
+    assert index({"value": -0.0002}, "value", "S1") == "0.000"
+    assert index({"value": -0.0002}, "value", "mu") == "-0.0002"
+    assert [percent(share) for share in (0.0, 1 / 6000, 0.769, 1.0)] == [
+        "0.0 %",
+        "0.017 %",
+        "76.9 %",
+        "100.0 %",
+    ]
