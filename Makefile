@@ -62,7 +62,7 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.store
 	@$(BIN)/python -m benchmarks.large
 
-# How often each printed interval holds the truth: docs/coverage.md, in about twenty minutes.
+# How often each printed interval holds the truth: docs/coverage.md, in about an hour.
 coverage: $(TEST)
 	@$(BIN)/python -m benchmarks.coverage
 

@@ -1,5 +1,6 @@
 """Weibull and lognormal laws fitted to lifetimes, and refused where they do not fit."""
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -97,12 +98,11 @@ def _one(law: str, element: Element, independent: bool) -> dict[str, Any]:
     family = FAMILIES[law]
     seen = _sorted(np.log(life)[None], ended[None])
     location, scale = (value[0] for value in fit(family, *seen))
-    drawn = _draw(family, location, scale, seen)
-    locations, scales = fit(family, *drawn)
+    locations, scales, distances = _refits(law, location, scale, seen)
     kept = np.isfinite(locations)
     if not np.isfinite(scale) or kept.mean() < CONFIDENCE:
         return entry | {"refused": "the likelihood has no maximum that can be found"}
-    distances = _distance(family, locations, scales, drawn)[kept]
+    distances = distances[kept]
     distance = _distance(family, location[None], scale[None], seen)
     entry["p_value"] = float((1 + (distances >= distance).sum()) / (1 + len(distances)))
     if entry["p_value"] < LEVEL:
@@ -147,20 +147,42 @@ def _sorted(x: Floats, ended: Mask) -> _Sample:
     return _Sample(np.take_along_axis(x, order, axis=1), np.take_along_axis(ended, order, axis=1))
 
 
-def _draw(family: Family, location: float, scale: float, seen: _Sample) -> _Sample:
-    """Draw samples from the fitted law, censored as the rows seen are."""
-    rng = np.random.default_rng(0)
+def _refits(
+    law: str, location: float, scale: float, seen: _Sample
+) -> tuple[Floats, Floats, Floats]:
+    """Return location, scale and distance of samples drawn from the fitted law."""
     n = seen.x.shape[1]
-    refits = min(REFITS, MOST_DRAWN // n)
-    u = rng.random((refits, n))
-    x = location + scale * family.standard.ppf(u)
     if seen.ended.all():
-        return _Sample(np.sort(x, axis=1), np.ones_like(x, dtype=bool))
+        locations, scales, distances = _complete_refits(law, n)
+        return location + scale * locations, scale * scales, distances
+    rng = np.random.default_rng(0)
+    family = FAMILIES[law]
+    x = location + scale * family.standard.ppf(rng.random((_refits_of(n), n)))
     # The estimate of Kaplan and Meier with censoring for the end, and the end for censoring.
     share = 1 - np.cumprod(1 - ~seen.ended[0] / np.arange(n, 0, -1))
-    place = np.searchsorted(share, rng.random((refits, n)))
+    place = np.searchsorted(share, rng.random(x.shape))
     limit = np.append(seen.x[0], np.inf)[place]
-    return _sorted(np.minimum(x, limit), x <= limit)
+    drawn = _sorted(np.minimum(x, limit), x <= limit)
+    found = fit(family, *drawn)
+    return *found, _distance(family, *found, drawn)
+
+
+@lru_cache(maxsize=4)
+def _complete_refits(law: str, n: int) -> tuple[Floats, Floats, Floats]:
+    """Return location, scale and distance of complete samples of n rows from the standard law.
+
+    Those from any other location and scale are these, moved and scaled; distances stay.
+    """
+    family = FAMILIES[law]
+    u = np.random.default_rng(0).random((_refits_of(n), n))
+    x = np.sort(family.standard.ppf(u), axis=1)
+    drawn = _Sample(x, np.ones_like(x, dtype=bool))
+    found = fit(family, *drawn)
+    return *found, _distance(family, *found, drawn)
+
+
+def _refits_of(rows: int) -> int:
+    return min(REFITS, MOST_DRAWN // rows)
 
 
 def _distance(family: Family, location: Floats, scale: Floats, sample: _Sample) -> Floats:

@@ -21,7 +21,6 @@ from uq.study_file import Tied
 from uq.two_samples import Estimate
 
 _ROUNDING = 1e-6  # the root of what an interval that is a difference of two may lose
-_NO_ENDS = {"low": np.nan, "high": np.nan}
 
 WORST = -1.0
 """The correlation that makes a difference least certain."""
@@ -172,16 +171,21 @@ class Pair:
         """Return how far an estimate of the second lies from that of the first."""
         if self.kinship is Kinship.REPLICATES and not estimator.is_share:
             value = known[1].value - known[0].value
-            found = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
-            if not np.isfinite(found).all():
+            own = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
+            if not np.isfinite(own).all():
                 return Estimate(value, np.nan, np.nan)
-            apart = found[1] - found[0]
-            if intervals.is_constant(apart + np.abs(found).max()):  # they differ by rounding alone
+            apart = own[1] - own[0]
+            if intervals.is_constant(apart + np.abs(own).max()):  # they differ by rounding alone
                 return Estimate(value, np.nan, np.nan)
             return Estimate(value, *intervals.scatter_interval(value, apart))
-        apart = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
+        found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
         wide = sum(one.high - one.low for one in known)
-        return apart if apart.high - apart.low > _ROUNDING * wide else apart._replace(**_NO_ENDS)
+        if (
+            self.kinship is Kinship.REPLICATES
+            and found.high - found.low <= _ROUNDING * wide < np.inf
+        ):
+            return found._replace(low=np.nan, high=np.nan)  # as good as the same in each replicate
+        return found
 
     def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
@@ -231,7 +235,7 @@ class Pair:
             pulls.append(self._by_replicate(MEAN, i, pull))
         if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in pulls):
             return np.nan
-        return float(np.corrcoef(pulls)[0, 1])
+        return float(np.asarray(np.corrcoef(pulls))[0, 1])
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
         of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])

@@ -32,7 +32,9 @@ PARTS = {
     "lives": Part(partial(lives.lives, "monte-carlo")),
     "lives-replicates": Part(partial(lives.lives, "latin-hypercube")),
     **{
-        f"fit-{law}{'-censored' * censored}": Part(partial(lives.fits, law, censored), 1000)
+        f"fit-{law}{'-censored' * censored}": Part(
+            partial(lives.fits, law, censored), 500 if censored else REPETITIONS
+        )
         for law in lives.FITTED
         for censored in (False, True)
     },
@@ -44,7 +46,7 @@ PARTS = {
     "sobol-life": Part(known_indices.of_a_life, 1000),
     "shapley": Part(known_indices.shapley),
     "morris": Part(indices.morris),
-    **{f"null-{name}": Part(partial(indices.nulls, name)) for name in NULLS},
+    **{f"null-{name}": Part(partial(indices.nulls, name), 1000) for name in NULLS},
     "bootstraps": Part(indices.bootstraps, 200),
     "differences": Part(differences.differences, 500),
     "twin": Part(further.twin),
