@@ -42,6 +42,7 @@ LAYERS = {
         "reading",
         "registry",
         "schema",
+        "sequences",
         "streams",
         "study",
         "study_file",
@@ -60,6 +61,7 @@ LAYERS = {
         "soundness",
         "stopping",
         "store",
+        "variables",
         "work",
     },
     "running": {
@@ -98,6 +100,7 @@ LAYERS = {
         "life_fit",
         "lifetime",
         "morris",
+        "overview",
         "pairing",
         "realised",
         "location_scale",

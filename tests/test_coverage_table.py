@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.coverage import further, problems
+from benchmarks.coverage import further, known_indices, problems
 from benchmarks.coverage.page import page
 from benchmarks.coverage.parts import PARTS
 from benchmarks.coverage.tally import Tally
@@ -51,6 +51,18 @@ def test_indices_of_the_jump_are_those_of_many_rows(big):
             assert first == pytest.approx(truth[name], abs=0.01)
 
 
+def test_indices_of_the_life_are_those_of_many_rows(big):
+    life = big["never"].values
+    known = known_indices.life_truths()
+    for name, values in (("rate(never)", 1 / life), ("P(never<1.0)", (life < 1.0).astype(float))):
+        for kind, of in (("S1", big["r1"]), ("ST", big["r2"] + big["r3"])):
+            parts = np.array_split(np.argsort(of.values), 400)
+            share = np.var([values[part].mean() for part in parts]) / values.var()
+            assert known[name][kind] == pytest.approx(
+                share if kind == "S1" else 1 - share, abs=0.01
+            )
+
+
 def test_the_rare_jump_is_as_rare_as_it_is_said_to_be():
     u = np.random.default_rng(0).standard_normal((ROWS * 10, 3))
     hits = int((further._jump(u) > 0).sum())
@@ -77,7 +89,10 @@ def test_what_is_off_needs_a_reason():
     assert "none given" in shown
 
 
-@pytest.mark.parametrize("name", ["plain-monte-carlo", "lives", "null-regional", "twin"])
+@pytest.mark.parametrize(
+    "name",
+    ["plain-monte-carlo", "lives", "sobol-life", "shapley", "null-regional", "twin", "differences"],
+)
 def test_parts_count_what_is_printed(name):
     lines = PARTS[name].count(2)
     assert all(line.repetitions == 2 for line in lines if line.by == "uq")

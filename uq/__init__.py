@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from uq.life_fit import life_fits
     from uq.lifetime import survival
     from uq.motion_plot import plot_history, plot_phase_portrait, plot_section
+    from uq.overview import summary
     from uq.regime_table import regimes
     from uq.reliability import rare_event
     from uq.response_plot import plot_basins, plot_bifurcation, plot_curve
     from uq.results import open_result
     from uq.runner import run
     from uq.simulation import simulate
-    from uq.statistics import summary
     from uq.study import load_study
     from uq.twin import two_fidelities
 
@@ -70,7 +70,7 @@ _MODULES = {
     "running_estimates": "convergence",
     "sensitivity": "indices",
     "simulate": "simulation",
-    "summary": "statistics",
+    "summary": "overview",
     "survival": "lifetime",
     "two_fidelities": "twin",
 }

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.code import code_of
+from uq.compilation import compilation
 from uq.contract import Model
 from uq.errors import InputError
 from uq.evaluate import evaluate
@@ -98,37 +99,16 @@ def main(handle: str) -> None:
     except Exception as error:
         connection.send((REFUSED, error))
         return
-    _tell_of_compilation(connection)
     connection.send((READY, None))
-    while True:
-        request: Request = connection.recv()
-        try:
-            answer: Any = DONE, evaluate(model, settings, *request)
-        except Exception as error:
-            answer = REFUSED, error
-        connection.send(answer)
-
-
-def _tell_of_compilation(connection: Connection) -> None:
-    """Say when numba compiles: that is no part of the time a row takes."""
-    if "numba" not in sys.modules:
-        return
-    from numba.core import event
-
-    class Compilation(event.Listener):
-        depth = 0
-
-        def on_start(self, event: Any) -> None:
-            self.depth += 1
-            if self.depth == 1:
-                connection.send((COMPILING, None))
-
-        def on_end(self, event: Any) -> None:
-            self.depth -= 1
-            if self.depth == 0:
-                connection.send((COMPILED, None))
-
-    event.register("numba:compile", Compilation())
+    compiling, compiled = ((word, None) for word in (COMPILING, COMPILED))
+    with compilation(lambda: connection.send(compiling), lambda: connection.send(compiled)):
+        while True:
+            request: Request = connection.recv()
+            try:
+                answer: Any = DONE, evaluate(model, settings, *request)
+            except Exception as error:
+                answer = REFUSED, error
+            connection.send(answer)
 
 
 if __name__ == "__main__":

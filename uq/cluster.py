@@ -57,7 +57,9 @@ class Workers:
 
     @property
     def dashboard(self) -> str:
-        """Address of the page on which dask shows what it does, or ""."""
+        """Address of the page on which somebody's cluster shows what it does, or ""."""
+        if self.own:  # nothing is behind the address that dask tells
+            return ""
         try:
             return str(self.client.dashboard_link or "")
         except (KeyError, OSError):  # a scheduler without one, or just gone

@@ -1,11 +1,13 @@
 """Who computes rows: this computer, and dask workers where the work is worth starting them."""
 
+from collections.abc import Callable
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.compilation import compilation
 from uq.errors import InputError
 from uq.evaluate import Chunk, evaluate
 from uq.interrupts import in_background
@@ -31,6 +33,8 @@ class Computing:
         The jobs are about its model and settings.
     workers, scheduler, row_limit
         As in `uq.run`.
+    compiling : callable
+        Called when the model begins to be compiled.
 
     Attributes
     ----------
@@ -51,6 +55,7 @@ class Computing:
         workers: int | None = None,
         scheduler: str | None = None,
         row_limit: float | None = None,
+        compiling: Callable[[], object] = lambda: None,
     ) -> None:
         if workers is not None and scheduler is not None:
             raise InputError("workers and scheduler exclude each other")
@@ -65,15 +70,18 @@ class Computing:
             )
         self._work, self._row_limit = work, row_limit
         self._workers, self._scheduler = workers, scheduler
+        self._compiling = compiling
         self._crew: Workers | None = None
         self._stack = ExitStack()
         self._seconds = 0.0
 
     def __enter__(self) -> Self:
         if self._workers == 0:
+            self._stack.enter_context(compilation(self._compiling))
             self.evaluate = _in_process(self._work)
         else:
-            self.evaluate = self._stack.enter_context(isolated(self._work, self._row_limit))
+            process = isolated(self._work, self._row_limit, self._compiling)
+            self.evaluate = self._stack.enter_context(process)
         return self
 
     def __exit__(self, *exception: object) -> None:

@@ -5,15 +5,13 @@ say what it may be asked for, and which sensitivity methods it can feed.
 """
 
 from collections.abc import Callable
-from copy import copy
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from uq.curves import LEAST_POINTS, fast_curves, random_balance
-from uq.streams import Points, generator, inside, replicate_seed
+from uq.sequences import halton, latin_hypercube, monte_carlo, paths, sobol
+from uq.streams import Points
 from uq.trajectories import morris_trajectories, optimised_trajectories
 
 MAX_SAMPLES = 2**30
@@ -154,75 +152,6 @@ def block_names(design: Design, parameters: tuple[str, ...], second_order: bool)
     return ("A", *(f"AB_{name}" for name in parameters), *mirrored, "B")
 
 
-def _monte_carlo(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
-    def points(replicate: int) -> Points:
-        bits = np.random.PCG64(replicate_seed(seed, replicate))
-        bits.advance(start * d)  # one step of the generator per number
-        return inside(np.random.Generator(bits).random((stop - start, d)))
-
-    return np.stack([points(replicate) for replicate in range(replicates)], axis=1)
-
-
-def _paths(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
-    """Draw paths between two independent points, one input after the other in random order."""
-    points = _monte_carlo(seed, replicates, 3 * d, samples, start, stop)
-    first, last, order = np.split(points[:, :, None], 3, axis=-1)
-    step = np.argsort(np.argsort(order, axis=-1), axis=-1)  # at which an input changes
-    return np.where(step < np.arange(d + 1)[:, None], last, first)
-
-
-def _latin_hypercube(
-    seed: int, replicates: int, d: int, samples: int, start: int, stop: int
-) -> Points:
-    return _whole_latin_hypercube(seed, replicates, d, samples)[start:stop]
-
-
-@lru_cache(maxsize=1)  # cannot be drawn in parts, and its rows are asked for in chunks
-def _whole_latin_hypercube(seed: int, replicates: int, d: int, samples: int) -> Points:
-    from scipy.stats import qmc
-
-    engines = [
-        qmc.LatinHypercube(d, rng=generator(seed, replicate)) for replicate in range(replicates)
-    ]
-    points = np.stack([inside(engine.random(samples)) for engine in engines], axis=1)
-    points.setflags(write=False)
-    return points
-
-
-def _sobol(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
-    def points(engine: Any) -> Points:
-        # scipy warns when the first draw is not a power of two; the design as a whole is one.
-        n = stop - start
-        first = engine.random(min(n, 1)) if start == 0 else engine.fast_forward(start).random(0)
-        rest = engine.random(n - len(first))
-        return inside(np.concatenate([first, rest]), 2.0**-31)  # half of the last of 30 bits
-
-    return np.stack([points(engine) for engine in _sequences("Sobol", seed, replicates, d)], axis=1)
-
-
-def _halton(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
-    def points(engine: Any) -> Points:
-        engine.num_generated = start  # its fast_forward would compute all points before
-        return inside(engine.random(stop - start))
-
-    return np.stack(
-        [points(engine) for engine in _sequences("Halton", seed, replicates, d)], axis=1
-    )
-
-
-def _sequences(name: str, seed: int, replicates: int, d: int) -> list[Any]:
-    """Return a sequence of `scipy.stats.qmc` for each replicate, at its beginning."""
-    scrambled = [_scrambled(name, seed, replicate, d) for replicate in range(replicates)]
-    return [copy(engine).reset() for engine in scrambled]
-
-
-@lru_cache(maxsize=128)  # scrambling costs more than the points of a small chunk
-def _scrambled(name: str, seed: int, replicate: int, d: int) -> Any:
-    from scipy.stats import qmc
-
-    return getattr(qmc, name)(d, rng=generator(seed, replicate))
-
-
 def _steps(parameters: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"step_{i}" for i in range(len(parameters) + 1))
 
@@ -241,20 +170,20 @@ FOR_DEPENDENT_INPUTS = ("delta", "pawn", "quantile", "regional")
 _GIVEN_DATA = ("rbd-fast", "delta", "pawn", "hdmr", "quantile", "regional")
 
 DESIGNS = {
-    "monte-carlo": Design("independent rows", _monte_carlo, _GIVEN_DATA, independent=True),
+    "monte-carlo": Design("independent rows", monte_carlo, _GIVEN_DATA, independent=True),
     "latin-hypercube": Design(
         "each input stratified into as many slices as samples",
-        _latin_hypercube,
+        latin_hypercube,
         _GIVEN_DATA,
         append_only=False,
     ),
     "sobol": Design(
-        "scrambled Sobol' sequence, samples a power of two", _sobol, _GIVEN_DATA, power_of_two=True
+        "scrambled Sobol' sequence, samples a power of two", sobol, _GIVEN_DATA, power_of_two=True
     ),
-    "halton": Design("scrambled Halton sequence", _halton, _GIVEN_DATA),
+    "halton": Design("scrambled Halton sequence", halton, _GIVEN_DATA),
     "saltelli": Design(
         "scrambled Sobol' sequence crossed for Sobol' indices, samples a power of two",
-        _sobol,
+        sobol,
         ("sobol",),
         power_of_two=True,
         crossed=True,
@@ -279,7 +208,7 @@ DESIGNS = {
     ),
     "shapley": Design(
         "paths from one independent row to another, for Shapley effects",
-        _paths,
+        paths,
         ("shapley",),
         labels=_places,
     ),

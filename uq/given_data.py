@@ -29,8 +29,8 @@ MIN_ROWS = 64
 DUMMIES = 19
 """The largest of 19 is passed by one input in twenty that plays no part."""
 
-MOST_ROWS = {"delta": 20_000, "pawn": 20_000, "rbd-fast": 200_000, "quantile": 200_000}
-"""More rows would sharpen these by less than a hundredth, and take minutes for each output."""
+MOST_ROWS = {"delta": 10_000, "pawn": 10_000, "rbd-fast": 200_000, "quantile": 200_000}
+"""More rows would take long, and move an index by hundredths."""
 
 _HARMONICS = 10
 _TIED = 0.01
@@ -72,7 +72,7 @@ def given_data_indices(
     if n > (most := MOST_ROWS.get(method, n)):
         # At random: imported rows may come in an order that means something.
         kept = np.sort(np.random.default_rng(0).choice(kept, most, replace=False))
-        thinned = (f"from {most} of {n} rows, chosen at random: all would take minutes",)
+        thinned = (f"from {most} of {n} rows, chosen at random: all would take long",)
     y, x = values[kept], {parameter: column[kept] for parameter, column in x.items()}
     if method == "hdmr":
         return hdmr_indices(x, y)

@@ -1,4 +1,4 @@
-"""A first look at the rows of a run as they arrive: median lives and shares of regimes."""
+"""A first look at the rows of a run as they arrive: a median life and shares of regimes."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -25,14 +25,17 @@ class Glimpse:
 
     def __init__(self, work: Work) -> None:
         self._regimes: tuple[str, ...] = ()
-        self._lives: dict[str, _Sample] = {}
-        coordinates = work.model.coordinates(work.settings)
-        for name, output in work.model.outputs.items():
-            if name == "regime" and output.kind == "category":
-                self._regimes = output.categories
-            if output.kind == "lifetime":  # its first element stands for all
-                place = ",".join(f"{dim}={list(coordinates[dim])[0]}" for dim in output.dims)
-                self._lives[name] = _Sample(f"{name}[{place}]" if place else name)
+        self._life, self._label = "", ""
+        self._sample = _Sample()
+        outputs = work.model.outputs
+        if "regime" in outputs and outputs["regime"].kind == "category":
+            self._regimes = outputs["regime"].categories
+        lives = [name for name in work.shown if outputs[name].kind == "lifetime"]
+        if lives:  # the first stands for all, and its first element for all of them
+            self._life, dims = lives[0], outputs[lives[0]].dims
+            coordinates = work.model.coordinates(work.settings)
+            place = ",".join(f"{dim}={list(coordinates[dim])[0]}" for dim in dims)
+            self._label = f"{self._life}[{place}]" if place else self._life
         self._counts = np.zeros(len(self._regimes), dtype=np.int64)
 
     def see(self, chunk: "Chunk") -> None:
@@ -40,17 +43,18 @@ class Glimpse:
         if self._regimes:
             codes = chunk.columns["regime"]
             self._counts += np.bincount(codes[codes >= 0], minlength=len(self._counts))
-        for name, sample in self._lives.items():
-            first: Any = (slice(None), *[0] * (chunk.columns[name].ndim - 1))
-            values = chunk.columns[name][first]
-            if (flag := censored_name(name)) in chunk.columns:
+        if self._life:
+            first: Any = (slice(None), *[0] * (chunk.columns[self._life].ndim - 1))
+            values = chunk.columns[self._life][first]
+            if (flag := censored_name(self._life)) in chunk.columns:
                 values = np.where(chunk.columns[flag][first], np.inf, values)
-            sample.add(values[~np.isnan(values)])
+            self._sample.add(values[~np.isnan(values)])
 
     @property
-    def medians(self) -> dict[str, float]:
-        """Median of the first element of each lifetime [s]; inf where most rows do not end."""
-        return {one.label: one.median for one in self._lives.values() if one.median is not None}
+    def median(self) -> tuple[str, float] | None:
+        """Name and median of a life [s], inf where most rows do not end; None without one."""
+        median = self._sample.median
+        return None if median is None else (self._label, median)
 
     @property
     def shares(self) -> dict[str, float]:
@@ -64,8 +68,7 @@ class Glimpse:
 class _Sample:
     """Evenly spaced values of a stream."""
 
-    def __init__(self, label: str) -> None:
-        self.label = label
+    def __init__(self) -> None:
         self._values: NDArray[np.float64] = np.empty(0)
         self._step, self._next = 1, 0
 

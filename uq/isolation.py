@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _SINGLE_CRASHES = 2
 _PARTS = 8  # of rows that crashed: more would be small for kernels, fewer would crash more often
 _STARTS = 3
-_FIRST_SECONDS = 2.0  # a first call loads compiled code
+_FIRST_SECONDS = 5.0  # a first call loads compiled code: 1 s, more where the computer is busy
 _DYING_SECONDS = 5.0
 _POLL_SECONDS = 0.2  # so that an interrupt is seen
 
@@ -51,7 +51,9 @@ def task_of(work: "Work") -> child.Task:
 
 
 @contextmanager
-def isolated(work: "Work", limit: float | None = None) -> Iterator[Evaluate]:
+def isolated(
+    work: "Work", limit: float | None = None, compiling: Callable[[], object] = lambda: None
+) -> Iterator[Evaluate]:
     """Yield a function that computes rows of some work in a process of their own.
 
     Parameters
@@ -59,8 +61,10 @@ def isolated(work: "Work", limit: float | None = None) -> Iterator[Evaluate]:
     work : Work
     limit : float, optional
         Longest time for one row [s].
+    compiling : callable
+        Called when that process begins to compile.
     """
-    process = Isolated(task_of(work), limit)
+    process = Isolated(task_of(work), limit, compiling)
     with undone(process.close):
         yield process.evaluate
 
@@ -73,11 +77,19 @@ class Isolated:
     task : uq.child.Task
     limit : float or None
         Longest time for one row [s]; compiling does not count.
+    compiling : callable
+        Called when the process begins to compile.
     """
 
-    def __init__(self, task: child.Task, limit: float | None = None) -> None:
+    def __init__(
+        self,
+        task: child.Task,
+        limit: float | None = None,
+        compiling: Callable[[], object] = lambda: None,
+    ) -> None:
         self.task = task
         self.limit = limit
+        self._compiling = compiling
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
         self._grace = 0.0
@@ -158,6 +170,7 @@ class Isolated:
             kind, value = connection.recv()
             if kind == child.COMPILING:
                 began = None
+                self._compiling()
             elif kind == child.COMPILED:
                 began = time.monotonic()
             else:

@@ -47,10 +47,15 @@ class Progress(NamedTuple):
         Rows among those done that were there from the start.
     status : dict of str to int
         Status label -> rows.
-    medians, shares : dict of str to float
-        Of lives [s] and regimes, among the rows that arrived in this process.
+    median : tuple of (str, float) or None
+        Name and median of a life [s] that is of interest, among the rows that arrived in this
+        process.
+    shares : dict of str to float
+        Of regimes, among the same rows.
     dashboard : str
         Address of the page of a dask cluster, or "".
+    compiling : bool
+        Whether the model is being compiled, for which rows wait.
     """
 
     done: int
@@ -58,9 +63,10 @@ class Progress(NamedTuple):
     failed: int
     found: int = 0
     status: Mapping[str, int] = MappingProxyType({})
-    medians: Mapping[str, float] = MappingProxyType({})
+    median: tuple[str, float] | None = None
     shares: Mapping[str, float] = MappingProxyType({})
     dashboard: str = ""
+    compiling: bool = False
 
 
 Report = Callable[[Progress], object]
@@ -203,7 +209,7 @@ class Job:
     def tell(self) -> None:
         """Report how far the run is."""
         store = self.store
-        seen = store.glimpse.medians, store.glimpse.shares
+        seen = store.glimpse.median, store.glimpse.shares
         counts = store.done, store.total, store.failed, store.found, dict(store.status)
         self.report(Progress(*counts, *seen, self._dashboard))
 

@@ -16,8 +16,15 @@ MIN_ENDED = 20
 MAX_ROWS = 2000
 """More rows would refuse every law for differences that no one cares about."""
 
-REFITS = 999
-"""Samples drawn from the fitted law, and fitted again."""
+REFITS = 4999
+"""Samples drawn from the fitted law, and fitted again; of many rows fewer, down to a fifth.
+
+With so many an interval of 95 % covers 95 %, give or take 0.3 % for the luck of the draw; with a
+fifth of them, 0.7 %.
+"""
+
+MOST_DRAWN = 400 * REFITS
+"""Lives drawn for them all."""
 
 LEVEL = 0.05
 
@@ -144,13 +151,14 @@ def _draw(family: Family, location: float, scale: float, seen: _Sample) -> _Samp
     """Draw samples from the fitted law, censored as the rows seen are."""
     rng = np.random.default_rng(0)
     n = seen.x.shape[1]
-    u = rng.random((REFITS, n))
+    refits = min(REFITS, MOST_DRAWN // n)
+    u = rng.random((refits, n))
     x = location + scale * family.standard.ppf(u)
     if seen.ended.all():
         return _Sample(np.sort(x, axis=1), np.ones_like(x, dtype=bool))
     # The estimate of Kaplan and Meier with censoring for the end, and the end for censoring.
     share = 1 - np.cumprod(1 - ~seen.ended[0] / np.arange(n, 0, -1))
-    place = np.searchsorted(share, rng.random((REFITS, n)))
+    place = np.searchsorted(share, rng.random((refits, n)))
     limit = np.append(seen.x[0], np.inf)[place]
     return _sorted(np.minimum(x, limit), x <= limit)
 

@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Mapping
+from math import isinf
 from typing import Any
 
 
@@ -38,6 +39,24 @@ def shown(value: Any, width: int = 60) -> str:
     except (ValueError, RecursionError):  # thousands of digits, or of brackets
         return "..."
     return text if len(text) <= width else f"{text[: width - 3]}..."
+
+
+def read_number(text: str) -> float:
+    """Return a number; infinity only where it is written so.
+
+    Raises
+    ------
+    ValueError
+        When it is none.
+    OverflowError
+        When it is too large: 1e400.
+    """
+    number = float(text)
+    if isinf(number) and "inf" not in text.lower():
+        raise OverflowError(
+            f"{text} is too large for a number; write it as inf if infinity is meant"
+        )
+    return number
 
 
 # Control characters but the line feed, and what turns the direction of writing.

@@ -20,6 +20,9 @@ from uq.elements import Floats, Mask, independent_rows, replicates_of, study_fil
 from uq.study_file import Tied
 from uq.two_samples import Estimate
 
+_ROUNDING = 1e-6  # the root of what an interval that is a difference of two may lose
+_NO_ENDS = {"low": np.nan, "high": np.nan}
+
 WORST = -1.0
 """The correlation that makes a difference least certain."""
 
@@ -167,7 +170,7 @@ class Pair:
         self, estimator: Estimator, samples: list[Sample], known: list[Estimate]
     ) -> Estimate:
         """Return how far an estimate of the second lies from that of the first."""
-        if self.kinship is Kinship.REPLICATES:
+        if self.kinship is Kinship.REPLICATES and not estimator.is_share:
             value = known[1].value - known[0].value
             found = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
             if not np.isfinite(found).all():
@@ -176,7 +179,9 @@ class Pair:
             if intervals.is_constant(apart + np.abs(found).max()):  # they differ by rounding alone
                 return Estimate(value, np.nan, np.nan)
             return Estimate(value, *intervals.scatter_interval(value, apart))
-        return two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
+        apart = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
+        wide = sum(one.high - one.low for one in known)
+        return apart if apart.high - apart.low > _ROUNDING * wide else apart._replace(**_NO_ENDS)
 
     def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
@@ -200,6 +205,8 @@ class Pair:
         return 0.0 if self.kinship is Kinship.STRANGERS else WORST
 
     def _correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
+        if self.kinship is Kinship.REPLICATES:
+            return self._replicates_correlation(estimator, samples)
         if self._shared is None:
             return self.unpaired
         pulls = []
@@ -209,6 +216,22 @@ class Pair:
                 pull[sample.kept] = estimator.pull(sample.numbers[sample.kept])
             pulls.append(pull)
         return correlation(pulls[0], pulls[1], self._shared, estimator.is_share)
+
+    def _replicates_correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
+        """Return the correlation of the pulls of whole replicates; NaN where one has none.
+
+        With the ends of Woodruff's intervals this makes the interval of Student's t of the
+        linearised differences of the replicates, each of whose own quantiles is a poor one.
+        """
+        pulls = []
+        for i, sample in enumerate(samples):
+            pull = sample._replace(numbers=np.zeros(len(sample.numbers)))
+            if sample.kept.any():
+                pull.numbers[sample.kept] = estimator.pull(sample.numbers[sample.kept])
+            pulls.append(self._by_replicate(MEAN, i, pull))
+        if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in pulls):
+            return np.nan
+        return float(np.corrcoef(pulls)[0, 1])
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
         of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ValidationError
 from uq.errors import InputError, nearest
 from uq.faults import Fault
 from uq.law import BaseLaw
+from uq.literals import read_number
 from uq.study_file import LAWS, DependenceTable, StudyFile, Tied, Tolerance
 
 
@@ -40,8 +41,8 @@ def read_study_text(text: str, source: str = "study") -> StudyFile:
 def parse(text: str, source: str) -> dict[str, Any]:
     """Read TOML; raise `InputError` with the line where it goes wrong."""
     try:
-        return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
+        return tomllib.loads(text, parse_float=read_number)
+    except (ValueError, OverflowError, RecursionError) as error:
         reason = " ".join(str(error).split())
         raise InputError(f"{source}: not valid TOML: {reason}") from error
 

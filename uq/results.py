@@ -7,8 +7,7 @@ dimensions), one ``<name>_censored`` beside each lifetime that can be censored, 
 depends on clock, host, chunks or workers.
 """
 
-import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,18 +16,26 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.code import made_here
-from uq.columns import censored_name, failed_rows
-from uq.contract import Model, Status
-from uq.designs import DESIGNS, block_names
+from uq.columns import failed_rows
+from uq.contract import Model
 from uq.errors import InputError, choices, nearest
 from uq.provenance import provenance
 from uq.soundness import unsound
+from uq.variables import (
+    SCHEMA_VERSION,
+    Columns,
+    coordinates,
+    model_attributes,
+    output_variables,
+    parameter_variable,
+    places,
+    study_attributes,
+)
 
 if TYPE_CHECKING:
     from uq.sampling import Rows
     from uq.study import Study
 
-SCHEMA_VERSION = 1
 CHECKSUM = "checksum"
 """Attribute of the file; see `uq.store.seal`."""
 
@@ -37,8 +44,6 @@ UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, Ty
 
 _IN_MEMORY_BYTES = 200_000_000
 _INFLATED_BYTES, _INFLATION = 100_000_000, 100  # a file that claims more was not made by us
-
-Columns = Mapping[str, NDArray[Any]]
 
 
 def build(
@@ -70,18 +75,18 @@ def build(
     xarray.Dataset
     """
     model = study.model
+    varied = dict(study.uncertain) | dict(study.tied)
     inputs: dict[str, Any] = {}
     for i, name in enumerate(model.parameter_names):
-        if name in study.uncertain:
-            inputs[name] = _input(model, name, rows.x[:, i], study.uncertain[name].source)
-        elif name in study.tied:
-            inputs[name] = _input(model, name, rows.x[:, i], study.tied[name].source)
+        if name in varied:
+            inputs[name] = parameter_variable(model, name, rows.x[:, i], varied[name].source)
         else:
-            inputs[name] = _input(model, name, study.fixed.get(name, model.nominal[name]))
+            value = study.fixed.get(name, model.nominal[name])
+            inputs[name] = parameter_variable(model, name, value)
     ds = xr.Dataset(
-        inputs | _outputs(model, columns, status, failures),
-        _places(study, rows, numbers) | _coordinates(model, study.settings),
-        _attributes(study),
+        inputs | output_variables(model, columns, status, failures),
+        places(study, rows, numbers) | coordinates(model, study.settings),
+        study_attributes(study),
     )
     for variable in ds.variables.values():
         variable.encoding["_FillValue"] = None
@@ -111,10 +116,10 @@ def build_rows(
     -------
     xarray.Dataset
     """
-    inputs = {name: _input(model, name, value) for name, value in values.items()}
-    attrs = {"title": model.title} | _model_attributes(model) | provenance()
-    outputs = _outputs(model, columns, status, failures)
-    return xr.Dataset(inputs | outputs, _coordinates(model, settings), attrs)
+    inputs = {name: parameter_variable(model, name, value) for name, value in values.items()}
+    attrs = {"title": model.title} | model_attributes(model) | provenance()
+    outputs = output_variables(model, columns, status, failures)
+    return xr.Dataset(inputs | outputs, coordinates(model, settings), attrs)
 
 
 def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
@@ -243,111 +248,7 @@ def relabel(ds: xr.Dataset, study: "Study") -> xr.Dataset:
     """
     here = made_here(study.model_reference)
     made = {name: ds.attrs[name] for name in here if name in ds.attrs}
-    ds = ds.assign_attrs(_attributes(study) | made)
+    ds = ds.assign_attrs(study_attributes(study) | made)
     for name, entry in (dict(study.uncertain) | dict(study.tied)).items():
         ds[name].attrs["source"] = entry.source or study.model.parameter(name).source
     return ds
-
-
-def _input(model: Model, name: str, value: Any, source: str = "") -> tuple[Any, Any, Any]:
-    """Return the variable of a parameter: one number, or one per row."""
-    declared = model.parameter(name)
-    uncertain = isinstance(value, np.ndarray)
-    attrs = {
-        "role": "input" if uncertain else "fixed",
-        "units": declared.unit,
-        "long_name": declared.meaning,
-        "symbol": declared.symbol,
-        "source": source or declared.source,
-    }
-    return (("sample",), value, attrs) if uncertain else ((), np.float64(value), attrs)
-
-
-def _outputs(
-    model: Model, columns: Columns, status: NDArray[np.int8], failures: Mapping[str, str]
-) -> dict[str, Any]:
-    variables: dict[str, Any] = {}
-    for name, output in model.outputs.items():
-        dims = ("sample", *output.dims)
-        attrs: dict[str, Any] = {
-            "role": "output",
-            "kind": output.kind,
-            "units": output.unit,
-            "long_name": output.meaning,
-            "may_be_undefined": int(output.may_be_undefined),
-        }
-        if output.kind == "category":
-            attrs |= _flags(("none", *output.categories), np.int8, first=-1)
-        variables[name] = (dims, columns[name], attrs)
-        if output.has_censored_flag:
-            flag = censored_name(name)
-            attrs = {"role": "censored", "long_name": f"whether {name} is only a lower bound"}
-            variables[flag] = (dims, columns[flag].astype(np.int8), attrs)
-    attrs = {"role": "status", "long_name": "how the row ended"}
-    attrs |= _flags([status.label for status in Status], np.int8)
-    for label, message in failures.items():
-        attrs[f"example_{label.replace('-', '_')}"] = message
-    return variables | {"status": (("sample",), status, attrs)}
-
-
-def _coordinates(model: Model, settings: Any) -> dict[str, Any]:
-    values = model.coordinates(settings)
-    used = {dim for output in model.outputs.values() for dim in output.dims}
-    coordinates: dict[str, Any] = {}
-    for dim in sorted(used):
-        described = zip(("units", "long_name"), model.dimensions.get(dim, ()), strict=False)
-        coordinates[dim] = ((dim,), np.asarray(values[dim]), dict(described))
-    return coordinates
-
-
-def _places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> dict[str, Any]:
-    sample = ("sample",)
-    numbers = np.arange(len(rows.x)) if numbers is None else numbers
-    block = {"long_name": "block of the design"} | _flags(_block_labels(study), np.int16)
-    return {
-        "sample": (sample, numbers, {"long_name": "row"}),
-        "replicate": (sample, rows.replicate, {"long_name": "independent scramble of the design"}),
-        "group": (sample, rows.group, {"long_name": "base point of the design"}),
-        "block": (sample, rows.block, block),
-    }
-
-
-def _flags(labels: Sequence[str], dtype: type[np.integer[Any]], first: int = 0) -> dict[str, Any]:
-    values = np.arange(first, first + len(labels), dtype=dtype)
-    if len(labels) == 1:
-        values = values[0]  # what netCDF makes of an attribute of one number
-    return {"flag_values": values, "flag_meanings": " ".join(labels)}
-
-
-def _block_labels(study: "Study") -> list[str]:
-    design = study.design
-    return list(block_names(DESIGNS[design.method], tuple(study.uncertain), design.second_order))
-
-
-def _attributes(study: "Study") -> dict[str, Any]:
-    design = study.design
-    return (
-        {"title": study.description or study.name}
-        | _model_attributes(study.model)
-        | {
-            "study": study.text,
-            "study_sha256": hashlib.sha256(study.text.encode()).hexdigest(),
-            "study_identity": study.identity,
-            "design": design.method,
-            "samples": design.samples,
-            "replicates": design.replicates,
-            "second_order": int(design.second_order),
-            "seed": design.seed,
-        }
-        | made_here(study.model_reference)
-    )
-
-
-def _model_attributes(model: Model) -> dict[str, Any]:
-    return {
-        "Conventions": "CF-1.11",
-        "schema_version": SCHEMA_VERSION,
-        "source": f"{model.name} {model.version}",
-        "model": model.name,
-        "model_version": model.version,
-    }

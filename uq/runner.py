@@ -17,7 +17,7 @@ from uq import results, stopping, store
 from uq.changes import refusal_to_extend, what_changed
 from uq.computing import Computing
 from uq.errors import InputError
-from uq.job import Job, Report
+from uq.job import Job, Progress, Report
 from uq.reading import read_study_text
 from uq.sampling import rows
 from uq.study import Study, load_study
@@ -60,7 +60,7 @@ def run(
     fresh : bool
         Overwrite whatever `output` holds.
     progress : callable, optional
-        Called with a `Progress` as rows arrive.
+        Called with a `Progress` as rows arrive, and when the model begins to be compiled.
     say : callable, optional
         Called with a line for the user: what was found on disk.
     mixed : bool
@@ -193,8 +193,13 @@ def carry_out(
     if chunk_rows is not None and chunk_rows < 1:
         raise InputError(f"chunk_rows must be at least 1: {chunk_rows}")
     report = progress or (lambda _: None)
-    with Computing(work, workers, scheduler, row_limit) as computing:
-        where = kept or store.MemoryStore(work)
+    where = kept or store.MemoryStore(work)
+
+    def compiling() -> None:
+        counts = where.done, where.total, where.failed, where.found
+        report(Progress(*counts, compiling=True))
+
+    with Computing(work, workers, scheduler, row_limit, compiling) as computing:
         for part in (*_looks(until, where.reach), None):
             stop = work.total if part is None else rows(part)
             job = Job(work, chunk_rows, report, where, computing.evaluate, row_limit, stop)

@@ -7,7 +7,7 @@ import numpy as np
 
 from uq import results
 from uq.store import folder_of
-from uq.store.folder import history, holder, is_alive
+from uq.store.folder import history, holder, is_held
 from uq.store.records import RowsRecord, RunRecord, without_overlap
 from uq.store.tally import ended
 
@@ -39,7 +39,7 @@ def standing(path: Path) -> dict[str, Any]:
     complete = _complete(path) if exists else None
     under_way = _under_way(records) if records else None
     held = holder(folder)
-    running = held is not None and is_alive(held) is not False
+    running = held is not None and is_held(folder)
     if under_way is None or (complete is not None and not under_way["left"]):
         assert complete is not None
         found, state = complete, "complete"
@@ -49,7 +49,7 @@ def standing(path: Path) -> dict[str, Any]:
         "output": str(path),
         "state": state,
         **found,
-        "process": {"host": held.host, "pid": held.pid} if held and running else None,
+        "process": {"host": held.computer, "pid": held.pid} if held and running else None,
         "complete_rows": complete["rows"] if complete else None,
     }
 
@@ -67,7 +67,9 @@ def _under_way(records: list[RunRecord | RowsRecord]) -> dict[str, Any]:
     chunks = [record for record in records if isinstance(record, RowsRecord)]
     kept = without_overlap(chunks, run.rows)
     latest = [record for record in records[last:] if isinstance(record, RowsRecord)]
-    seconds = latest[-1].time - run.time if latest else 0.0
+    # From the first rows on, if there are others: before them, the model may have been compiled.
+    began, since = (latest[0].time, latest[1:]) if latest[1:] else (run.time, latest)
+    seconds = since[-1].time - began if since else 0.0
     status: dict[str, int] = {}
     for record in kept:
         for label, count in record.status.items():
@@ -77,7 +79,7 @@ def _under_way(records: list[RunRecord | RowsRecord]) -> dict[str, Any]:
         sum(record.rows for record in kept),
         sum(record.failed for record in kept),
         status,
-        sum(record.rows for record in latest) / seconds if seconds > 0 else None,
+        sum(record.rows for record in since) / seconds if seconds > 0 else None,
     )
 
 

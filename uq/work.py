@@ -41,6 +41,8 @@ class Work(NamedTuple):
         nobody wants one.
     output : str
         The only output, where a cheap one is computed alone; see `uq.contract.Model.cheap`.
+    shown : tuple of str
+        Outputs that are of interest while rows arrive.
     """
 
     model: Model
@@ -51,6 +53,7 @@ class Work(NamedTuple):
     block: Callable[[int, int], Rows]
     finish: Finish | None = None
     output: str = ""
+    shown: tuple[str, ...] = ()
 
 
 def work_of(study: "Study") -> Work:
@@ -63,4 +66,5 @@ def work_of(study: "Study") -> Work:
         group_size(study),
         partial(row_block, study),
         partial(results.build, study),
+        shown=study.analysis.outputs,
     )

@@ -205,6 +205,12 @@ def nulls(method, repetitions):
     return tally.lines()
 
 
+TWO = (
+    "conservative: effects of two values, each in half of the cases, have the largest standard"
+    " deviation there is; from all trajectories it varies less than from single replicates"
+)
 REASONS = {
+    "sigma x1": TWO,
+    "sigma x2": TWO,
     "hdmr": "the dummy of hdmr is one input: passed in every second case, as is said beside it",
 }

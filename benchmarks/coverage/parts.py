@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
-from benchmarks.coverage import further, indices, lives, plain
+from benchmarks.coverage import differences, further, indices, known_indices, lives, plain
 from benchmarks.coverage.tally import Line
 
 REPETITIONS = 2000
@@ -32,7 +32,7 @@ PARTS = {
     "lives": Part(partial(lives.lives, "monte-carlo")),
     "lives-replicates": Part(partial(lives.lives, "latin-hypercube")),
     **{
-        f"fit-{law}{'-censored' * censored}": Part(partial(lives.fits, law, censored))
+        f"fit-{law}{'-censored' * censored}": Part(partial(lives.fits, law, censored), 1000)
         for law in lives.FITTED
         for censored in (False, True)
     },
@@ -40,9 +40,13 @@ PARTS = {
     "sobol-jump": Part(indices.sobol_of_jump),
     "sobol-others": Part(indices.sobol_of_others, 500),
     "sobol-scipy": Part(indices.sobol_of_scipy, 200),
+    "sobol-g-function": Part(known_indices.g_function),
+    "sobol-life": Part(known_indices.of_a_life, 1000),
+    "shapley": Part(known_indices.shapley),
     "morris": Part(indices.morris),
     **{f"null-{name}": Part(partial(indices.nulls, name)) for name in NULLS},
     "bootstraps": Part(indices.bootstraps, 200),
+    "differences": Part(differences.differences, 500),
     "twin": Part(further.twin),
     "stopped": Part(further.stopped),
     "subset": Part(further.subset),

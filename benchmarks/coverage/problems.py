@@ -174,10 +174,10 @@ def jump():
     expected = mid[:, None] + 0.5 + JUMP * upper  # given x1 and x2
     mean = 1.0 + JUMP * share
     variance = 1 / 6 + JUMP**2 * share * (1 - share) + 2 * JUMP * _covariance(mid, upper, share)
-    within = {
-        "upper": float((expected * upper).sum() / upper.sum()),
-        "lower": float((expected * (1 - upper)).sum() / (1 - upper).sum()),
-    }
+    # Of x1 and x2 in the upper corner the mean is at a third of its height from the edge.
+    of_upper = 1 - (2 - EDGE) / 3
+    of_lower = (0.5 - share * of_upper) / (1 - share)
+    within = {"upper": of_upper + 0.5 + JUMP, "lower": of_lower + 0.5}
     between = share * (within["upper"] - mean) ** 2 + (1 - share) * (within["lower"] - mean) ** 2
     of_x1, of_x2 = expected.mean(axis=1).var(), expected.mean(axis=0).var()
     first = {"x1": of_x1 / variance, "x2": of_x2 / variance, "x3": 1 / 12 / variance}

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 from shown import Shown, name_panels, sheet
 
 import uq
@@ -78,12 +79,18 @@ def heavy_right(ds: xr.Dataset, work: str) -> xr.Dataset:
     return ds.isel(site=[1, 0]).assign_coords(site=ds["site"].values)
 
 
+def pair(cases: dict[float, xr.Dataset], drawn: str, against: str, name: str = "omega =") -> Figure:
+    """Draw one curve against another for each omega, side by side."""
+    figure, panels = sheet(1, 2, 2.3)
+    for axes, ds in zip(panels, cases.values(), strict=True):
+        uq.plot_curve(ds, drawn, against, axes)
+    name_panels(panels, (f"{name} {omega:g}" for omega in cases))
+    return figure
+
+
 def work_rates_along_branches(branches: dict[float, xr.Dataset]) -> Shown:
     """Draw Figure 2."""
-    figure, panels = sheet(1, 2, 2.3)
-    for axes, ds in zip(panels, branches.values(), strict=True):
-        uq.plot_curve(ds, "nondimensional_work_rate", "omega", axes)
-    name_panels(panels, (f"branch through {omega:g}" for omega in branches))
+    figure = pair(branches, "nondimensional_work_rate", "omega", "branch through")
     (low, low_end), (high, high_end) = (
         (float(ds["omega"].min()), float(ds["omega"].max())) for ds in branches.values()
     )
@@ -100,10 +107,7 @@ def work_rates_along_branches(branches: dict[float, xr.Dataset]) -> Shown:
 
 def gap_ratios(worn: dict[float, xr.Dataset]) -> Shown:
     """Draw Figure 3."""
-    figure, panels = sheet(1, 2, 2.3)
-    for axes, ds in zip(panels, worn.values(), strict=True):
-        uq.plot_curve(ds, "gap_ratio", "x_1", axes)
-    name_panels(panels, (f"omega = {omega:g}" for omega in worn))
+    figure = pair(worn, "gap_ratio", "x_1")
     low, high = worn.values()
     least = int(np.argmin(low["gap_ratio"].values))
     steepest = int(np.argmin(high["gap_ratio"].values))
@@ -122,10 +126,7 @@ def gap_ratios(worn: dict[float, xr.Dataset]) -> Shown:
 
 def work_rates(worn: dict[float, xr.Dataset]) -> Shown:
     """Draw Figure 4."""
-    figure, panels = sheet(1, 2, 2.3)
-    for axes, ds in zip(panels, worn.values(), strict=True):
-        uq.plot_curve(ds, "mean_work", "x_1", axes)
-    name_panels(panels, (f"omega = {omega:g}" for omega in worn))
+    figure = pair(worn, "mean_work", "x_1")
     low, high = worn.values()
     change = float(low["change_gap"].sel(site="right")[0]) / X_0
     least = low["x_1"][int(np.argmin(low["mean_work"].sum("site").values))]
@@ -144,10 +145,7 @@ def work_rates(worn: dict[float, xr.Dataset]) -> Shown:
 
 def gaps(worn: dict[float, xr.Dataset]) -> Shown:
     """Draw Figure 5."""
-    figure, panels = sheet(1, 2, 2.3)
-    for axes, ds in zip(panels, worn.values(), strict=True):
-        uq.plot_curve(ds, "x", "dimensionless_time", axes)
-    name_panels(panels, (f"omega = {omega:g}" for omega in worn))
+    figure = pair(worn, "x", "dimensionless_time")
     (low, _), (high, higher) = (lifetime_ratios(omega) for omega in worn)
     return Shown(
         "Figure 5: gaps against the time of wear",

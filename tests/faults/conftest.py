@@ -24,6 +24,7 @@ OUTCOMES = {
     "SIGTERM": "says how to go on; same bits",
     "lock of a living process": "refused in a sentence",
     "lock of a dead process": "recognised, goes on, same bits",
+    "lock whose process number is in use again": "recognised, goes on, same bits",
     "lock of another computer": "refused in a sentence",
     "chunk file truncated": "computed again, same bits",
     "chunk file emptied": "computed again, same bits",

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import os
 import random
 import re
 import shutil
@@ -147,7 +148,23 @@ def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_w
     run.kill()
     assert (ROWS / "lock").exists()  # stale, and recognised as such
     injected("lock of a dead process")
-    assert call("run", study, *MODEL)[0] == 0
+    assert json.loads(call("status", OUT, "--json")[1])["state"] == "interrupted"
+    # Its number is that of another process, or of one after the computer was started anew.
+    words = (ROWS / "lock").read_text().split("\n")
+    (ROWS / "lock").write_text("\n".join([str(os.getpid()), *words[1:]]))
+    injected("lock whose process number is in use again")
+    assert json.loads(call("status", OUT, "--json")[1])["state"] == "interrupted"
+    assert call("run", study, *MODEL) == (0, "")
+    assert OUT.read_bytes() == undisturbed
+
+
+def test_a_lock_that_names_nobody_says_what_to_do(study, undisturbed, under_way, call):
+    under_way(study).kill()
+    (ROWS / "lock").write_text("")
+    remove = f"if there is none, remove {ROWS / 'lock'}"
+    assert call("run", study, *MODEL) == (2, f"{ROWS}: in use by another process; {remove}\n")
+    (ROWS / "lock").unlink()
+    assert call("run", study, *MODEL) == (0, "")
     assert OUT.read_bytes() == undisturbed
 
 

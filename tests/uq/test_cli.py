@@ -371,6 +371,10 @@ MISTAKES = {
     "run small.toml --workers 1 --scheduler tcp://x:1": "workers and scheduler exclude each other",
     "simulate ishigamy": "no such model 'ishigamy'; did you mean 'ishigami'?",
     "simulate linear --set x1": "--set x1: write it as NAME=VALUE with a number",
+    "simulate linear --set x1=-1e400": (
+        "--set x1=-1e400: -1e400 is too large for a number; write it as inf if infinity is meant\n"
+    ),
+    "simulate beam --setting horizon=1e400": "--setting horizon=1e400: 1e400 is too large",
     "simulate linear --set x1=much": "--set x1=much: write it as NAME=VALUE with a number",
     "simulate linear --set x1=nan": "x1 = nan: ",
     "simulate linear --set x1=inf": "x1 = inf: must lie within 0.0 to 1.0 [1]",
@@ -465,6 +469,17 @@ def test_json_knows_only_finite_numbers():
         print_json({"a": float("nan")})
 
 
+MUCH = Progress(
+    123_456_789,
+    1_000_000_000,
+    4_567,
+    status={"ok": 1, "non-finite": 123_456_789, "raised": 1_234_567},
+    median=("a_life_with_a_name[depth=2]", 1e9),
+    shares={f"regime-with-a-long-name-{i}": 0.2 for i in range(5)},
+    dashboard="http://127.0.0.1:8787/status",
+)
+
+
 def test_progress_tells_how_rows_ended_and_what_they_say():
     told = details(
         Progress(
@@ -472,18 +487,19 @@ def test_progress_tells_how_rows_ended_and_what_they_say():
             400,
             3,
             status={"ok": 290, "raised": 3, "out-of-budget": 7},
-            medians={"life[site=left]": 5 * 86400.0, "other": float("inf"), "short": 0.25},
+            median=("life[site=left]", 5 * 86400.0),
             shares={"slow": 0.625, "fast": 0.375},
         )
     )
     assert told == [
         "raised 3, out-of-budget 7",
         "median life[site=left]: 5 days",
-        "median other: most rows do not end",
-        "median short: 0.25 s",
         "slow 62%, fast 38%",
     ]
     assert details(Progress(1, 2, 0)) == []
+    never, short = ("other", float("inf")), ("short", 0.25)
+    assert details(Progress(1, 2, 0, median=never)) == ["median other: most rows do not end"]
+    assert details(Progress(1, 2, 0, median=short)) == ["median short: 0.25 s"]
 
 
 def test_progress_of_a_run_counts_and_glances_at_its_rows(folder, write_study):
@@ -495,30 +511,32 @@ def test_progress_of_a_run_counts_and_glances_at_its_rows(folder, write_study):
     last = seen[-1]
     assert (last.done, sum(last.status.values())) == (200, 200)
     lives = np.where(ds["life_censored"], np.inf, ds["life"]).reshape(200, -1)[:, 0]
-    assert np.quantile(lives, 0.49) <= last.medians["life[side=left,depth=0.5]"]
-    assert last.medians["life[side=left,depth=0.5]"] <= np.quantile(lives, 0.51)
+    label, median = last.median
+    assert label == "life[side=left,depth=0.5]"
+    assert np.quantile(lives, 0.49) <= median <= np.quantile(lives, 0.51)
     slow = float((ds["regime"] == 0).mean())
     assert last.shares == pytest.approx({"slow": slow, "fast": 1 - slow})
 
 
+def test_progress_tells_of_no_life_that_the_study_does_not_show(folder, write_study):
+    more = '[analysis]\noutputs = ["work"]'
+    path = write_study(model="kinds", uncertain=("x1", "x2"), samples=20, more=more)
+    seen = []
+    api.run(api.load_study(path, "sample_models:KINDS"), workers=0, progress=seen.append)
+    assert seen[-1].done == 20 and seen[-1].median is None
+
+
 def test_a_terminal_of_80_columns_holds_the_progress(monkeypatch):
     ours, theirs = os.openpty()
-    progress_of = Progress(
-        123_456_789,
-        1_000_000_000,
-        4_567,
-        status={"ok": 1, **{name: 123_456_789 for name in ("non-finite", "raised", "timed-out")}},
-        medians={f"a_life_with_a_long_name[site=middle,depth={i}]": 1e9 for i in range(2)},
-        shares={f"regime-with-a-long-name-{i}": 0.2 for i in range(5)},
-        dashboard="http://127.0.0.1:8787/status",
-    )
+    compiling = Progress(0, 1_000_000_000, 0, compiling=True)
     monkeypatch.setenv("COLUMNS", "80")
     monkeypatch.setenv("TERM", "xterm")
     with os.fdopen(theirs, "w") as terminal:
         monkeypatch.setattr(sys, "stderr", terminal)
         with progress.shown(quiet=False) as show:
-            show(progress_of)
-            time.sleep(0.5)
+            for one in (compiling, MUCH):
+                show(one)
+                time.sleep(0.5)
     out = b""
     with contextlib.suppress(OSError):
         while more := os.read(ours, 65_536):
@@ -527,7 +545,13 @@ def test_a_terminal_of_80_columns_holds_the_progress(monkeypatch):
     text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", out.decode())
     lines = re.split(r"[\r\n]+", text)
     assert max(map(len, lines)) <= 80
-    for words in ("123456789 of 1000000000 rows", "non-finite 123456789", "31.7 years", "status"):
+    for words in (
+        "compiling the model",
+        "123456789 of 1000000000 rows",
+        "non-finite 123456789",
+        "31.7 years",
+        "status",
+    ):
         assert any(words in line for line in lines), words
 
 
@@ -540,6 +564,27 @@ def test_without_a_terminal_progress_is_plain_lines(capsys, monkeypatch):
     assert first == "dask dashboard: http://there/status"
     assert [line.partition(" rows")[0] for line in lines] == ["1 of 4", "4 of 4"]
     assert lines[-1].endswith("0:00 left, 1 failed; raised 1")
+
+
+def test_plain_lines_stay_short(capsys, monkeypatch):
+    monkeypatch.setattr(progress, "_PLAIN_SECONDS", 0.0)
+    with progress.shown(quiet=False) as show:
+        show(MUCH._replace(done=0))
+        show(MUCH)
+        show(MUCH._replace(status={}))
+        show(Progress(1, 4, 0, median=("life", 1.0), shares={"slow": 0.25, "fast": 0.75}))
+    _, *lines = capsys.readouterr().err.splitlines()
+    assert max(map(len, lines)) <= 120
+    assert lines[1].endswith("; non-finite 123456789, raised 1234567")
+    assert lines[2].endswith("; median a_life_with_a_name[depth=2]: 31.7 years")
+    assert lines[3].endswith("failed; median life: 1 s; slow 25%, fast 75%")
+
+
+def test_a_model_that_compiles_is_told_of_once(capsys):
+    with progress.shown(quiet=False) as show:
+        for _ in range(3):  # one kernel after the other
+            show(Progress(0, 4, 0, compiling=True))
+    assert capsys.readouterr().err == "compiling the model: once, and it may take a minute\n"
 
 
 def test_progress_is_a_sentence():

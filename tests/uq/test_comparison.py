@@ -79,6 +79,17 @@ def test_what_is_known_of_the_rows_decides_the_width(estimate, design):
     assert pairs < strangers
 
 
+def test_paired_replicates_tell_a_quantile_apart_as_well_as_all_their_rows_do():
+    # Twice the output: how far its quantile lies from the first is known as well as the first. The
+    # replicates' own quantiles, of 32 rows each, would say something else.
+    one = study(FOUR, method="sobol", samples=32, replicates=8)
+    doubled = one.assign(y=one["y"] * 2)
+    for p in ("0.05", "0.5", "0.95"):
+        found = comparison(one, doubled)["outputs"]["y"]["quantiles"][p]
+        apart, alone = (found[one]["high"] - found[one]["low"] for one in ("difference", "a"))
+        assert apart == pytest.approx(alone, rel=1e-6)
+
+
 def test_the_same_numbers_dealt_out_otherwise_are_reckoned_with_at_their_worst():
     three = {name: law for name, law in FOUR.items() if name != "x3"}
     found = comparison(study(FOUR), study(three))
@@ -266,7 +277,8 @@ CASES = {
 def test_differences_hold_the_truth_as_often_as_they_say(case):
     design, other_design, apart = CASES[case]
     laws = FOUR, FOUR | {"x4": NARROW}
-    truth = api.compare(*(study(one, samples=400_000, seed=i) for i, one in enumerate(laws)))
+    many = {"method": "sobol", "samples": 2**18}
+    truth = api.compare(*(study(one, **many) for one in laws))
     held = {key: [] for key in truth.index}
     for seed in range(200):
         found = api.compare(

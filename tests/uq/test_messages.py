@@ -305,6 +305,7 @@ def test_all_faults_are_told_at_once_in_the_order_of_the_file():
         ("[study]\nname = \n", "Invalid value (at line 2, column 8)"),
         ("[study]\n[study]\n", "Cannot declare ('study',) twice (at line 2, column 7)"),
         ('[study]\nname = "a"\nname = "b"\n', "Cannot overwrite a value (at line 3"),
+        ("a = [-inf, 1e400]", "not valid TOML: 1e400 is too large for a number"),
         ("a = " + "[" * 5000, "not valid TOML: "),
         ("a = 1" + "0" * 5000, "not valid TOML: "),
     ],

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import uq
-from uq import results, runner
+from uq import job, results, runner
 from uq.contract import Status
 from uq.errors import InputError
 from uq.evaluate import KernelError, evaluate
@@ -37,6 +37,11 @@ def test_every_design_gives_the_same_bits_for_any_chunk_size(write_study, design
     whole = runner.compute(study, workers=0)
     for chunk_rows in (1, 7, 1000):
         assert whole.identical(runner.compute(study, workers=0, chunk_rows=chunk_rows))
+
+
+@pytest.mark.parametrize(("seconds", "rows"), [(1e-3, 1024), (0.004, 1024), (0.1, 50), (20.0, 1)])
+def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_study, seconds, rows):
+    assert job.chunk_rows(work_of(load_study(write_study())), seconds) == rows
 
 
 @settings(

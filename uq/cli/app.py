@@ -162,7 +162,7 @@ def run(
         int | None, typer.Option(min=1, metavar="N", help="Instead of the study's own.")
     ] = None,
     chunk_rows: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="Rows per task; default: 0.5 s of work.")
+        int | None, typer.Option(min=1, metavar="N", help="Rows per task; default: 0.5 to 5 s.")
     ] = None,
     row_limit: RowLimit = None,
     model: ModelReference = None,

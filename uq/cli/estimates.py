@@ -125,7 +125,13 @@ def twin(result: Path, model: str | None, json: bool) -> None:
             header=("", "value", "95 % interval", "without twin", "worth"),
         )
     console.print()
-    paragraph("worth: how many times more rows without twin would do the same", indent=0)
+    per_row = 1 + found["cheap_rows"] / found["rows"]
+    paragraph(
+        "worth: how many times more rows without twin would do the same. The twin's own rows are"
+        " not counted as cost: it pays where one of them takes less than (worth - 1) /"
+        f" {per_row:.3g} of the time of a row",
+        indent=0,
+    )
 
 
 def _interval(entry: dict[str, Any]) -> str:

@@ -11,6 +11,8 @@ from uq.job import Progress, Report
 from uq.wording import duration, number
 
 _PLAIN_SECONDS = 10.0
+_PLAIN_WIDTH = 120
+_COMPILING = "compiling the model: once, and it may take a minute"
 
 
 @contextmanager
@@ -43,17 +45,30 @@ class _Plain:
         self._last = time.monotonic()
         self._pace = Pace()
         self._dashboard = ""
+        self._compiling = False
 
     def __call__(self, progress: Progress) -> None:
+        if progress.compiling:
+            if not self._compiling:
+                _print(_COMPILING)
+            self._compiling = True
+            return
         now = time.monotonic()
         pace = self._pace(progress, now)
-        if progress.dashboard != self._dashboard:
+        if progress.dashboard not in ("", self._dashboard):
             self._dashboard = progress.dashboard
-            print(f"dask dashboard: {self._dashboard}", file=sys.stderr, flush=True)
+            _print(f"dask dashboard: {self._dashboard}")
         if now - self._last >= _PLAIN_SECONDS:
             self._last = now
-            lines = [sentence(progress, pace), *details(progress)]
-            print("; ".join(lines), file=sys.stderr, flush=True)
+            line = sentence(progress, pace)
+            for more in details(progress):
+                if len(line) + len(more) + 2 <= _PLAIN_WIDTH:
+                    line += f"; {more}"
+            _print(line)
+
+
+def _print(line: str) -> None:
+    print(line, file=sys.stderr, flush=True)
 
 
 def _moving() -> Iterator[Report]:
@@ -73,11 +88,14 @@ def _moving() -> Iterator[Report]:
 
         def show(progress: Progress) -> None:
             nonlocal dashboard
+            if progress.compiling:
+                bar.update(task, description=_COMPILING)
+                return
             text = sentence(progress, pace(progress, time.monotonic()))
             bar.update(task, completed=progress.done, total=progress.total, description=text)
             lines = [Text(line, no_wrap=True, overflow="ellipsis") for line in details(progress)]
             live.update(Group(bar, *lines))
-            if progress.dashboard != dashboard:
+            if progress.dashboard not in ("", dashboard):
                 dashboard = progress.dashboard
                 live.console.print(f"dask dashboard: {dashboard}", markup=False)
 
@@ -98,7 +116,8 @@ def details(progress: Progress) -> list[str]:
     lines = []
     if lost := {label: n for label, n in progress.status.items() if n and label != "ok"}:
         lines.append(", ".join(f"{label} {n}" for label, n in lost.items()))
-    for name, median in progress.medians.items():
+    if progress.median is not None:
+        name, median = progress.median
         told = duration(median) or f"{number(median)} s"
         lines.append(f"median {name}: {'most rows do not end' if isinf(median) else told}")
     if progress.shares:

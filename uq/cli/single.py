@@ -14,6 +14,7 @@ from uq.cli.printing import duration, grid, heading, number, print_json
 from uq.contract import Model, Status
 from uq.elements import elements_of
 from uq.errors import InputError
+from uq.literals import read_number
 from uq.registry import find_model
 from uq.simulation import holds_trajectory
 from uq.simulation import simulate as run_once
@@ -137,9 +138,11 @@ def _meaning(ds: xr.Dataset, status: Status) -> str:
 def _number(text: str) -> tuple[str, float]:
     name, _, value = text.partition("=")
     try:
-        return name.strip(), float(value)
+        return name.strip(), read_number(value)
     except ValueError:
         raise InputError(f"--set {text}: write it as NAME=VALUE with a number") from None
+    except OverflowError as error:
+        raise InputError(f"--set {text}: {error}") from None
 
 
 def literal(text: str) -> tuple[str, Any]:
@@ -148,7 +151,9 @@ def literal(text: str) -> tuple[str, Any]:
     if not equals:
         raise InputError(f"--setting {text}: write it as NAME=VALUE")
     try:
-        parsed = tomllib.loads(f"value = {value}")
+        parsed = tomllib.loads(f"value = {value}", parse_float=read_number)
     except tomllib.TOMLDecodeError:
         return name.strip(), value.strip()
+    except OverflowError as error:
+        raise InputError(f"--setting {text}: {error}") from None
     return name.strip(), parsed["value"] if len(parsed) == 1 else value.strip()

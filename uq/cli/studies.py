@@ -124,10 +124,11 @@ def carried_out(
         def report(so_far: Progress) -> None:
             nonlocal computed
             computed = so_far.done - so_far.found
-            say_when_interrupted(
-                f"interrupted after {so_far.done} of {so_far.total} rows, kept in "
-                f"{folder_of(target)}; the same command goes on from there"
-            )
+            if so_far.done:
+                say_when_interrupted(
+                    f"interrupted after {so_far.done} of {so_far.total} rows, kept in "
+                    f"{folder_of(target)}; the same command goes on from there"
+                )
             show(so_far)
 
         def say(line: str) -> None:

@@ -1,9 +1,10 @@
 """The folder beside a result in which its rows are kept until it is complete."""
 
-import os
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from uq.errors import InputError, RunError
@@ -13,13 +14,26 @@ from uq.store.journal import read
 from uq.store.records import RowsRecord, RunRecord, understood
 
 JOURNAL, LOCK = "journal", "lock"
+_LOCK_SECONDS = 0.5  # some disks need a second attempt to take over a lock
 
 
 class Holder(NamedTuple):
-    """The process that writes into a folder."""
+    """The process that writes into a folder, as filelock names it.
+
+    Attributes
+    ----------
+    host : str
+        In a container with its number space for processes: "name?pidns-number".
+    pid : int
+    """
 
     host: str
     pid: int
+
+    @property
+    def computer(self) -> str:
+        """Name of the computer alone."""
+        return self.host.partition("?")[0]
 
 
 def folder_of(path: Path) -> Path:
@@ -37,7 +51,7 @@ def history(folder: Path) -> list[RunRecord | RowsRecord]:
 
 
 def holder(folder: Path) -> Holder | None:
-    """Return who holds the lock of a folder, whether that process is alive or not."""
+    """Return who wrote the lock of a folder, whether that process is alive or not."""
     try:
         pid, host = (folder / LOCK).read_text("utf-8", "replace").splitlines()[:2]
         return Holder(host, int(pid))
@@ -45,17 +59,24 @@ def holder(folder: Path) -> Holder | None:
         return None
 
 
-def is_alive(held: Holder) -> bool | None:
-    """Return whether a process runs, None if it cannot be asked from this host."""
-    if held.host != os.uname().nodename:
-        return None
-    try:
-        os.kill(held.pid, 0)
-    except ProcessLookupError:
-        return False
-    except (PermissionError, OverflowError):
-        pass
-    return True
+def is_held(folder: Path) -> bool:
+    """Return whether a process has the lock of a folder, or may have it on another computer.
+
+    One that has ended does not, though its number may be in use again: a copy of the lock is tried
+    to be taken over, which disturbs nobody.
+    """
+    from filelock import SoftFileLock, Timeout
+
+    with TemporaryDirectory(prefix="uq-") as place:
+        copy = Path(place) / LOCK
+        try:
+            shutil.copyfile(folder / LOCK, copy)
+            with SoftFileLock(copy, timeout=_LOCK_SECONDS):
+                return False
+        except FileNotFoundError:
+            return False
+        except Timeout:
+            return True
 
 
 @contextmanager
@@ -90,7 +111,7 @@ def locked(folder: Path) -> Iterator[None]:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             flush(folder.parent)
-            lock.acquire(blocking=False)
+            lock.acquire(timeout=_LOCK_SECONDS)
         except Timeout:
             raise InputError(_held(folder)) from None
         except OSError as error:
@@ -101,11 +122,19 @@ def locked(folder: Path) -> Iterator[None]:
 def _held(folder: Path) -> str:
     held = holder(folder)
     if held is None:
-        return f"{folder}: in use by another process; try again in a moment"
-    line = f"{folder}: in use by process {held.pid} on {held.host}"
-    if is_alive(held) is None:
+        return f"{folder}: in use by another process; if there is none, remove {folder / LOCK}"
+    line = f"{folder}: in use by process {held.pid} on {held.computer}"
+    if held.host != _this_host():
         line += f"; if that has ended, remove {folder / LOCK}"
     return line
+
+
+def _this_host() -> str:
+    from filelock import SoftFileLock
+
+    with TemporaryDirectory(prefix="uq-") as place, SoftFileLock(Path(place) / LOCK):
+        held = holder(Path(place))
+        return held.host if held else ""
 
 
 def clear(folder: Path) -> None:

@@ -1,0 +1,68 @@
+"""Differences between two studies, whose rows or replicates are pairs or strangers."""
+
+from functools import cache
+
+import numpy as np
+
+from benchmarks.coverage.problems import computed, study_of, with_seed
+from benchmarks.coverage.tally import Tally
+from uq.comparison import comparison
+
+UNIFORM = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
+WIDE = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
+NARROW = WIDE | {"x4": {"distribution": "uniform", "lower": 0.3, "upper": 0.7}}
+THRESHOLD = 4.0
+QUANTILES = ("0.05", "0.5", "0.95")
+PAIRS = {
+    "200 independent rows, pairs": (("monte-carlo", 200), 0),
+    "200 independent rows, strangers": (("monte-carlo", 200), 1_000_000),
+    "sobol, 8 replicates of 64 rows, pairs": (("sobol", 64, 8), 0),
+}
+
+
+def differences(repetitions):
+    """Count what `uq compare` prints of two studies, one input of which scatters less."""
+    lines = []
+    for how, (design, apart) in PAIRS.items():
+        tally = Tally(f"linear function with one input of less scatter, {how}", REASONS)
+        truth = _truth()
+        wide, narrow = _studies(*design)
+        for seed in range(repetitions):
+            pair = computed(with_seed(wide, seed)), computed(with_seed(narrow, seed + apart))
+            found = comparison(*pair)["outputs"]["y"]
+            entries = {f"quantile {p}": found["quantiles"][p] for p in QUANTILES} | {
+                "sd": found["sd"],
+                f"P(> {THRESHOLD})": found["thresholds"][str(THRESHOLD)]["above"],
+            }
+            if design[0] != "sobol":  # whose points have this mean to rounding: nothing to count
+                entries["mean"] = found["mean"]
+            for name, entry in entries.items():
+                tally.entry(f"difference of {name}", truth[name], entry["difference"])
+            tally.entry("ratio of sd", truth["ratio"], found["sd"]["ratio"])
+        lines += tally.lines()
+    return lines
+
+
+def _studies(*design):
+    analysis = {"thresholds": {"y": [THRESHOLD]}, "quantiles": [float(p) for p in QUANTILES]}
+    return [
+        study_of(*design, model="linear", laws=laws, analysis=analysis) for laws in (WIDE, NARROW)
+    ]
+
+
+@cache
+def _truth():
+    """Return the differences, from points that integrate shares to 1e-5."""
+    found = []
+    for study in _studies("sobol", 2**18):
+        y = computed(study)["y"].values
+        found.append(
+            {f"quantile {p}": np.quantile(y, float(p)) for p in QUANTILES}
+            | {"mean": y.mean(), "sd": y.std(), f"P(> {THRESHOLD})": np.mean(y > THRESHOLD)}
+        )
+    wide, narrow = found
+    return {name: narrow[name] - wide[name] for name in wide} | {"ratio": narrow["sd"] / wide["sd"]}
+
+
+REASONS = {}
+"""Quantity -> why its coverage is not 95 %."""

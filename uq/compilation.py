@@ -1,0 +1,79 @@
+"""Hearing when numba compiles: it takes a while, for which somebody may wait."""
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
+from types import ModuleType
+from typing import Any
+
+
+@contextmanager
+def compilation(
+    began: Callable[[], object], ended: Callable[[], object] = lambda: None
+) -> Iterator[None]:
+    """Call functions whenever numba begins to compile in this process, and when it is done.
+
+    Parameters
+    ----------
+    began, ended : callable
+        Called in the thread that compiles; what is loaded from the cache does not count.
+    """
+    with ExitStack() as stack:
+
+        def listen() -> None:
+            from numba.core import event
+
+            class Compilation(event.Listener):
+                depth = 0
+
+                def on_start(self, event: Any) -> None:
+                    self.depth += 1
+                    if self.depth == 1:
+                        began()
+
+                def on_end(self, event: Any) -> None:
+                    self.depth -= 1
+                    if self.depth == 0:
+                        ended()
+
+            stack.enter_context(event.install_listener("numba:compile", Compilation()))
+
+        if "numba" in sys.modules:
+            listen()
+        else:  # a model may load it when it computes its first rows
+            stack.enter_context(_when_imported("numba", listen))
+        yield
+
+
+@contextmanager
+def _when_imported(name: str, action: Callable[[], object]) -> Iterator[None]:
+    """Call `action` once a module has been imported, if that happens within the block."""
+
+    class Finder(MetaPathFinder):
+        def find_spec(
+            self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
+        ) -> ModuleSpec | None:
+            if fullname != name:
+                return None
+            sys.meta_path.remove(self)  # what comes behind it finds the module
+            spec = find_spec(name)
+            if spec and spec.loader:
+                execute = spec.loader.exec_module
+
+                def execute_then_act(module: ModuleType) -> None:
+                    execute(module)
+                    action()
+
+                spec.loader.exec_module = execute_then_act  # type: ignore[method-assign]
+            return spec
+
+    finder = Finder()
+    sys.meta_path.insert(0, finder)
+    try:
+        yield
+    finally:
+        if finder in sys.meta_path:
+            sys.meta_path.remove(finder)
