@@ -16,6 +16,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import EngFormatter, LogFormatter
 
 from uq.elements import Element, Floats
@@ -109,7 +110,10 @@ def legend(axes: Axes) -> None:
     """Explain colours and lines below a figure with one panel, where there is anything to say."""
     handles, labels = axes.get_legend_handles_labels()
     if any(labels) and isinstance(axes.figure, Figure):
-        axes.figure.legend(handles, labels, loc="outside lower left", markerscale=1.5)
+        shown = axes.figure.legend(handles, labels, loc="outside lower left", markerscale=1.5)
+        for handle in shown.legend_handles:
+            if isinstance(handle, Line2D) and handle.get_linestyle() == "None":
+                handle.set(markersize=6, alpha=1)  # a point as small as in the figure has no colour
 
 
 @styled

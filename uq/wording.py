@@ -76,21 +76,20 @@ def brief(entry: Entry, per: float = 1.0) -> tuple[str, str]:
     tuple of str
         The interval is "" where there is none.
     """
-    low, high = entry.get("low"), entry.get("high")
-    width = (high - low) / per if low is not None and high is not None else 0.0
-    if not width > 0:
-        value = entry["value"]
-        return known(entry, per=per) if value is None else f"{value / per:.3g}", interval(
-            entry, per
-        )
-    decimals = -floor(log10(width / 3))
-    ends = {end: round(entry[end] / per, decimals) + 0.0 for end in ("value", "low", "high")}
-    return number(ends["value"]), f"{number(ends['low'])} to {number(ends['high'])}"
+    found = [entry.get(key) for key in ("value", "low", "high")]
+    if None in found or not found[2] > found[1]:
+        told = known(entry, per=per) if found[0] is None else f"{found[0] / per:.3g}"
+        return told, interval(entry, per)
+    decimals = -floor(log10((found[2] - found[1]) / per / 3))
+    value, low, high = (number(round(one / per, decimals) + 0.0) for one in found)
+    return value, f"{low} to {high}"
 
 
 def percent(share: float) -> str:
-    """Return a share in per cent: to a tenth, or to two digits where it is smaller."""
-    return f"{100 * share:.1f} %" if share >= 0.01 or share == 0 else f"{100 * share:.2g} %"
+    """Return a share in per cent: to a tenth, or more exactly where it is close to none or all."""
+    if 0 < share < 0.01:
+        return f"{100 * share:.2g} %"
+    return f"{100 * share:.{2 if 0.999 <= share < 1 else 1}f} %"
 
 
 def index(entry: Entry, key: str, kind: str) -> str:

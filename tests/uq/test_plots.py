@@ -319,3 +319,9 @@ def test_long_numbers_have_room():
     roomy(axes, ticks=3)
     shown = [tick for tick in axes.get_xticks() if 7e4 <= tick <= 5.2e5]
     assert 1 <= len(shown) <= 2
+
+
+def test_colours_of_points_are_seen_in_the_legend():
+    (shown,) = plots.pairs(kinds(samples=200)).legends
+    assert len(shown.legend_handles) == 2
+    assert all(handle.get_markersize() >= 6 for handle in shown.legend_handles)

@@ -241,13 +241,6 @@ def test_an_input_leads_only_where_it_is_told_from_one_without_effect():
     assert words.count("matters most to") == 1
 
 
-def test_no_input_leads_while_intervals_overlap():
-    words = read(linear("saltelli", samples=4, replicates=2)).plain_words
-    assert "Which input matters most to" in words and "is not settled" in words
-    words = read(linear("saltelli", samples=64, replicates=8)).plain_words
-    assert "Independent input (x_4) matters most to" in words
-
-
 def test_of_an_output_without_any_value_nothing_is_drawn():
     ds = linear(samples=32, settings={"fail_above": -1.0})
     found = read(ds)

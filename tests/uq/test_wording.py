@@ -14,6 +14,7 @@ from uq.wording import brief, index, percent
         (1.42e-4, 1.39e-4, 1.45e-4, ("0.000142", "0.000139 to 0.000145")),
         (0.012345, None, None, ("0.0123", "")),
         (2.0, 2.0, 2.0, ("2", "2 to 2")),
+        (None, 1.0, 2.0, ("-", "1 to 2")),
     ],
 )
 def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, told):
@@ -23,9 +24,10 @@ def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, 
 def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
     assert index({"value": -0.0002}, "value", "S1") == "0.000"
     assert index({"value": -0.0002}, "value", "mu") == "-0.0002"
-    assert [percent(share) for share in (0.0, 1 / 6000, 0.769, 1.0)] == [
+    assert [percent(share) for share in (0.0, 1 / 6000, 0.769, 0.9999, 1.0)] == [
         "0.0 %",
         "0.017 %",
         "76.9 %",
+        "99.99 %",
         "100.0 %",
     ]

@@ -40,6 +40,8 @@ def regime_table(summary: Summary) -> Table:
 
 
 def _share(entry: Mapping[str, Any]) -> Cell:
+    if entry["share"] is None:
+        return Cell("-")
     ends = [entry[end] for end in ("low", "high")]
     interval = "" if None in ends else " to ".join(map(percent, ends))
     return Cell(percent(entry["share"]), interval.replace(" % to", " to"), entry["share"])
