@@ -76,7 +76,7 @@ def brief(entry: Entry, per: float = 1.0) -> tuple[str, str]:
     tuple of str
         The interval is "" where there is none.
     """
-    found = [entry.get(key) for key in ("value", "low", "high")]
+    found: list[Any] = [entry.get(key) for key in ("value", "low", "high")]
     if None in found or not found[2] > found[1]:
         told = known(entry, per=per) if found[0] is None else f"{found[0] / per:.3g}"
         return told, interval(entry, per)
