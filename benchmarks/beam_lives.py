@@ -17,8 +17,8 @@ from models.beam.batch import initial_gaps
 from models.beam.looks import changes_of, confirmed_regimes
 from models.beam.modal import beams
 from models.beam.parameters import REGIMES, Params, Settings
-from uq.sampling import row_block
-from uq.study import load_study
+from uq.rows.sampling import row_block
+from uq.study.definition import load_study
 
 STUDIES = Path(__file__).parent.parent / "studies"
 CASES = (("beam-lifetime-561", 0.02), ("beam-lifetime-561", 0.04), ("beam-lifetime", 0.01))

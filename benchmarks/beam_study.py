@@ -20,8 +20,8 @@ from benchmarks import newmark
 from models.beam import MODEL, exact
 from models.beam.parameters import REGIMES, Params, Settings
 from tests.models.beam.incremental import follow
-from uq.sampling import row_block
-from uq.study import load_study
+from uq.rows.sampling import row_block
+from uq.study.definition import load_study
 
 STUDIES = Path(__file__).parent.parent / "studies"
 DEPTH = 2.5e-4  # [m], one initial gap

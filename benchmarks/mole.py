@@ -23,8 +23,8 @@ from models.mole.lane_rows import SCALES
 from models.mole.parameters import Params
 from models.mole.response import Machines
 from models.mole.system import mole
-from uq.sampling import row_block
-from uq.study import load_study
+from uq.rows.sampling import row_block
+from uq.study.definition import load_study
 
 try:
     from benchmarks.mole_taylor import Taylor

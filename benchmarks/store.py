@@ -29,9 +29,10 @@ x4 = {distribution = "uniform", lower = 0.0, upper = 1.0}
 """
 
 IN_MEMORY = """
-from uq import runner, store
+from uq import store
+from uq.running import runner
 from uq.cli import main
-from uq.results import open_result
+from uq.rows.results import open_result
 
 def run(study, output, workers, scheduler, chunk_rows, row_limit, progress, **more):
     ds = runner.compute(study, workers, scheduler, chunk_rows, progress, row_limit)

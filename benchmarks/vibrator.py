@@ -20,8 +20,8 @@ from models.vibrator.machine import prepare
 from models.vibrator.parameters import Params
 from models.vibrator.synchronous import Machines, propose
 from models.vibrator.system import systems
-from uq.sampling import row_block
-from uq.study import load_study
+from uq.rows.sampling import row_block
+from uq.study.definition import load_study
 
 try:
     from benchmarks.taylor import Taylor

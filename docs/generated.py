@@ -16,10 +16,8 @@ from pydantic import BaseModel
 
 from uq.cli.app import app
 from uq.contract import Status
-from uq.designs import DESIGNS, FOR_DEPENDENT_INPUTS
-from uq.reading import read_study_text
-from uq.registry import find_model
-from uq.study_file import (
+from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS
+from uq.study.file import (
     LAWS,
     AnalysisTable,
     DependenceTable,
@@ -28,6 +26,8 @@ from uq.study_file import (
     Tied,
     Until,
 )
+from uq.study.reading import read_study_text
+from uq.study.registry import find_model
 
 MACHINES = ("beam", "vibrator", "mole")
 KNOWN_ANSWERS = ("ishigami", "g-function", "linear", "exponential-wear")

@@ -9,9 +9,9 @@ import pytest
 
 from uq.columns import censored_name
 from uq.contract import Kind, Parameter, Setting, Status
-from uq.evaluate import evaluate
-from uq.registry import find_model, model_names
-from uq.values import read_settings
+from uq.inputs.values import read_settings
+from uq.rows.evaluate import evaluate
+from uq.study.registry import find_model, model_names
 
 RESERVED = {"sample", "replicate", "group", "block", "status", "trajectory", "time", "quantity"}
 TIME_UNITS = {"days", "hours", "minutes", "seconds", "milliseconds", "microseconds", "nanoseconds"}

@@ -13,8 +13,8 @@ import yaml
 
 import uq as public
 from uq.errors import InputError
-from uq.registry import find_model, model_names
-from uq.study import study_from_text
+from uq.study.definition import study_from_text
+from uq.study.registry import find_model, model_names
 
 HOUSE = Path(__file__).parents[1]
 sys.path.insert(0, str(HOUSE / "docs"))

@@ -7,23 +7,23 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from uq.attraction import basins
-    from uq.comparison import compare
-    from uq.convergence import enough, running_estimates
-    from uq.elements import labels
-    from uq.indices import sensitivity
-    from uq.life_fit import life_fits
-    from uq.lifetime import survival
-    from uq.motion_plot import plot_history, plot_phase_portrait, plot_section
-    from uq.overview import summary
-    from uq.regime_table import regimes
-    from uq.reliability import rare_event
-    from uq.response_plot import plot_basins, plot_bifurcation, plot_curve
-    from uq.results import open_result
-    from uq.runner import run
-    from uq.simulation import simulate
-    from uq.study import load_study
-    from uq.twin import two_fidelities
+    from uq.analysis.comparison import compare
+    from uq.analysis.convergence import enough, running_estimates
+    from uq.analysis.life_fit import life_fits
+    from uq.analysis.lifetime import survival
+    from uq.analysis.overview import summary
+    from uq.analysis.regime_table import regimes
+    from uq.analysis.twin import two_fidelities
+    from uq.drawing.motion_plot import plot_history, plot_phase_portrait, plot_section
+    from uq.drawing.response_plot import plot_basins, plot_bifurcation, plot_curve
+    from uq.indices.sensitivities import sensitivity
+    from uq.rows.elements import labels
+    from uq.rows.results import open_result
+    from uq.running.attraction import basins
+    from uq.running.reliability import rare_event
+    from uq.running.runner import run
+    from uq.running.simulation import simulate
+    from uq.study.definition import load_study
 
 __all__ = [
     "basins",
@@ -51,28 +51,28 @@ __all__ = [
 ]
 
 _MODULES = {
-    "basins": "attraction",
-    "compare": "comparison",
-    "enough": "convergence",
-    "labels": "elements",
-    "life_fits": "life_fit",
-    "load_study": "study",
-    "open_result": "results",
-    "plot_basins": "response_plot",
-    "plot_bifurcation": "response_plot",
-    "plot_curve": "response_plot",
-    "plot_history": "motion_plot",
-    "plot_phase_portrait": "motion_plot",
-    "plot_section": "motion_plot",
-    "rare_event": "reliability",
-    "regimes": "regime_table",
-    "run": "runner",
-    "running_estimates": "convergence",
-    "sensitivity": "indices",
-    "simulate": "simulation",
-    "summary": "overview",
-    "survival": "lifetime",
-    "two_fidelities": "twin",
+    "basins": "running.attraction",
+    "compare": "analysis.comparison",
+    "enough": "analysis.convergence",
+    "labels": "rows.elements",
+    "life_fits": "analysis.life_fit",
+    "load_study": "study.definition",
+    "open_result": "rows.results",
+    "plot_basins": "drawing.response_plot",
+    "plot_bifurcation": "drawing.response_plot",
+    "plot_curve": "drawing.response_plot",
+    "plot_history": "drawing.motion_plot",
+    "plot_phase_portrait": "drawing.motion_plot",
+    "plot_section": "drawing.motion_plot",
+    "rare_event": "running.reliability",
+    "regimes": "analysis.regime_table",
+    "run": "running.runner",
+    "running_estimates": "analysis.convergence",
+    "sensitivity": "indices.sensitivities",
+    "simulate": "running.simulation",
+    "summary": "analysis.overview",
+    "survival": "analysis.lifetime",
+    "two_fidelities": "analysis.twin",
 }
 
 

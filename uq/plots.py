@@ -7,21 +7,21 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from uq.convergence import running_estimates
-from uq.convergence_plot import convergence, index_convergence
-from uq.elements import analysis_of, independent_rows, shown_outputs
-from uq.elements_plot import occurring_regimes
+from uq.analysis.convergence import running_estimates
+from uq.analysis.statistics import summarise
+from uq.drawing.convergence_plot import convergence, index_convergence
+from uq.drawing.elements_plot import occurring_regimes
+from uq.drawing.figure import file_name, write
+from uq.drawing.histogram_plot import histogram, histogram_by_regime
+from uq.drawing.index_plot import bars, index_bars, subject
+from uq.drawing.input_plot import inputs
+from uq.drawing.lifetime_plot import lifetime
+from uq.drawing.quantile_plot import quantile_table
+from uq.drawing.scatter_plot import pairs, scatter
 from uq.errors import InputError
-from uq.figure import file_name, write
-from uq.histogram_plot import histogram, histogram_by_regime
-from uq.independent_inputs import independent_inputs
-from uq.index_plot import bars, index_bars, subject
-from uq.indices import methods, sensitivities
-from uq.input_plot import inputs
-from uq.lifetime_plot import lifetime
-from uq.quantile_plot import quantile_table
-from uq.scatter_plot import pairs, scatter
-from uq.statistics import summarise
+from uq.indices.independent_inputs import independent_inputs
+from uq.indices.sensitivities import methods, sensitivities
+from uq.rows.elements import analysis_of, independent_rows, shown_outputs
 
 __all__ = [
     "convergence",

@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.coverage.problems import computed, study_of, with_seed
 from benchmarks.coverage.tally import Tally
-from uq.comparison import comparison
+from uq.analysis.comparison import comparison
 
 UNIFORM = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
 WIDE = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)

@@ -20,12 +20,12 @@ from benchmarks.coverage.problems import (
     with_seed,
 )
 from benchmarks.coverage.tally import Tally
-from uq import stopping
-from uq.design_points import design_points, drawn_around
+from uq.analysis.twin import with_twin
 from uq.intervals import UNKNOWN
-from uq.reliability import log_scatter_interval
-from uq.subset import subset_simulation
-from uq.twin import with_twin
+from uq.rows import stopping
+from uq.running.design_points import design_points, drawn_around
+from uq.running.reliability import log_scatter_interval
+from uq.running.subset import subset_simulation
 
 UNIFORMS = {
     name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")

@@ -16,8 +16,8 @@ from scipy import stats
 
 from benchmarks.coverage.problems import ISHIGAMI, ISHIGAMI_LAW, jump, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.indices import sensitivities
-from uq.trajectories import LEVELS, STEP, TAIL
+from uq.designs.trajectories import LEVELS, STEP, TAIL
+from uq.indices.sensitivities import sensitivities
 
 NAMES = ("x1", "x2", "x3")
 LAWS = dict.fromkeys(NAMES, ISHIGAMI_LAW)

@@ -7,7 +7,7 @@ from scipy.integrate import quad
 from benchmarks.coverage.indices import LAWS
 from benchmarks.coverage.problems import ISHIGAMI, SLOWEST, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.indices import sensitivities
+from uq.indices.sensitivities import sensitivities
 
 WEIGHTS = (0.0, 1.0, 4.5, 9.0, 99.0)
 """Of the g-function's first five inputs; the last three are as the fifth."""

@@ -8,9 +8,9 @@ from scipy import stats
 
 from benchmarks.coverage.problems import LIFE, never_cdf, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.life_fit import life_fits
-from uq.lifetime import survival
-from uq.statistics import summarise
+from uq.analysis.life_fit import life_fits
+from uq.analysis.lifetime import survival
+from uq.analysis.statistics import summarise
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
 TIMES = (0.3, 0.8)

@@ -16,7 +16,7 @@ from benchmarks.coverage.problems import (
     study_of,
 )
 from benchmarks.coverage.tally import Tally
-from uq.statistics import summarise
+from uq.analysis.statistics import summarise
 
 QUANTILES = (0.05, 0.5, 0.95)
 THRESHOLDS = {"ishigami": [9.0], "jump": [2.5], "life": [1.0]}

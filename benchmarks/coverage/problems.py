@@ -8,11 +8,11 @@ import numpy as np
 from scipy import stats
 from scipy.optimize import brentq
 
-from uq import results, sampling
 from uq.contract import Model, Output, Parameter
-from uq.evaluate import evaluate
 from uq.literals import toml
-from uq.study import study_from_text
+from uq.rows import results, sampling
+from uq.rows.evaluate import evaluate
+from uq.study.definition import study_from_text
 
 # One model for all: Ishigami's function, a jump between two regimes, lives with a heavy tail ------
 

@@ -15,7 +15,14 @@ from uq.contract import Model, Output, Parameter, Status
 
 # What the command loads when it needs it: loaded once, before the processes are forked, and before
 # they become another user, who may not see where Python lives.
-MODULES = ("dask.array", "filelock", "netCDF4", "scipy.stats", "models.analytic", "uq.statistics")
+MODULES = (
+    "dask.array",
+    "filelock",
+    "netCDF4",
+    "scipy.stats",
+    "models.analytic",
+    "uq.analysis.statistics",
+)
 for module in MODULES:
     import_module(module)
 "".encode("utf-8-sig")

@@ -7,19 +7,20 @@ import subprocess
 import sys
 import threading
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
 
-from uq import cluster, flight, isolation, runner
 from uq.contract import Status
 from uq.errors import InputError
-from uq.evaluate import KernelError
-from uq.results import open_result
-from uq.study import load_study
-from uq.work import work_of
+from uq.rows.evaluate import KernelError
+from uq.rows.results import open_result
+from uq.rows.work import work_of
+from uq.running import cluster, flight, isolation, runner
+from uq.study.definition import load_study
 
 COMMAND = Path(sys.executable).with_name("uq")
 PATIENCE = 60.0
@@ -81,9 +82,9 @@ class Killer:
 @pytest.mark.parametrize(
     ("fault", "module", "times", "all_of_them"),
     [
-        ("worker killed", "uq.worker", 3, False),
-        ("all workers killed", "uq.worker", 2, True),
-        ("process of a worker killed", "uq.child", 4, True),
+        ("worker killed", "uq.running.worker", 3, False),
+        ("all workers killed", "uq.running.worker", 2, True),
+        ("process of a worker killed", "uq.running.child", 4, True),
     ],
 )
 def test_killed_processes_leave_no_trace(
@@ -108,12 +109,14 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monke
         lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
     )
 
+    workers = partial(processes, "uq.running.worker")
+
     def kill_thrice():
         for _ in range(3):
             # A worker whose child is there is about to compute.
-            wait_for(lambda: [w for w in processes("uq.worker") if processes("uq.child", w)])
+            wait_for(lambda: [w for w in workers() if processes("uq.running.child", w)])
             time.sleep(0.5)
-            for worker in processes("uq.worker"):
+            for worker in workers():
                 worker.kill()
                 worker.wait(PATIENCE)
 
@@ -331,7 +334,7 @@ def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
 
     def kill_on():
         while not stop.wait(0.05):
-            for process in processes("uq.worker"):
+            for process in processes("uq.running.worker"):
                 process.send_signal(signal.SIGKILL)
 
     injected("workers killed again and again")

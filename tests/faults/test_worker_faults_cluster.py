@@ -11,9 +11,9 @@ import dask
 import psutil
 import pytest
 
-from uq import cluster, runner
 from uq.errors import InputError, RunError
-from uq.study import load_study
+from uq.running import cluster, runner
+from uq.study.definition import load_study
 
 PATIENCE = 60.0
 FAULTY = "faulty_models:FAULTY"
@@ -195,4 +195,4 @@ def test_workers_left_alone_keep_no_process(start, study):
     there = start()
     patiently(there.address, study, chunk_rows=10)
     family = psutil.Process(there.started[1].pid).children(recursive=True)
-    assert not [child for child in family if "uq.child" in child.cmdline()]
+    assert not [child for child in family if "uq.running.child" in child.cmdline()]

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from uq import results, sampling
-from uq.evaluate import evaluate
 from uq.literals import toml
-from uq.study import study_from_text
+from uq.rows import results, sampling
+from uq.rows.evaluate import evaluate
+from uq.study.definition import study_from_text
 
 UNIFORM = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
 

@@ -17,8 +17,8 @@ import uq as api
 from uq.cli import progress
 from uq.cli.printing import duration, print_json
 from uq.cli.progress import details, sentence
-from uq.job import Progress
-from uq.registry import model_names
+from uq.running.job import Progress
+from uq.study.registry import model_names
 
 
 def everything(folder):

@@ -15,11 +15,12 @@ import pytest
 import sample_models
 
 import uq
-from uq import cluster, job, provenance, runner
-from uq.child import Task
+from uq import provenance
 from uq.errors import InputError
-from uq.study import load_study
-from uq.task import evaluate_rows
+from uq.running import cluster, job, runner
+from uq.running.child import Task
+from uq.running.task import evaluate_rows
+from uq.study.definition import load_study
 
 
 @pytest.fixture
@@ -32,7 +33,8 @@ def tidy(folder, monkeypatch):
     assert not any(temporary.iterdir())
     assert not [place for place in sys.path if place.startswith(str(temporary))]
     left = [child for child in psutil.Process().children() if child.status() != "zombie"]
-    assert not [child for child in left if {"uq.worker", "uq.child"} & set(child.cmdline())]
+    ours = {"uq.running.worker", "uq.running.child"}
+    assert not [child for child in left if ours & set(child.cmdline())]
 
 
 @pytest.mark.parametrize(
@@ -73,7 +75,7 @@ def test_workers_are_started_for_longer_studies_only(
     write_study, tidy, monkeypatch, seconds, processes
 ):
     monkeypatch.setattr(job, "CHUNK_SECONDS", 0.05)
-    monkeypatch.setattr("uq.computing.SHORT_SECONDS", seconds)
+    monkeypatch.setattr("uq.running.computing.SHORT_SECONDS", seconds)
     monkeypatch.setattr(cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = runner.compute(load_study(path, "sample_models:PROCESS"))
@@ -83,7 +85,7 @@ def test_workers_are_started_for_longer_studies_only(
 def test_a_worker_that_died_is_replaced(tidy):
     def workers():
         living = [one for one in psutil.Process().children() if one.status() != "zombie"]
-        return {child for child in living if "uq.worker" in child.cmdline()}
+        return {child for child in living if "uq.running.worker" in child.cmdline()}
 
     with cluster.local(1) as crew:
         crew.client.wait_for_workers(1)
@@ -189,7 +191,7 @@ def test_a_notebook_with_a_running_event_loop_can_use_workers(write_study, tidy)
 def test_a_worker_ends_with_its_parent(folder):
     program = (
         "import os, time\n"
-        "from uq import cluster\n"
+        "from uq.running import cluster\n"
         "context = cluster.local(1)\n"
         "crew = context.__enter__()\n"
         "crew.client.wait_for_workers(1)\n"

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from uq.code import code_of
+from uq.study.code import code_of
 
 FILES = {
     "__init__.py": "",

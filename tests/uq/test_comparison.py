@@ -9,11 +9,11 @@ from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_ou
 from scipy import stats
 
 import uq as api
-from uq.comparison import comparison
+from uq.analysis.comparison import comparison
+from uq.analysis.statistics import summarise
 from uq.contract import Status
 from uq.errors import InputError
 from uq.intervals import wilson_interval
-from uq.statistics import summarise
 from uq.store.files import write_result
 from uq.two_samples import Estimate, difference, sd_interval
 

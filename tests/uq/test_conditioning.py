@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from uq.conditioning import law_problem, ppf_within
 from uq.contract import Parameter
-from uq.study_file import LAW
+from uq.inputs.conditioning import law_problem, ppf_within
+from uq.study.file import LAW
 
 LAWS = {
     "uniform": {"lower": 2.0, "upper": 5.0},

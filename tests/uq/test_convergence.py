@@ -7,10 +7,10 @@ import pytest
 from computed import kinds, linear, with_output
 
 from uq import store
-from uq.convergence import enough, running_estimates
+from uq.analysis.convergence import enough, running_estimates
+from uq.analysis.statistics import summarise
 from uq.errors import InputError
-from uq.indices import sensitivities
-from uq.statistics import summarise
+from uq.indices.sensitivities import sensitivities
 
 
 @pytest.mark.parametrize(

@@ -12,11 +12,11 @@ from computed import UNIFORM, asking, computed, study_of, with_output, with_seed
 from scipy import stats
 from scipy.optimize import brentq
 
-from uq.indices import sensitivities
-from uq.life_fit import life_fits
-from uq.lifetime import survival
-from uq.regime_split import between_share
-from uq.statistics import summarise
+from uq.analysis.life_fit import life_fits
+from uq.analysis.lifetime import survival
+from uq.analysis.regime_split import between_share
+from uq.analysis.statistics import summarise
+from uq.indices.sensitivities import sensitivities
 
 REPETITIONS = 200
 

@@ -8,9 +8,9 @@ from SALib.sample import fast_sampler
 from SALib.sample import sobol as salib_sobol
 from scipy.stats import kstest, qmc
 
-from uq.designs import DESIGNS, block_names
-from uq.streams import replicate_seed
-from uq.trajectories import STEP
+from uq.designs.streams import replicate_seed
+from uq.designs.table import DESIGNS, block_names
+from uq.designs.trajectories import STEP
 
 SIZE = 64
 DRAWN = [name for name, design in DESIGNS.items() if design.draw is not None]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from uq.study_file import LAW, LAWS
+from uq.study.file import LAW, LAWS
 
 # name -> arguments, mean, standard deviation in closed form
 MOMENTS = {

@@ -8,7 +8,7 @@ import sample_models
 
 from models.analytic import EXPONENTIAL_WEAR, LINEAR
 from uq.contract import Output, Status
-from uq.evaluate import KernelError, evaluate
+from uq.rows.evaluate import KernelError, evaluate
 
 
 def linear(x1, how, start=0):

@@ -6,9 +6,9 @@ import pytest
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 from scipy import stats
 
-from uq import indices as module
 from uq.errors import InputError
-from uq.indices import sensitivities
+from uq.indices import sensitivities as module
+from uq.indices.sensitivities import sensitivities
 
 ISHIGAMI = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 CASES = {

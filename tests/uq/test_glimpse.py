@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from computed import UNIFORM, as_text
 
-from uq.evaluate import evaluate
-from uq.glimpse import Glimpse
-from uq.sampling import row_block
-from uq.study import study_from_text
-from uq.work import work_of
+from uq.rows.evaluate import evaluate
+from uq.rows.glimpse import Glimpse
+from uq.rows.sampling import row_block
+from uq.rows.work import work_of
+from uq.study.definition import study_from_text
 
 
 @pytest.mark.parametrize("sizes", [(100_000,), (1,), (7, 1000, 3), (4096, 1, 4097)])

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from uq import runner
 from uq.errors import InputError
 from uq.literals import plain, plain_line
-from uq.results import open_result
+from uq.rows.results import open_result
+from uq.running import runner
 
 READERS = ("summary", "sensitivity", "plot", "status", "verify")
 ESCAPE = "\x1b[31mred\x1b[0m\x07\x9b2J\u202e[bold]x[/bold]"

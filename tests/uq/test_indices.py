@@ -12,8 +12,8 @@ from scipy import stats
 import uq
 from uq.contract import Status
 from uq.errors import InputError
-from uq.given_data import DUMMIES
-from uq.indices import methods, sensitivities
+from uq.indices.given_data import DUMMIES
+from uq.indices.sensitivities import methods, sensitivities
 
 INPUTS = ("x1", "x2", "x3")
 

@@ -8,14 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from uq.dependence import correlated, matrix_problem
+from uq.analysis.realised import compare, realised_inputs, realised_ranks
+from uq.analysis.statistics import summarise
 from uq.errors import InputError
-from uq.indices import sensitivities
-from uq.realised import compare, realised_inputs, realised_ranks
-from uq.sampling import row_block, rows
-from uq.statistics import summarise
-from uq.study import load_study, study_from_text
-from uq.study_file import LAW
+from uq.indices.sensitivities import sensitivities
+from uq.inputs.dependence import correlated, matrix_problem
+from uq.rows.sampling import row_block, rows
+from uq.study.definition import load_study, study_from_text
+from uq.study.file import LAW
 
 UNIFORM = {"distribution": "uniform", "lower": 0.1, "upper": 0.9}
 BELL = {"distribution": "normal", "mean": 0.5, "sd": 0.05}
@@ -90,7 +90,7 @@ def test_discrete_laws_take_their_values_with_their_weights():
     u=st.lists(st.floats(2.0**-54, 1 - 2.0**-53), min_size=1, max_size=5),
 )
 def test_a_discrete_law_gives_none_but_its_values(values, ends, u):
-    from uq.conditioning import ppf_within
+    from uq.inputs.conditioning import ppf_within
 
     law = LAW.validate_python({"distribution": "discrete-choice", "values": values})
     low, high = sorted(ends)
@@ -458,7 +458,7 @@ def test_check_shows_what_the_rows_make_of_the_laws(uq, write_study):
 
 
 def test_a_figure_shows_each_input_as_stated_and_as_the_rows_have_it():
-    from uq.input_plot import inputs
+    from uq.drawing.input_plot import inputs
 
     entries = {"x1": BELL, "x2": UNIFORM | {"times": "x1"}, "x3": {"equals": "x1"}}
     figure = inputs(computed(study_of(tables(entries, "sobol", 4096))))

@@ -76,7 +76,7 @@ def workers_of(process):
     return [
         child
         for child in psutil.Process(process.pid).children()
-        if "uq.worker" in " ".join(child.cmdline())
+        if "uq.running.worker" in " ".join(child.cmdline())
     ]
 
 
@@ -154,7 +154,7 @@ def test_a_child_that_computes_ends_with_a_process_that_is_killed(started):
     process, mark = started("SLEEPING", seconds=100.0)
     wait_until(mark.exists)
     children = psutil.Process(process.pid).children()
-    assert any("uq.child" in child.cmdline() for child in children)
+    assert any("uq.running.child" in child.cmdline() for child in children)
     process.kill()
     alive = psutil.wait_procs(children, PATIENCE)[1]
     for child in alive:

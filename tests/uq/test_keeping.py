@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import uq as api
-from uq import isolation
 from uq.contract import Status
+from uq.running import isolation
 
 RAISING = '[settings]\nfail_above = 0.5\nfail_how = "raise"\n[analysis]\nmax_failed = 1.0'
 

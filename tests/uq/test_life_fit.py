@@ -5,11 +5,11 @@ from computed import asking, linear, with_output
 from scipy import stats
 
 import uq
-from uq import b_lives
+from uq.analysis import b_lives
+from uq.analysis.location_scale import FAMILIES, anderson_darling, fit
+from uq.analysis.statistics import summarise
 from uq.errors import InputError
 from uq.intervals import rows_needed
-from uq.location_scale import FAMILIES, anderson_darling, fit
-from uq.statistics import summarise
 
 WEIBULL = stats.weibull_min(1.7, scale=3e5)
 LOGNORMAL = stats.lognorm(0.6, scale=2e5)

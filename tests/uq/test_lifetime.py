@@ -4,9 +4,9 @@ from computed import asking, kinds, linear, with_output
 from scipy import stats
 
 import uq
+from uq.analysis.lifetime import survival
+from uq.analysis.statistics import summarise
 from uq.errors import InputError
-from uq.lifetime import survival
-from uq.statistics import summarise
 
 
 def lives(values, censored=None, method="monte-carlo", replicates=1):

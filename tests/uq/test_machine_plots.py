@@ -13,8 +13,8 @@ from models.beam.parameters import Params as Beam
 from models.beam.parameters import Settings as BeamSettings
 from models.mole.parameters import Params as Mole
 from models.mole.parameters import Settings as MoleSettings
+from uq.drawing.figure import COLOURS
 from uq.errors import InputError
-from uq.figure import COLOURS
 
 
 def labels(figure):

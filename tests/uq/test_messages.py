@@ -9,7 +9,7 @@ from study_text import ISHIGAMI, UNIFORM, study_text
 
 from uq.errors import InputError
 from uq.literals import toml
-from uq.study import Study, load_study, study_from_text
+from uq.study.definition import Study, load_study, study_from_text
 
 BOUNDS = f"{-pi!r} to {pi!r} [1]"
 

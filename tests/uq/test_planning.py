@@ -6,10 +6,10 @@ import os
 import numpy as np
 import pytest
 
-from uq import planning, runner
-from uq.statistics import summarise
-from uq.study import load_study
-from uq.widths import expected_widths
+from uq.analysis.statistics import summarise
+from uq.analysis.widths import expected_widths
+from uq.running import planning, runner
+from uq.study.definition import load_study
 
 NORMAL = 'distribution = "uniform", lower = 0.0, upper = 1.0'
 

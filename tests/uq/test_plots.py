@@ -8,13 +8,13 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from uq import plots
-from uq.convergence import running_estimates
-from uq.convergence_plot import index_convergence
+from uq.analysis.convergence import running_estimates
+from uq.analysis.statistics import summarise
+from uq.drawing.convergence_plot import index_convergence
+from uq.drawing.figure import file_name, lay_out, powers, roomy, sentence
+from uq.drawing.index_plot import index_bars
 from uq.errors import InputError
-from uq.figure import file_name, lay_out, powers, roomy, sentence
-from uq.index_plot import index_bars
-from uq.indices import sensitivities
-from uq.statistics import summarise
+from uq.indices.sensitivities import sensitivities
 
 
 def words(figure):

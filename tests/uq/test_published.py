@@ -11,7 +11,7 @@ from published import PORTFOLIO_LAWS, portfolio_indices
 from SALib.analyze import shapley as salib_shapley
 from test_given_data import CASES, FIRST, TOTAL
 
-from uq.indices import sensitivities
+from uq.indices.sensitivities import sensitivities
 
 PORTFOLIO = {
     "sobol": ("saltelli", 1024, 8),
@@ -76,7 +76,7 @@ def test_extended_fast_is_as_near_as_that_of_openturns(model):
 
 
 def _of(model):
-    from uq.registry import find_model
+    from uq.study.registry import find_model
 
     found = find_model(model)
 
@@ -163,7 +163,7 @@ def test_steps_between_equal_values_have_no_effect():
 
 
 def test_both_ends_of_each_path_serve_for_statistics():
-    from uq.statistics import summarise
+    from uq.analysis.statistics import summarise
 
     told = summarise(linear("shapley", 128, 8))
     assert told["rows_used"] == 2 * 128 * 8

@@ -4,12 +4,12 @@ from computed import asking, kinds, linear, with_output, with_status
 from scipy import stats
 
 import uq
+from uq.analysis.regime_split import between_share
+from uq.analysis.statistics import summarise
 from uq.contract import Status
 from uq.errors import InputError
-from uq.given_data import DUMMIES
-from uq.indices import sensitivities
-from uq.regime_split import between_share
-from uq.statistics import summarise
+from uq.indices.given_data import DUMMIES
+from uq.indices.sensitivities import sensitivities
 
 
 def test_inputs_of_a_regime_are_told_from_those_of_the_rest():

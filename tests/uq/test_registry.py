@@ -4,10 +4,10 @@ from importlib.metadata import EntryPoint
 import pytest
 
 from models.analytic import LINEAR
-from uq import registry
 from uq.contract import Model
 from uq.errors import InputError
-from uq.registry import find_model, model_names
+from uq.study import registry
+from uq.study.registry import find_model, model_names
 
 
 def message(reference):

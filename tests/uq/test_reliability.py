@@ -11,11 +11,11 @@ from limit_states import PARTS, PLANE
 from scipy import integrate, stats
 
 import uq as api
-from uq.design_points import design_points, drawn_around
 from uq.errors import InputError
-from uq.reliability import log_scatter_interval, rare_event
-from uq.sampling import row_block
-from uq.subset import subset_simulation
+from uq.rows.sampling import row_block
+from uq.running.design_points import design_points, drawn_around
+from uq.running.reliability import log_scatter_interval, rare_event
+from uq.running.subset import subset_simulation
 
 UNIFORMS = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
 LAST = 10.0 - 576e-6**0.25  # P(x1 + 2 x2 + 3 x3 + 4 x4 > 10 - h) = h^4/576 for h < 1

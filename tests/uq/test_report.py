@@ -8,11 +8,11 @@ import pytest
 from computed import asking, kinds, linear, with_output, with_status
 from matplotlib.figure import Figure
 
-from uq import results
 from uq.contract import Status
 from uq.report import page
 from uq.report.inputs import mark
 from uq.report.pictures import HEAVIEST_SVG, picture
+from uq.rows import results
 from uq.store.files import write_result
 
 HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>&amp;'

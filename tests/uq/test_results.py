@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from uq import results, runner, store
+from uq import store
 from uq.contract import Status
 from uq.errors import InputError
-from uq.simulation import simulate
-from uq.study import load_study
+from uq.rows import results
+from uq.running import runner
+from uq.running.simulation import simulate
+from uq.study.definition import load_study
 
 
 @pytest.fixture

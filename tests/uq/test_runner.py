@@ -11,14 +11,15 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import uq
-from uq import job, results, runner
 from uq.contract import Status
 from uq.errors import InputError
-from uq.evaluate import KernelError, evaluate
-from uq.sampling import row_block
+from uq.rows import results
+from uq.rows.evaluate import KernelError, evaluate
+from uq.rows.sampling import row_block
+from uq.rows.work import work_of
+from uq.running import job, runner
 from uq.store import MemoryStore
-from uq.study import load_study
-from uq.work import work_of
+from uq.study.definition import load_study
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from scipy import stats
 from study_text import study_text
 
-from uq.designs import DESIGNS
-from uq.sampling import _splitmix64, group_size, row_block, rows
-from uq.study import study_from_text
+from uq.designs.table import DESIGNS
+from uq.rows.sampling import _splitmix64, group_size, row_block, rows
+from uq.study.definition import study_from_text
 
 MIXED: dict[str, dict[str, Any]] = {
     "study": {"model": "exponential-wear"},

@@ -8,11 +8,11 @@ import pytest
 from jsonschema import Draft7Validator
 from study_text import UNIFORM, study_text
 
-from uq import registry
-from uq.registry import find_model, model_names
-from uq.schema import json_schema
-from uq.study_file import LAWS, AnalysisTable, DesignTable
-from uq.template import template
+from uq.study import registry
+from uq.study.file import LAWS, AnalysisTable, DesignTable
+from uq.study.registry import find_model, model_names
+from uq.study.schema import json_schema
+from uq.study.template import template
 
 
 def make_validator():

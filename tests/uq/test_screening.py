@@ -18,11 +18,11 @@ from computed import (
 from SALib.analyze import fast as salib_fast
 from SALib.analyze import morris as salib_morris
 
-from uq.designs import DESIGNS
+from uq.analysis.statistics import summarise, summary
+from uq.designs.table import DESIGNS
+from uq.designs.trajectories import LEVELS, STEP, TAIL
 from uq.errors import InputError
-from uq.indices import sensitivities, sensitivity
-from uq.statistics import summarise, summary
-from uq.trajectories import LEVELS, STEP, TAIL
+from uq.indices.sensitivities import sensitivities, sensitivity
 
 LEVELS_OF_ONE = TAIL + (1 - 2 * TAIL) * np.arange(LEVELS) / (LEVELS - 1)
 A = np.array([0, 1, 4.5, 9, 99, 99, 99, 99.0])

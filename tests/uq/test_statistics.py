@@ -5,8 +5,8 @@ import pytest
 from computed import asking, kinds, linear, with_output, with_status
 
 import uq
+from uq.analysis.statistics import summarise
 from uq.contract import Status
-from uq.statistics import summarise
 
 THRESHOLDS = {"y": [2.0, 6.0]}
 

@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 from computed import UNIFORM, as_text, computed, study_of, with_seed
 
-from uq import cluster, further, runner, stopping, store
+from uq import store
+from uq.analysis.statistics import summarise
 from uq.errors import InputError
-from uq.results import open_result
-from uq.standing import standing
-from uq.statistics import summarise
-from uq.study import study_from_text
-from uq.work import work_of
+from uq.rows import stopping
+from uq.rows.results import open_result
+from uq.rows.work import work_of
+from uq.running import cluster, further, runner
+from uq.running.standing import standing
+from uq.study.definition import study_from_text
 
 INPUTS = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from sample_models import MOUNTED
 
-from uq.registry import find_model, model_names
-from uq.sampling import row_block
-from uq.study import study_from_text
-from uq.template import template
+from uq.rows.sampling import row_block
+from uq.study.definition import study_from_text
+from uq.study.registry import find_model, model_names
+from uq.study.template import template
 
 
 @pytest.mark.parametrize("name", model_names())

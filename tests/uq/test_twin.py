@@ -7,10 +7,10 @@ import pytest
 from computed import UNIFORM, as_text, computed, study_of, with_seed
 
 import uq as api
+from uq.analysis.statistics import summarise
+from uq.analysis.twin import two_fidelities, with_twin
 from uq.errors import InputError
-from uq.statistics import summarise
-from uq.study import study_from_text
-from uq.twin import two_fidelities, with_twin
+from uq.study.definition import study_from_text
 
 THRESHOLDS = {"y": [1.5, 2.5], "patchy": 1.5, "life": 1.25}
 PAIRED = "sample_models:PAIRED"
@@ -200,8 +200,8 @@ def api_root():
 
 
 def test_cheap_outputs_have_the_bits_of_the_dear_ones():
-    from uq.evaluate import evaluate
-    from uq.registry import find_model, model_names
+    from uq.rows.evaluate import evaluate
+    from uq.study.registry import find_model, model_names
 
     for model in map(find_model, model_names()):
         for name in model.cheap:

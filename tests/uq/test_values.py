@@ -11,8 +11,8 @@ from study_text import study_text
 
 from uq.contract import Model, Output, Parameter, Setting
 from uq.errors import InputError
-from uq.study import study_from_text
-from uq.values import parameter_problem, read_settings
+from uq.inputs.values import parameter_problem, read_settings
+from uq.study.definition import study_from_text
 
 
 class Inputs(NamedTuple):

@@ -8,16 +8,16 @@ import pytest
 from computed import UNIFORM, asking, computed, linear, study_of, with_output, with_status
 
 import uq
-from uq import stopping
-from uq.convergence import enough, running_estimates
-from uq.designs import DESIGNS
-from uq.elements import study_file_of
+from uq.analysis.convergence import enough, running_estimates
+from uq.analysis.statistics import summarise
+from uq.analysis.twin import with_twin
+from uq.designs.table import DESIGNS
 from uq.errors import InputError
-from uq.indices import sensitivities
-from uq.reliability import METHODS as RARE
-from uq.reliability import rare_event
-from uq.statistics import summarise
-from uq.twin import with_twin
+from uq.indices.sensitivities import sensitivities
+from uq.rows import stopping
+from uq.rows.elements import study_file_of
+from uq.running.reliability import METHODS as RARE
+from uq.running.reliability import rare_event
 
 DRAWN = [name for name, design in DESIGNS.items() if getattr(design, "draw", None) is not None]
 FIRST = {method: name for name in reversed(DRAWN) for method in DESIGNS[name].feeds}

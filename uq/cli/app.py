@@ -20,7 +20,7 @@ app = typer.Typer(
 
 def _models(incomplete: str) -> list[str]:
     """Return the names that a shell may complete to."""
-    from uq.registry import model_names
+    from uq.study.registry import model_names
 
     return [name for name in model_names() if name.startswith(incomplete)]
 
@@ -110,8 +110,8 @@ def simulate(
 @app.command()
 def init(model: ModelName) -> None:
     """Print a commented study file to edit."""
-    from uq.registry import find_model
-    from uq.template import template
+    from uq.study.registry import find_model
+    from uq.study.template import template
 
     print(template(find_model(model)), end="")
 
@@ -128,7 +128,7 @@ def check(study: StudyFile, model: ModelReference = None) -> None:
 def schema() -> None:
     """Print the JSON Schema of study files, for an editor."""
     from uq.cli.printing import print_json
-    from uq.schema import json_schema
+    from uq.study.schema import json_schema
 
     print_json(json_schema())
 
@@ -191,7 +191,7 @@ def status(result: ResultFile, json: Json = False) -> None:
     """Show where a run stands, also while it runs."""
     from uq.cli import keeping
     from uq.cli.printing import print_json
-    from uq.standing import standing
+    from uq.running.standing import standing
 
     print_json(standing(result)) if json else keeping.show_status(standing(result))
 
@@ -253,10 +253,10 @@ def summary(
     json: Json = False,
 ) -> None:
     """Show how rows ended, and the statistics of each output."""
+    from uq.analysis.statistics import summarise
     from uq.cli import tables
     from uq.cli.printing import print_json
-    from uq.results import open_result
-    from uq.statistics import summarise
+    from uq.rows.results import open_result
 
     ds = open_result(result)
     found = summarise(ds, regime=regime, fits=fits)
@@ -274,8 +274,8 @@ def sensitivity(
     """Show which inputs the scatter comes from."""
     from uq.cli import tables
     from uq.cli.printing import print_json
-    from uq.indices import sensitivities
-    from uq.results import open_result
+    from uq.indices.sensitivities import sensitivities
+    from uq.rows.results import open_result
 
     found = sensitivities(open_result(result), method, output, regime)
     print_json(found) if json else tables.show_sensitivity(found)
@@ -361,7 +361,7 @@ def plot(
 ) -> None:
     """Draw the figures of a result into a folder."""
     from uq.plots import save_all
-    from uq.results import open_result
+    from uq.rows.results import open_result
 
     for path in save_all(open_result(result), folder or result.with_suffix("")):
         print(path)

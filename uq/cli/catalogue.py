@@ -8,7 +8,7 @@ from typing import Any
 from uq.cli.printing import console, grid, heading, number, paragraph
 from uq.contract import Model
 from uq.errors import InputError
-from uq.registry import find_model, model_names
+from uq.study.registry import find_model, model_names
 
 
 def list_models() -> list[dict[str, str]]:

@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any
 
+from uq.analysis.comparison import comparison, estimates_of
 from uq.cli.printing import console, grid, heading, paragraph, print_json
-from uq.comparison import comparison, estimates_of
-from uq.results import open_result
+from uq.rows.results import open_result
 from uq.time_units import time_unit
 from uq.wording import Entry, interval, known, number
 

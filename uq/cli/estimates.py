@@ -10,7 +10,7 @@ import xarray as xr
 from uq.cli import say_when_interrupted
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.errors import InputError
-from uq.study import load_study
+from uq.study.definition import load_study
 
 _SHOWN = 6  # sizes of each estimate on a terminal
 
@@ -25,7 +25,7 @@ def rare_event(
     options: dict[str, Any],
 ) -> int:
     """Estimate the probability of a rare event and show it; return the exit code."""
-    from uq.reliability import rare_event
+    from uq.running.reliability import rare_event
 
     study = load_study(path, model)
     if (above is None) == (below is None):
@@ -103,8 +103,8 @@ def _show(ds: xr.Dataset) -> None:
 
 def twin(result: Path, model: str | None, json: bool) -> None:
     """Show means and probabilities sharpened by the study's cheap output."""
-    from uq.results import open_result
-    from uq.twin import with_twin
+    from uq.analysis.twin import with_twin
+    from uq.rows.results import open_result
 
     found = with_twin(open_result(result), model)
     if json:
@@ -142,8 +142,8 @@ def _interval(entry: dict[str, Any]) -> str:
 
 def convergence(result: Path, output: str | None, json: bool) -> None:
     """Show estimates as the rows came in, and whether sampling is still the largest error."""
-    from uq.convergence import enough, running_estimates
-    from uq.results import open_result
+    from uq.analysis.convergence import enough, running_estimates
+    from uq.rows.results import open_result
 
     ds = open_result(result)
     running, errors = running_estimates(ds, output), enough(ds, output)

@@ -5,13 +5,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from uq import further, results, verification
 from uq.cli import progress
 from uq.cli.printing import console, duration, grid, heading
 from uq.cli.single import literal
 from uq.cli.studies import carried_out, end
 from uq.compilation import compilation
 from uq.errors import InputError
+from uq.rows import results
+from uq.running import further, verification
 
 
 def show_status(standing: Mapping[str, Any]) -> None:

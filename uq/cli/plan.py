@@ -2,13 +2,13 @@
 
 from typing import Any
 
+from uq.analysis.widths import expected_widths
 from uq.cli.catalogue import finite
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.cli.progress import say_compiling
-from uq.planning import Cost, pilot
-from uq.results import failed
-from uq.study import load_study
-from uq.widths import expected_widths
+from uq.rows.results import failed
+from uq.running.planning import Cost, pilot
+from uq.study.definition import load_study
 
 _SURE = 1.2  # a forecast that may be further off is shown with its band
 _INDICES = ("S1", "ST")

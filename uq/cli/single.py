@@ -8,18 +8,19 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq import results, store
+from uq import store
 from uq.cli.catalogue import finite
 from uq.cli.printing import duration, grid, heading, number, print_json
 from uq.cli.progress import say_compiling
 from uq.compilation import compilation
 from uq.contract import Model, Status
-from uq.elements import elements_of
 from uq.errors import InputError
 from uq.literals import read_number
-from uq.registry import find_model
-from uq.simulation import holds_trajectory
-from uq.simulation import simulate as run_once
+from uq.rows import results
+from uq.rows.elements import elements_of
+from uq.running.simulation import holds_trajectory
+from uq.running.simulation import simulate as run_once
+from uq.study.registry import find_model
 
 
 def simulate(
@@ -48,8 +49,8 @@ def simulate(
     if output:
         store.write(ds, output)
     if plot:
-        from uq.figure import DOTS_PER_INCH
-        from uq.motion_plot import plot_history
+        from uq.drawing.figure import DOTS_PER_INCH
+        from uq.drawing.motion_plot import plot_history
 
         try:
             plot.parent.mkdir(parents=True, exist_ok=True)

@@ -12,17 +12,18 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq import results, runner
 from uq.cli import progress, say_when_interrupted, tables
 from uq.cli.printing import console, grid, heading, number
-from uq.code import is_other_code
 from uq.contract import Status
-from uq.designs import DESIGNS
-from uq.job import Progress
+from uq.designs.table import DESIGNS
 from uq.literals import plain_line
-from uq.sampling import group_size, rows
+from uq.rows import results
+from uq.rows.sampling import group_size, rows
+from uq.running import runner
+from uq.running.job import Progress
 from uq.store import folder_of
-from uq.study import Study, load_study
+from uq.study.code import is_other_code
+from uq.study.definition import Study, load_study
 from uq.wording import law
 
 
@@ -60,7 +61,7 @@ def _unit(study: Study, name: str) -> str:
 
 def _show_realised(study: Study) -> None:
     """Print each input as stated and as the rows have it."""
-    from uq.realised import MAX_ROWS, realised_inputs, realised_ranks
+    from uq.analysis.realised import MAX_ROWS, realised_inputs, realised_ranks
 
     count = min(rows(study), MAX_ROWS)
     found = realised_inputs(study)
@@ -144,7 +145,7 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str) -> i
     """Show the summary of a result; return the exit code."""
     say_when_interrupted(f"interrupted; the result is complete in {target}")
     if not quiet:
-        from uq.statistics import summarise
+        from uq.analysis.statistics import summarise
 
         tables.show_summary(ds, summarise(ds))
         console.print()

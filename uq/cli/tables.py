@@ -5,13 +5,13 @@ from typing import Any
 
 import xarray as xr
 
-from uq.b_lives import B_LIVES
+from uq.analysis.b_lives import B_LIVES
 from uq.cli.printing import console, grid, heading, paragraph
 from uq.wording import Entry, duration, index, index_interval, interval, known, number
 
 
 def show_summary(ds: xr.Dataset, summary: Entry) -> None:
-    """Print what `uq.statistics.summarise` found."""
+    """Print what `uq.analysis.statistics.summarise` found."""
     design = f"{ds.attrs['design']}, {summary['samples']} rows"
     if summary["rows_used"] < summary["samples"]:
         some = summary["rows_used"]

@@ -5,10 +5,10 @@ from typing import NamedTuple, cast
 import pandas as pd
 import xarray as xr
 
-from uq.convergence import enough, running_estimates
-from uq.convergence_plot import convergence, index_convergence
+from uq.analysis.convergence import enough, running_estimates
+from uq.drawing.convergence_plot import convergence, index_convergence
+from uq.drawing.index_plot import subject
 from uq.errors import InputError
-from uq.index_plot import subject
 from uq.report.outcomes import Outcome
 from uq.report.pictures import Picture, picture
 from uq.report.table import Cell, Table, without_empty_columns

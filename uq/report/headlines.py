@@ -19,7 +19,7 @@ def headlines(
     Parameters
     ----------
     summary : dict
-        What `uq.statistics.summarise` returns.
+        What `uq.analysis.statistics.summarise` returns.
     failed : int
         Rows.
     found : sequence of Outcome

@@ -5,10 +5,10 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
+from uq.drawing.figure import sentence, with_symbol
+from uq.drawing.index_plot import bars, subject
 from uq.errors import InputError
-from uq.figure import sentence, with_symbol
-from uq.index_plot import bars, subject
-from uq.indices import methods, sensitivities
+from uq.indices.sensitivities import methods, sensitivities
 from uq.report.pictures import Picture, picture
 from uq.report.table import Cell, Table
 from uq.wording import index, index_interval

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 
 import xarray as xr
 
-from uq.distributions import Law
-from uq.elements import study_file_of
-from uq.figure import powers
-from uq.realised import compare, stated_and_realised
+from uq.analysis.realised import compare, stated_and_realised
+from uq.drawing.figure import powers
+from uq.inputs.distributions import Law
 from uq.report.table import Cell, Table, without_empty_columns
-from uq.study_file import Tied
+from uq.rows.elements import study_file_of
+from uq.study.file import Tied
 from uq.wording import law, number
 
 _MARK = re.compile(

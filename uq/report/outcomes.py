@@ -6,14 +6,14 @@ from typing import Any
 import xarray as xr
 
 from uq.contract import Status
-from uq.elements import elements_of, independent_rows
-from uq.figure import place_in_words, powers
+from uq.drawing.figure import place_in_words, powers
 from uq.report.table import Cell, Table, count, estimate, without_empty_columns
+from uq.rows.elements import elements_of, independent_rows
 from uq.time_units import TimeUnit, time_unit
 from uq.wording import number, percent
 
 Summary = Mapping[str, Any]
-"""What `uq.statistics.summarise` returns."""
+"""What `uq.analysis.statistics.summarise` returns."""
 
 _COUNTS = ("never", "censored", "undefined", "failed")
 
@@ -56,7 +56,7 @@ class Outcome:
     words : str
         Which element it is: ``time to wear depth, left, 250 µm``.
     entry : dict
-        Of ``outputs`` in what `uq.statistics.summarise` returns.
+        Of ``outputs`` in what `uq.analysis.statistics.summarise` returns.
     """
 
     def __init__(self, name: str, words: str, entry: Mapping[str, Any]):

@@ -8,16 +8,15 @@ from typing import Any
 import xarray as xr
 from markupsafe import Markup, escape
 
-from uq.designs import DESIGNS
-from uq.elements import elements_of, independent_rows, study_file_of
-from uq.elements_plot import occurring_regimes
+from uq.analysis.statistics import summarise
+from uq.designs.table import DESIGNS
+from uq.drawing.elements_plot import occurring_regimes
+from uq.drawing.input_plot import inputs
 from uq.errors import InputError
-from uq.independent_inputs import independent_inputs
-from uq.input_plot import inputs
+from uq.indices.independent_inputs import independent_inputs
 from uq.literals import plain
 from uq.plots import histogram, histogram_by_regime, lifetime, pairs, scatter
 from uq.provenance import provenance
-from uq.registry import find_model
 from uq.report.convergence import convergence_of
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
@@ -31,9 +30,10 @@ from uq.report.outcomes import (
     status_table,
 )
 from uq.report.pictures import Picture, picture
-from uq.results import failed
-from uq.statistics import summarise
+from uq.rows.elements import elements_of, independent_rows, study_file_of
+from uq.rows.results import failed
 from uq.store.files import check_target, whole
+from uq.study.registry import find_model
 
 _SHOWN_TEXT = 50_000
 """Characters of a study's text that a page shows: a study may carry whole data files."""
@@ -53,7 +53,7 @@ def write_report(result: str | Path, path: str | Path) -> None:
     InputError
         When the result cannot be read, or the report not be written there.
     """
-    from uq.results import open_result
+    from uq.rows.results import open_result
 
     result, path = Path(result), Path(path)
     ds = open_result(result)

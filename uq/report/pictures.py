@@ -12,7 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from uq.figure import lay_out, styled
+from uq.drawing.figure import lay_out, styled
 from uq.literals import plain
 
 HEAVIEST_SVG = 300_000

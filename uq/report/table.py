@@ -49,7 +49,7 @@ def estimate(entry: Mapping[str, Any], per: float = 1.0, key: str = "value") -> 
     Parameters
     ----------
     entry : dict
-        ``value``, ``low``, ``high``, as in what `uq.statistics.summarise` returns.
+        ``value``, ``low``, ``high``, as in what `uq.analysis.statistics.summarise` returns.
     per : float
         Length of the unit that the cell is in.
     key : str

@@ -9,17 +9,17 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq import results
-from uq.code import made_here
 from uq.columns import columns_of
 from uq.contract import Status
-from uq.evaluate import Chunk
-from uq.sampling import Rows, row_block
+from uq.rows import results
+from uq.rows.evaluate import Chunk
+from uq.rows.sampling import Rows, row_block
 from uq.store.chunk_file import Block
 from uq.store.tally import Failures
+from uq.study.code import made_here
 
 if TYPE_CHECKING:
-    from uq.study import Study
+    from uq.study.definition import Study
 
 _ROWS = 100_000  # at a time
 

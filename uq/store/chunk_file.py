@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.columns import Column
-from uq.sampling import Rows
+from uq.rows.sampling import Rows
 from uq.store.files import flush
 
 Block = tuple[int, int]

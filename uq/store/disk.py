@@ -10,12 +10,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq import results
-from uq.code import made_here
 from uq.columns import columns_of
 from uq.errors import RunError
-from uq.evaluate import Chunk
-from uq.sampling import Rows, rows
+from uq.rows import results
+from uq.rows.evaluate import Chunk
+from uq.rows.sampling import Rows, rows
+from uq.rows.work import work_of
 from uq.store.chunk_file import Block, Piece, joined, load, pack, row_type, save, unpack
 from uq.store.files import reason
 from uq.store.folder import JOURNAL, clear, folder_of
@@ -23,10 +23,10 @@ from uq.store.journal import Journal
 from uq.store.merge import merge
 from uq.store.records import RowsRecord, RunRecord, missing
 from uq.store.tally import Failures, Tally, ended, joined_failures
-from uq.work import work_of
+from uq.study.code import made_here
 
 if TYPE_CHECKING:
-    from uq.study import Study
+    from uq.study.definition import Study
 
 _WRITING_SHARE = 1 / 20  # of the time, unless single chunks take longer
 _FIRST_COST = 0.01  # of writing [s], before it is known: what is over in a moment is written once

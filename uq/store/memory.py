@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from uq import results
 from uq.columns import blank_rows, columns_of
-from uq.evaluate import Chunk
-from uq.sampling import Rows, rows
+from uq.rows import results
+from uq.rows.evaluate import Chunk
+from uq.rows.sampling import Rows, rows
+from uq.rows.work import Work, work_of
 from uq.store.tally import Tally, ended
-from uq.work import Work, work_of
 
 if TYPE_CHECKING:
-    from uq.study import Study
+    from uq.study.definition import Study
 
 
 class MemoryStore(Tally):

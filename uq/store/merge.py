@@ -8,16 +8,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq import results
 from uq.literals import toml
-from uq.sampling import rows
+from uq.rows import results
+from uq.rows.sampling import rows
 from uq.store.chunk_file import Block, unpack
 from uq.store.files import whole
 from uq.store.records import RowsRecord
 from uq.store.seal import seal
 
 if TYPE_CHECKING:
-    from uq.study import Study
+    from uq.study.definition import Study
 
 Loaded = Iterable[tuple[RowsRecord, NDArray[Any]]]
 
@@ -41,7 +41,7 @@ def merge(
     loaded : iterable of (RowsRecord, ndarray)
         The same in any order, each with its rows.
     failures : dict of str to str
-        As `uq.results.build` wants them.
+        As `uq.rows.results.build` wants them.
     path : Path
     folder : Path
         Where the file is until it is complete.

@@ -7,18 +7,18 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from uq import results
-from uq.changes import refusal_to_extend, what_changed
-from uq.code import is_other_code, made_here
 from uq.errors import InputError
 from uq.interrupts import undone
+from uq.rows import results
 from uq.store.adopt import adopted
 from uq.store.disk import DiskStore
 from uq.store.folder import clear, folder_of, history, locked
 from uq.store.records import RowsRecord, RunRecord, missing, without_overlap
+from uq.study.changes import refusal_to_extend, what_changed
+from uq.study.code import is_other_code, made_here
 
 if TYPE_CHECKING:
-    from uq.study import Study
+    from uq.study.definition import Study
 
 _REMEDY = "choose another output, or start anew with --fresh"
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from uq.results import CHECKSUM
+from uq.rows.results import CHECKSUM
 
 _ROWS = 1_000_000  # read at a time
 

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from uq.columns import columns_of, failed_rows
 from uq.contract import Status
-from uq.glimpse import Glimpse
-from uq.work import Work
+from uq.rows.glimpse import Glimpse
+from uq.rows.work import Work
 
 if TYPE_CHECKING:
-    from uq.evaluate import Chunk
-    from uq.study import Study
+    from uq.rows.evaluate import Chunk
+    from uq.study.definition import Study
 
 Failures = dict[str, tuple[int, str]]
 """Status label -> number of the first row with that status, and what happened to it."""

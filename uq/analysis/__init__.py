@@ -1,0 +1,1 @@
+"""What a result says: statistics, lives, regimes, comparison, convergence."""

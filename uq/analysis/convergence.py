@@ -1,0 +1,167 @@
+"""Is it enough? Estimates as the rows came in, and the other errors beside that of sampling."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from uq.analysis.statistics import summarise
+from uq.designs.table import DESIGNS
+from uq.errors import InputError
+from uq.indices.sensitivities import sensitivities
+from uq.indices.sobol import MIN_GROUPS
+from uq.rows.elements import Element, elements_of, named_elements, output_names
+
+_FEWEST = 16  # samples
+
+
+def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
+    """Estimate everything from the first samples of a result, ever more of them.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str, optional
+        Only this output, or this element of one.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns ``output`` (its element), ``estimate`` (``mean``, ``quantile 0.5``, ``P(>t)``,
+        ``P(<t)``, and ``S1 x``, ``ST x`` for a crossed design), ``samples``, ``value``, ``low``,
+        ``high``. Sizes double up to the whole result. Each interval is for its own number of
+        samples: all of them together hold the truth less often than 95 %.
+
+    Raises
+    ------
+    InputError
+        When there is no such output, or the first rows of the design are no design.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/exponential-wear.toml")
+    >>> running = uq.running_estimates(ds)
+    >>> running[running["estimate"] == "mean"]["samples"].to_list()
+    [16, 32, 63, 125, 250, 500, 1000]
+    """
+    names = None if output is None else {element.name for element in named_elements(ds, output)}
+    lines = [
+        (name, label, samples, *estimate)
+        for samples in _sizes(ds)
+        for name, label, estimate in _estimates(ds.isel(sample=ds["group"].values < samples))
+        if names is None or name.removeprefix("rate(").removesuffix(")") in names or name in names
+    ]
+    columns = ["output", "estimate", "samples", "value", "low", "high"]
+    return pd.DataFrame(lines, columns=columns)
+
+
+def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
+    """Hold the error of sampling against the errors of the rows themselves.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str, optional
+        Only this output, or this element of one.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Index: element of an output. ``estimate``, its mean or, where rows never end or are
+        censored, its median; ``sampling``, the half-width of its interval; ``own``, the mean
+        magnitude of ``<output>_error``, the error of solver and time averages that the model gives
+        for each row (NaN where it gives none): what the estimate would be off by if they all lay on
+        one side; ``warning``, not empty where `own` is the larger: then more rows do not help.
+    """
+    found = summarise(ds)["outputs"]
+    lines = {}
+    for element in named_elements(ds, output) if output else elements_of(ds, list(_own(ds))):
+        if element.name not in found:
+            continue
+        entry = found[element.name]
+        label, interval = "mean", entry["mean_interval"]
+        if entry["mean"] is None:
+            label, interval = "median", entry["quantiles"].get("0.5", {"low": None, "high": None})
+        known = None not in (interval["low"], interval["high"])
+        sampling = (interval["high"] - interval["low"]) / 2 if known else np.nan
+        own = _own_error(ds, element)
+        lines[element.name] = {
+            "estimate": label,
+            "sampling": sampling,
+            "own": own,
+            "warning": _warning(element, sampling, own),
+        }
+    columns = ["estimate", "sampling", "own", "warning"]
+    index = pd.Index(list(lines), name="output")
+    return pd.DataFrame(list(lines.values()), index=index, columns=columns)
+
+
+def _warning(element: Element, sampling: float, own: float) -> str:
+    if not own > sampling:
+        return ""
+    return (
+        f"the rows' own error ({own:.3g} {element.units}) is larger than that of sampling"
+        f" ({sampling:.3g}): more rows do not help, finer settings or longer averages do"
+    )
+
+
+def _own(ds: xr.Dataset) -> Iterator[str]:
+    """Yield the outputs that are not themselves the error of another."""
+    names = output_names(ds)
+    errors = {f"{name}_error" for name in names}
+    return (name for name in names if name not in errors)
+
+
+def _own_error(ds: xr.Dataset, element: Element) -> float:
+    name = f"{element.output}_error"
+    if name not in output_names(ds):
+        return np.nan
+    for error in elements_of(ds, [name]):
+        if error.place == element.place:
+            sizes = np.abs(error.values[np.isfinite(error.values)])
+            return float(sizes.mean()) if len(sizes) else np.nan
+    return np.nan
+
+
+def _sizes(ds: xr.Dataset) -> list[int]:
+    method, size = ds.attrs["design"], int(ds.attrs["samples"])
+    if not DESIGNS[method].append_only:
+        able = " or ".join(f"'{name}'" for name, design in DESIGNS.items() if design.append_only)
+        raise InputError(
+            f"the first rows of a '{method}' design are no such design, so nothing can be said of"
+            f" fewer samples; the designs that grow are {able}"
+        )
+    sizes = [size]
+    while (size := -(-size // 2)) >= _FEWEST:
+        sizes.append(size)
+    return sizes[::-1]
+
+
+Estimate = tuple[float, float, float]
+
+
+def _estimates(ds: xr.Dataset) -> Iterator[tuple[str, str, Estimate]]:
+    for name, entry in summarise(ds)["outputs"].items():
+        yield name, "mean", _numbers({"value": entry["mean"], **entry["mean_interval"]})
+        for probability, found in entry["quantiles"].items():
+            yield name, f"quantile {probability}", _numbers(found)
+        for threshold, found in entry["thresholds"].items():
+            yield name, f"P(>{threshold})", _numbers(found["above"])
+            yield name, f"P(<{threshold})", _numbers(found["below"])
+    crossed = DESIGNS[ds.attrs["design"]].crossed
+    if crossed and len(np.unique(ds["group"])) * ds.attrs["replicates"] >= MIN_GROUPS:
+        for name, kinds in sensitivities(ds, method="sobol")["outputs"].items():
+            for kind in ("S1", "ST"):
+                for parameter, index in kinds.get(kind, {}).items():
+                    yield name, f"{kind} {parameter}", _numbers(index)
+
+
+def _numbers(entry: dict[str, Any]) -> Estimate:
+    value, low, high = (
+        np.nan if entry.get(end) is None else float(entry[end]) for end in ("value", "low", "high")
+    )
+    return value, low, high

@@ -1,0 +1,256 @@
+"""Which rows of two results belong together, and how their estimates go together for that.
+
+Two studies with the same seed draw the same numbers. Where row by row or replicate by replicate
+that makes pairs, which are independent of each other, the difference of the two is known better
+than from strangers. Where the same numbers are dealt out otherwise nothing is known of it, and an
+interval must do for the worst.
+"""
+
+from collections.abc import Callable
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq import intervals, two_samples
+from uq.designs.table import DESIGNS
+from uq.rows.elements import Floats, Mask, independent_rows, replicates_of, study_file_of
+from uq.study.file import Tied
+from uq.two_samples import Estimate
+
+_ROUNDING = 1e-6  # the root of what an interval that is a difference of two may lose
+
+WORST = -1.0
+"""The correlation that makes a difference least certain."""
+
+
+class Kinship(Enum):
+    """What two results have in common; the value says so to a reader."""
+
+    STRANGERS = "the seeds differ: rows of one have nothing to do with rows of the other"
+    ROWS = "the seed is the same: rows of the same number are pairs"
+    REPLICATES = "the seed is the same: replicates of the same number are pairs"
+    UNKNOWN = (
+        "the seed is the same but dealt out otherwise, so that rows are neither pairs nor"
+        " strangers: intervals are wide enough for the worst; give one study another seed"
+    )
+
+
+def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
+    """Return what two results have in common.
+
+    Parameters
+    ----------
+    first, second : xarray.Dataset
+        Results of one model.
+
+    Returns
+    -------
+    Kinship
+    """
+    if first.attrs["seed"] != second.attrs["seed"]:
+        return Kinship.STRANGERS
+    independent = [DESIGNS[ds.attrs["design"]].independent for ds in (first, second)]
+    if all(independent):
+        same = _columns(first) == _columns(second)
+        return Kinship.ROWS if same else Kinship.UNKNOWN
+    if not any(independent) and first.attrs["replicates"] == second.attrs["replicates"]:
+        return Kinship.REPLICATES
+    return Kinship.UNKNOWN
+
+
+def _columns(ds: xr.Dataset) -> int:
+    return sum(not isinstance(entry, Tied) for entry in study_file_of(ds).uncertain.values())
+
+
+Places = tuple[NDArray[np.intp], NDArray[np.intp]]
+
+
+def shared_rows(first: xr.Dataset, second: xr.Dataset) -> Places:
+    """Return the places of the rows that both results have, in each of them."""
+    most = max(ds.attrs["replicates"] for ds in (first, second))
+    mine, other = (ds["group"].values * most + ds["replicate"].values for ds in (first, second))
+    _, here, there = np.intersect1d(mine, other, assume_unique=True, return_indices=True)
+    return here, there
+
+
+def correlation(first: Floats, second: Floats, shared: Places, is_share: bool) -> float:
+    """Return the correlation of two estimates from what each pair of rows adds to them.
+
+    Parameters
+    ----------
+    first, second : ndarray, shape (n,) and (m,)
+        How far each row pulls its estimate from where it is; they sum up to nothing.
+    shared : tuple of ndarray of int
+        As from `shared_rows`.
+    is_share : bool
+        Whether they are shares: then half a row counts against agreement, which few rows
+        overstate [1]_.
+
+    Returns
+    -------
+    float
+
+    References
+    ----------
+    .. [1] R. G. Newcombe, "Improved confidence intervals for the difference between binomial
+       proportions based on paired data", Stat. Med. 17, 2635-2650 (1998).
+    """
+    together = float(first[shared[0]] @ second[shared[1]])
+    if is_share and together > 0:
+        together = max(together - 0.5, 0.0)
+    size = np.sqrt(float(first @ first) * float(second @ second))
+    return together / size if size > 0 else 0.0
+
+
+class Sample(NamedTuple):
+    """Numbers of the rows of a result, and which of them take part."""
+
+    kept: Mask
+    numbers: Floats
+
+
+class Estimator(NamedTuple):
+    """What is made of the rows that take part, and how far each of them pulls it off.
+
+    Attributes
+    ----------
+    of : callable
+        Rows -> estimate.
+    pull : callable
+        Rows -> the influence of each, up to a factor; they sum up to nothing.
+    is_share : bool
+    """
+
+    of: Callable[[Floats], float]
+    pull: Callable[[Floats], Floats]
+    is_share: bool = False
+
+
+def _sd(x: Floats) -> float:
+    return float(x.std(ddof=1)) if len(x) > 1 else np.nan
+
+
+MEAN = Estimator(np.mean, lambda x: x - x.mean())
+SHARE = MEAN._replace(is_share=True)
+SD = Estimator(_sd, lambda x: (x - x.mean()) ** 2 - x.var())
+
+
+def quantile(probability: float) -> Estimator:
+    """Return the estimator of a quantile; a row pulls it to its own side, however far it lies."""
+
+    def of(x: Floats) -> float:
+        return intervals.quantile(x, probability)
+
+    def pull(x: Floats) -> Floats:
+        below = x <= of(x)
+        return below - below.mean()
+
+    return Estimator(of, pull, is_share=True)
+
+
+class Pair:
+    """The independent rows of two results of one model, and how their estimates go together.
+
+    Parameters
+    ----------
+    first, second : xarray.Dataset
+    """
+
+    def __init__(self, first: xr.Dataset, second: xr.Dataset) -> None:
+        self.rows = (independent_rows(first), independent_rows(second))
+        self.kinship = kinship(first, second)
+        self._replicate = [replicates_of(rows) for rows in self.rows]
+        self._shared = shared_rows(*self.rows) if self.kinship is Kinship.ROWS else None
+
+    def difference(
+        self, estimator: Estimator, samples: list[Sample], known: list[Estimate]
+    ) -> Estimate:
+        """Return how far an estimate of the second lies from that of the first."""
+        if self.kinship is Kinship.REPLICATES and not estimator.is_share:
+            value = known[1].value - known[0].value
+            own = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
+            if not np.isfinite(own).all():
+                return Estimate(value, np.nan, np.nan)
+            apart = own[1] - own[0]
+            if intervals.is_constant(apart + np.abs(own).max()):  # they differ by rounding alone
+                return Estimate(value, np.nan, np.nan)
+            return Estimate(value, *intervals.scatter_interval(value, apart))
+        found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
+        wide = sum(one.high - one.low for one in known)
+        if (
+            self.kinship is Kinship.REPLICATES
+            and found.high - found.low <= _ROUNDING * wide < np.inf
+        ):
+            return found._replace(low=np.nan, high=np.nan)  # as good as the same in each replicate
+        return found
+
+    def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
+        """Return the second standard deviation over the first."""
+        if self.kinship is Kinship.REPLICATES and all(one.value > 0 for one in known):
+            found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
+            return _factor(known[1].value / known[0].value, found[1], found[0])
+        return two_samples.ratio(known[0], known[1], self._correlation(SD, samples))
+
+    def sd(self, i: int, sample: Sample) -> Estimate:
+        """Return the standard deviation of one of the two."""
+        values = sample.numbers[sample.kept]
+        value = _sd(values)
+        if self._replicate[i] is None:
+            return Estimate(value, *two_samples.sd_interval(values))
+        found = self._by_replicate(SD, i, sample)
+        return _factor(value, found, np.ones(len(found)))
+
+    @property
+    def unpaired(self) -> float:
+        """The correlation to reckon with where no rows can be held against each other."""
+        return 0.0 if self.kinship is Kinship.STRANGERS else WORST
+
+    def _correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
+        if self.kinship is Kinship.REPLICATES:
+            return self._replicates_correlation(estimator, samples)
+        if self._shared is None:
+            return self.unpaired
+        pulls = []
+        for sample in samples:
+            pull = np.zeros(len(sample.numbers))
+            if sample.kept.any():
+                pull[sample.kept] = estimator.pull(sample.numbers[sample.kept])
+            pulls.append(pull)
+        return correlation(pulls[0], pulls[1], self._shared, estimator.is_share)
+
+    def _replicates_correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
+        """Return the correlation of the pulls of whole replicates; NaN where one has none.
+
+        With the ends of Woodruff's intervals this makes the interval of Student's t of the
+        linearised differences of the replicates, each of whose own quantiles is a poor one.
+        """
+        pulls = []
+        for i, sample in enumerate(samples):
+            pull = sample._replace(numbers=np.zeros(len(sample.numbers)))
+            if sample.kept.any():
+                pull.numbers[sample.kept] = estimator.pull(sample.numbers[sample.kept])
+            pulls.append(self._by_replicate(MEAN, i, pull))
+        if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in pulls):
+            return np.nan
+        return float(np.asarray(np.corrcoef(pulls))[0, 1])
+
+    def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
+        of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])
+        assert of is not None, "independent rows are not taken by replicate"
+        found = np.full(count, np.nan)
+        for r in range(count):
+            values = sample.numbers[sample.kept & (of == r)]
+            if len(values):
+                found[r] = estimator.of(values)
+        return found
+
+
+def _factor(value: float, above: Floats, below: Floats) -> Estimate:
+    """Return a ratio with its interval from those of the replicates, in which it is logarithmic."""
+    if not (value > 0 and (above > 0).all() and (below > 0).all()):  # nor are they where unknown
+        return Estimate(value, np.nan, np.nan)
+    interval = intervals.scatter_interval(float(np.log(value)), np.log(above / below))
+    return Estimate(value, *np.exp(interval).tolist())

@@ -1,0 +1,143 @@
+"""What the rows of a design make of the laws and rank correlations that were stated."""
+
+from collections.abc import Mapping
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from uq.designs.table import DESIGNS
+from uq.indices.independent_inputs import independent_inputs
+from uq.inputs.conditioning import cdf_within, ppf_within
+from uq.inputs.data_files import columns_of_files
+from uq.inputs.distributions import Law
+from uq.rows.elements import Floats, independent_rows
+from uq.rows.sampling import row_block, rows
+from uq.study.definition import Study
+from uq.study.file import Tied
+from uq.study.input_checks import read_entries
+from uq.study.reading import parse, shape_faults, sound_entries
+
+PROBABILITIES = (0.05, 0.5, 0.95)
+
+MAX_ROWS = 100_000
+"""Rows of a study that are drawn to see what becomes of its laws."""
+
+EVERYWHERE = (-inf, inf)
+"""Bounds of a parameter cut off a millionth at most, which no table shows."""
+
+
+class Realised(NamedTuple):
+    """One input as stated and as the rows have it.
+
+    Attributes
+    ----------
+    stated, realised : ndarray, shape (3,)
+        Quantiles of `PROBABILITIES`.
+    distance : float
+        Largest difference of the two cumulative distributions (Kolmogorov-Smirnov).
+    """
+
+    stated: Floats
+    realised: Floats
+    distance: float
+
+
+def realised_inputs(study: Study) -> dict[str, Realised]:
+    """Compare the laws of a study with its rows, the first 100,000 of them.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    dict of str to Realised
+        Empty for designs whose rows do not follow the laws.
+    """
+    if not DESIGNS[study.design.method].follows_laws:
+        return {}
+    values = drawn_inputs(study)
+    return {name: compare(law, values[name]) for name, law in study.uncertain.items()}
+
+
+def drawn_inputs(study: Study) -> dict[str, Floats]:
+    """Return the first rows of a study, each input as its own law gives it."""
+    x = row_block(study, 0, min(rows(study), MAX_ROWS)).x
+    column = {name: x[:, i] for i, name in enumerate(study.model.parameter_names)}
+    return {
+        name: column[name] if law.times is None else column[name] / column[law.times]
+        for name, law in study.uncertain.items()
+    }
+
+
+def realised_ranks(study: Study) -> Floats:
+    """Return the rank correlations that the rows of a study have, shape (k, k).
+
+    Parameters
+    ----------
+    study : Study
+        With dependence; the order is that of its matrix.
+    """
+    from scipy.stats import rankdata
+
+    values = drawn_inputs(study)
+    assert study.dependence is not None
+    return np.corrcoef([rankdata(values[name]) for name in study.dependence.parameters])
+
+
+def compare(law: Law, values: Floats) -> Realised:
+    """Compare a law with values that should follow it.
+
+    Parameters
+    ----------
+    law : Law
+    values : ndarray, shape (n,)
+
+    Returns
+    -------
+    Realised
+    """
+    probabilities = np.array(PROBABILITIES)
+    ascending = np.sort(values)
+    distinct = np.unique(ascending)
+    stated = cdf_within(law, distinct, EVERYWHERE)
+    up_to = np.searchsorted(ascending, distinct, side="right") / len(ascending)
+    distance = np.abs(up_to - stated).max()
+    if not law.discrete:  # just before each step of the rows
+        before = np.searchsorted(ascending, distinct, side="left") / len(ascending)
+        distance = max(distance, np.abs(before - stated).max())
+    return Realised(
+        ppf_within(law, probabilities, EVERYWHERE),
+        np.quantile(ascending, probabilities, method="inverted_cdf"),
+        float(distance),
+    )
+
+
+def stated_and_realised(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
+    """Return the law of each input of a result and the values of its rows, where they follow it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    dict of str to tuple of Law and ndarray
+        Of a parameter that is another times a factor, both of the factor.
+    """
+    plain = independent_rows(ds)
+    if plain.sizes["sample"] == 0:
+        return {}
+    values = independent_inputs(plain)
+    return {name: (law, values[name]) for name, law in _laws(ds.attrs["study"]).items()}
+
+
+def _laws(text: str) -> Mapping[str, Law]:
+    """Return the laws in the text of a study that a result carries."""
+    data = parse(text, "study of this result")
+    tables = sound_entries(data, shape_faults(data))
+    entries, _ = read_entries(tables, columns_of_files(tables, None)[0])
+    return {name: entry for name, entry in entries.items() if not isinstance(entry, Tied)}

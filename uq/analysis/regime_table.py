@@ -1,0 +1,112 @@
+"""What tells the regimes of a result apart: inputs, outputs, and the variance between them."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.analysis.regime_split import between_share
+from uq.analysis.statistics import regime_shares
+from uq.errors import InputError
+from uq.indices.given_data import given_data_indices
+from uq.indices.targets import RefusedError, Target, category_targets, targets
+from uq.rows.elements import (
+    Floats,
+    analysis_of,
+    elements_of,
+    flags,
+    independent_rows,
+    replicates_of,
+    shown_outputs,
+)
+
+PROBABILITIES = (0.05, 0.25, 0.5, 0.75, 0.95)
+
+
+def regimes(ds: xr.Dataset) -> xr.Dataset:
+    """Compare the regimes of a result.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of a model with regimes.
+
+    Returns
+    -------
+    xarray.Dataset
+        Of the independent rows, over ``regime``: ``count``, and ``share`` with ``share_low`` and
+        ``share_high``. Over ``regime`` and ``parameter``: ``input_quantile``, at each
+        ``probability``, of the inputs of the rows in it; ``distance``, of Kolmogorov and Smirnov,
+        between these and the inputs of all other rows, and ``distance_dummy``, the largest for
+        inputs that play no part; NaN where one side has too few rows. Over ``output`` and
+        ``regime``: ``rows``, ``mean``, ``sd``. Over ``output``: ``between``, the share of its
+        variance that lies between regimes, with ``between_low`` and ``between_high``. Lifetimes
+        stand as their rates.
+
+    Raises
+    ------
+    InputError
+        When the result has no regimes.
+    """
+    if "regime" not in ds:
+        raise InputError("this result has no regimes to compare")
+    rows = independent_rows(ds)
+    shares = {name: one for name, one in regime_shares(rows).items() if one["count"]}
+    codes = {name: code for code, name in flags(rows["regime"]) if name in shares}
+    members = [rows["regime"].values == code for code in codes.values()]
+    inputs = {
+        str(name): variable.values
+        for name, variable in rows.data_vars.items()
+        if variable.attrs["role"] == "input"
+    }
+    quantiles = [[np.quantile(x[hits], PROBABILITIES) for x in inputs.values()] for hits in members]
+    distances = [_distances(inputs, target) for target in category_targets(rows, "regime")]
+    found = list(_numbers(rows))
+    moments = [[_moments(target.values[hits]) for hits in members] for target in found]
+    split = [between_share(t.values, rows["regime"].values, replicates_of(rows)) for t in found]
+
+    sizes = (len(found), len(members), len(inputs))
+    distance = np.reshape(distances, (sizes[1], sizes[2] + 1))
+    data: dict[str, Any] = {
+        "input_quantile": (
+            ("regime", "parameter", "probability"),
+            np.reshape(quantiles, (*sizes[1:], len(PROBABILITIES))),
+        ),
+        "distance": (("regime", "parameter"), distance[:, :-1]),
+        "distance_dummy": ("regime", distance[:, -1]),
+        "between": ("output", [value for value, _ in split]),
+        "between_low": ("output", [interval.low for _, interval in split]),
+        "between_high": ("output", [interval.high for _, interval in split]),
+    }
+    for i, name in enumerate(("rows", "mean", "sd")):
+        data[name] = (("output", "regime"), np.reshape(moments, (*sizes[:2], 3))[..., i])
+    for name, key in _SHARES.items():
+        data[name] = ("regime", np.array([one[key] for one in shares.values()], dtype=float))
+    coords = {"regime": list(codes), "parameter": list(inputs), "probability": list(PROBABILITIES)}
+    return xr.Dataset(data, {**coords, "output": [target.name for target in found]})
+
+
+_SHARES = {"count": "count", "share": "share", "share_low": "low", "share_high": "high"}
+
+
+def _numbers(rows: xr.Dataset) -> Iterator[Target]:
+    """Yield the outputs as they are; lifetimes as their rates."""
+    for target in targets(elements_of(rows, shown_outputs(rows, analysis_of(rows))), {}):
+        if not target.refused:
+            yield target
+
+
+def _distances(inputs: dict[str, Floats], target: Target) -> list[float]:
+    """Return the distance of each input, and the largest of inputs that play no part."""
+    try:
+        found = given_data_indices("regional", inputs, target.values, {})
+    except RefusedError:
+        return [np.nan] * (len(inputs) + 1)
+    return [*(index.value for index in found.values["KS"].values()), found.dummy["KS"]]
+
+
+def _moments(values: Floats) -> tuple[float, float, float]:
+    kept = values[np.isfinite(values)]
+    mean = kept.mean() if len(kept) else np.nan
+    return len(kept), mean, kept.std(ddof=1) if len(kept) > 1 else np.nan

@@ -1,0 +1,244 @@
+"""What a result says: counts, moments, quantiles and probabilities, each with its interval."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq import intervals
+from uq.analysis.b_lives import b_lives, ended_by, entry, quantile_entry
+from uq.analysis.life_fit import fits_of
+from uq.analysis.regime_split import between_share
+from uq.contract import Status
+from uq.designs.table import DESIGNS
+from uq.indices.targets import targets
+from uq.intervals import Replicates
+from uq.rows import stopping
+from uq.rows.elements import (
+    Element,
+    Mask,
+    analysis_of,
+    elements_of,
+    flags,
+    independent_rows,
+    output_names,
+    replicates_of,
+    shown_outputs,
+    study_file_of,
+)
+from uq.rows.in_regime import within_regime
+from uq.study.file import AnalysisTable
+
+NO_INTERVALS = (
+    "no intervals: the rows of a '{design}' design are not independent, and with replicates = 1"
+    " nothing shows how far its estimates scatter; set replicates = 8"
+)
+
+NO_STATISTICS = (
+    "no statistics: the rows of a '{design}' design do not follow the laws of the inputs; see"
+    " 'uq sensitivity'"
+)
+
+
+def summarise(
+    ds: xr.Dataset,
+    analysis: AnalysisTable | None = None,
+    regime: str | None = None,
+    fits: bool = False,
+) -> dict[str, Any]:
+    """Describe a result in plain data, ready for JSON.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    analysis : AnalysisTable, optional
+        What to show; by default what the result's own study asks for.
+    regime : str, optional
+        Describe the rows in this regime only; those that failed without one count as failed.
+    fits : bool
+        Whether each lifetime also has ``fits``, as `uq.life_fits` returns them.
+
+    Returns
+    -------
+    dict
+        ``samples`` and ``status`` count all rows. Everything else is about the ``rows_used``, the
+        independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
+        element -> mean, sd, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
+        ``between_regimes``: the share of its variance, or of its rate's, that lies between them,
+        counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
+        not be given. A number that does not exist or is not finite is None; beside it ``never``,
+        ``low_censored`` and the like say why.
+    """
+    analysis = analysis or analysis_of(ds)
+    notes = _notes(ds)
+    if regime is not None:
+        ds = within_regime(ds, regime)
+    rows = independent_rows(ds)
+    replicate = replicates_of(rows)
+    outputs = shown_outputs(ds, analysis)
+    codes = rows["regime"].values if "regime" in output_names(ds) else None
+    return {
+        "samples": ds.sizes["sample"],
+        "rows_used": rows.sizes["sample"],
+        "status": status_counts(ds),
+        "regime": {} if codes is None else regime_shares(rows),
+        "outputs": {
+            element.name: _describe(element, replicate, analysis)
+            | _between(element, codes, replicate)
+            | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
+            for element in elements_of(rows, outputs)
+        },
+        "notes": notes,
+    }
+
+
+def status_counts(ds: xr.Dataset) -> dict[str, int]:
+    """Return how many rows ended how, all rows, for each status that occurs and ``ok``."""
+    codes = ds["status"].values
+    counts = {label: int((codes == code).sum()) for code, label in flags(ds["status"])}
+    return {label: count for label, count in counts.items() if count or label == "ok"}
+
+
+def regime_shares(rows: xr.Dataset) -> dict[str, dict[str, Any]]:
+    """Return count and share of each regime among the rows that did not fail.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        Independent rows of a result.
+
+    Returns
+    -------
+    dict
+        Label -> ``count``, ``share``, ``low``, ``high``; also for regimes that do not occur.
+    """
+    codes = rows["regime"].values
+    kept = (codes >= 0) | (rows["status"].values == Status.OK)
+    replicate = _of(replicates_of(rows), kept)
+    shares = {}
+    for code, label in flags(rows["regime"]):
+        if code >= 0:
+            hits = codes[kept] == code
+            estimate = _share(hits, replicate)
+            shares[label] = {"count": int(hits.sum()), "share": estimate.pop("value")} | estimate
+    return shares
+
+
+COUNTS = ("never", "censored", "undefined", "failed")
+"""Kinds of rows without a number, counted for each element."""
+
+
+def _describe(element: Element, replicate: Replicates, analysis: AnalysisTable) -> dict[str, Any]:
+    values = element.at_least
+    within = _of(replicate, element.present)
+    moments = len(values) > 0 and not element.never.any() and not element.censored.any()
+    mean = intervals.mean_interval(values, within) if moments else intervals.UNKNOWN
+    return {
+        "units": element.units,
+        "mean": _plain(values.mean()) if moments else None,
+        "mean_interval": {"low": _plain(mean.low), "high": _plain(mean.high)},
+        "sd": _plain(values.std(ddof=1)) if moments and len(values) > 1 else None,
+        "quantiles": {
+            repr(probability): quantile_entry(element, probability, within)
+            for probability in analysis.quantiles
+        },
+        "tolerance": _tolerance(element, replicate, analysis),
+        "thresholds": {
+            repr(threshold): _threshold(element, threshold, replicate)
+            for threshold in analysis.thresholds.get(element.output, ())
+        },
+        "b_lives": b_lives(element, replicate) if element.kind == "lifetime" else {},
+    } | {count: int(getattr(element, count).sum()) for count in COUNTS}
+
+
+def _tolerance(
+    element: Element, replicate: Replicates, analysis: AnalysisTable
+) -> dict[str, Any] | None:
+    if analysis.tolerance is None or replicate is not None:
+        return None
+    failed = int(element.failed.sum())
+    early = intervals.tolerance_bounds(element.at_least, failed, *analysis.tolerance)
+    late = intervals.tolerance_bounds(element.at_most, failed, *analysis.tolerance)
+    bounds = entry(lower=(early.low, early.low), upper=(early.high, late.high))
+    return bounds | {"rows_needed": intervals.rows_needed(*analysis.tolerance, failed)}
+
+
+def _fitted(element: Element, fits: bool) -> bool:
+    return fits and element.kind == "lifetime"
+
+
+def _between(
+    element: Element, codes: NDArray[np.integer] | None, replicate: Replicates
+) -> dict[str, Any]:
+    target = next(targets([element], {}))
+    if codes is None or target.refused:
+        return {}
+    value, interval = between_share(target.values, codes, replicate)
+    ends = {"low": _plain(interval.low), "high": _plain(interval.high)}
+    return {"between_regimes": {"value": _plain(value)} | ends} if np.isfinite(value) else {}
+
+
+def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:
+    kept = ~element.failed
+    undefined = {"undefined": _plain(element.undefined[kept].mean()) if kept.any() else None}
+    sides = event(element, threshold)
+    if sides is None:
+        unknown = int((element.censored & (element.values < threshold)).sum())
+        nothing = dict.fromkeys(("value", "low", "high"))
+        reason = f"{unknown} rows were censored before {threshold!r} {element.units}"
+        guess = {"kaplan_meier": ended_by(element, threshold, replicate)}
+        return {"above": nothing, "below": nothing} | undefined | {"reason": reason} | guess
+    within = _of(replicate, kept)
+    above, below = (_share(side[kept], within) for side in sides)
+    return {"above": above, "below": below} | undefined
+
+
+def event(element: Element, threshold: float) -> tuple[Mask, Mask] | None:
+    """Return which rows lie above and which below a threshold, by magnitude for an angle.
+
+    Parameters
+    ----------
+    element : Element
+    threshold : float
+
+    Returns
+    -------
+    tuple of ndarray of bool, or None
+        Rows without a value lie on neither side. None where rows were censored before the
+        threshold, so that nobody knows.
+    """
+    values, censored = element.values, element.censored
+    if (censored & (values < threshold)).any():
+        return None
+    if element.kind == "angle":
+        values = np.abs(values)
+    above = (values > threshold) | (censored & (values == threshold))
+    return above, (values < threshold) & ~censored
+
+
+def _share(hits: Mask, replicate: Replicates) -> dict[str, Any]:
+    interval = intervals.share_interval(hits, replicate)
+    value = hits.mean() if len(hits) else np.nan
+    return {"value": _plain(value), "low": _plain(interval.low), "high": _plain(interval.high)}
+
+
+def _of(replicate: Replicates, rows: Mask) -> Replicates:
+    return None if replicate is None else replicate[rows]
+
+
+def _plain(number: float) -> float | None:
+    return float(number) if np.isfinite(number) else None
+
+
+def _notes(ds: xr.Dataset) -> list[str]:
+    if not DESIGNS[ds.attrs["design"]].follows_laws:
+        return [NO_STATISTICS.format(design=ds.attrs["design"])]
+    design = study_file_of(ds).design
+    notes = []
+    if design.until is not None:
+        notes.append(stopping.sentence(design, ds))
+    if ds.attrs["design"] != "monte-carlo" and ds.attrs["replicates"] == 1:
+        notes.append(NO_INTERVALS.format(design=ds.attrs["design"]))
+    return notes

@@ -1,0 +1,135 @@
+"""How wide the intervals of a study will be, from a few of its rows.
+
+By the spread of independent rows. Intervals from replicates scatter, and good designs make them
+narrower than that: for these the width is about the most to be expected.
+"""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy import stats
+
+from uq.rows.elements import (
+    Element,
+    Floats,
+    analysis_of,
+    elements_of,
+    flags,
+    independent_rows,
+    shown_outputs,
+)
+
+_ENOUGH_ROWS = 8
+_LEVEL = 0.975
+
+
+def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
+    """Return the widths of the 95 % intervals that a whole study will give.
+
+    Parameters
+    ----------
+    pilot : xarray.Dataset
+        Some rows of the study, whole groups of its design.
+
+    Returns
+    -------
+    dict
+        Element of an output -> ``units``, width of the ``mean``'s interval, of ``quantiles`` by
+        probability and of ``thresholds``' probabilities, and, where the design is made for Sobol'
+        indices, the widest of ``S1`` and ``ST``. None where the pilot cannot tell.
+    """
+    analysis = analysis_of(pilot)
+    samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
+    labels = [label for _, label in flags(pilot["block"])]
+    rows = samples * replicates * (2 if "A" in labels else 1)
+    factor = _factor(pilot.attrs["design"], replicates)
+    groups = _groups(pilot, len(labels))
+    found = {}
+    for whole, element in zip(
+        elements_of(pilot, shown_outputs(pilot, analysis)),
+        elements_of(independent_rows(pilot), shown_outputs(pilot, analysis)),
+        strict=True,
+    ):
+        found[element.name] = {
+            "units": element.units,
+            "mean": _mean(element, rows, factor),
+            "quantiles": {
+                repr(p): _quantile(element.at_least, p, rows, factor) for p in analysis.quantiles
+            },
+            "thresholds": {
+                repr(t): _share(element, t, rows, factor)
+                for t in analysis.thresholds.get(element.output, ())
+            },
+        }
+        if "A" in labels:
+            found[element.name] |= _indices(whole, groups, labels, samples * replicates, factor)
+    return found
+
+
+def _factor(design: str, replicates: int) -> float | None:
+    """Return half the width of an interval in standard errors."""
+    if design == "monte-carlo":
+        return float(stats.norm.ppf(_LEVEL))
+    return float(stats.t.ppf(_LEVEL, replicates - 1)) if replicates > 1 else None
+
+
+def _mean(element: Element, rows: int, factor: float | None) -> float | None:
+    values = element.at_least
+    unbounded = element.never.any() or element.censored.any()
+    if factor is None or unbounded or len(values) < _ENOUGH_ROWS:
+        return None
+    return float(2 * factor * values.std(ddof=1) / np.sqrt(rows))
+
+
+def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> float | None:
+    if factor is None or len(values) < _ENOUGH_ROWS:
+        return None
+    m = len(values)
+    spread = np.sqrt(p * (1 - p))
+    half = factor * spread / np.sqrt(rows)
+    # Neighbours in the pilot are too few to tell a slope; what is rarer than a row it cannot know.
+    reach = min(max(half, 2 * spread / np.sqrt(m)), p - 1 / (m + 1), m / (m + 1) - p)
+    if reach < half:
+        return None
+    with np.errstate(invalid="ignore"):  # between a life that ends and one that never does
+        low, high = np.quantile(values, [p - reach, p + reach], method="weibull")
+    return float((high - low) * half / reach) if np.isfinite(high - low) else None
+
+
+def _share(element: Element, threshold: float, rows: int, factor: float | None) -> float | None:
+    values = np.abs(element.at_least) if element.kind == "angle" else element.at_least
+    if factor is None or len(values) < _ENOUGH_ROWS:
+        return None
+    # As with two more rows on each side: a pilot without a hit does not prove that there is none.
+    p = (np.count_nonzero(values > threshold) + 2) / (len(values) + 4)
+    return float(2 * factor * np.sqrt(p * (1 - p) / rows))
+
+
+def _groups(pilot: xr.Dataset, blocks: int) -> NDArray[np.intp]:
+    """Return the rows of each group of the pilot, shape (groups, blocks)."""
+    keys = [pilot[name].values for name in ("block", "group", "replicate")]
+    return np.lexsort(keys).reshape(-1, blocks)
+
+
+def _indices(
+    element: Element, groups: NDArray[np.intp], labels: list[str], n: int, factor: float | None
+) -> dict[str, float | None]:
+    """Return the widest interval of first-order and of total indices, as of independent groups."""
+    values = element.values
+    if element.kind == "lifetime":  # whose indices are those of its rate
+        with np.errstate(divide="ignore"):
+            values = 1.0 / values
+    y = values[groups]
+    y = y[np.isfinite(y).all(axis=1)]
+    if factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
+        return {"S1": None, "ST": None}
+    block = dict(zip(labels, ((y - y.mean()) / y.std()).T, strict=True))
+    mixed = [value for label, value in block.items() if label.startswith("AB_")]
+    first = max(np.std(block["B"] * (one - block["A"])) for one in mixed)
+    total = max(np.std(0.5 * (block["A"] - one) ** 2) for one in mixed)
+    return {
+        "S1": float(2 * factor * first / np.sqrt(n)),
+        "ST": float(2 * factor * total / np.sqrt(n)),
+    }

@@ -1,0 +1,1 @@
+"""Which points of the unit cube a study visits."""

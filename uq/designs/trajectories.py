@@ -1,0 +1,94 @@
+"""Trajectories of Morris: from point to point one input changes, by the same step in probability.
+
+SALib draws them, and on request keeps those that lie far apart. Its search becomes slow beyond a
+dozen, so such a design consists of bundles of at most eight, each the best of four times as many.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+
+from uq.designs.streams import Points, generator
+
+LEVELS = 4
+"""Levels of each input."""
+
+TAIL = 0.005
+"""Probability below the lowest and above the highest level: ends of a law may be infinite."""
+
+STEP = (1 - 2 * TAIL) * LEVELS / (2 * (LEVELS - 1))
+"""Step of an input, in probability."""
+
+_BUNDLE = 8
+_POOL = 4
+
+
+def morris_trajectories(
+    seed: int, replicates: int, d: int, samples: int, start: int, stop: int
+) -> Points:
+    """Draw trajectories start..stop of each replicate, all independent.
+
+    Returns
+    -------
+    ndarray, shape (stop - start, replicates, d + 1, d)
+
+    References
+    ----------
+    M. D. Morris, "Factorial sampling plans for preliminary computational experiments",
+    Technometrics 33, 161-174 (1991).
+    """
+    return _joined(seed, replicates, d, samples, start, stop, 1)
+
+
+def optimised_trajectories(
+    seed: int, replicates: int, d: int, samples: int, start: int, stop: int
+) -> Points:
+    """Draw trajectories start..stop of each replicate, chosen far apart [1]_, [2]_.
+
+    They favour the corners of the cube: mean effects of the Ishigami function come out 45 % too
+    large for x1 and 50 % too small for x3.
+
+    Returns
+    -------
+    ndarray, shape (stop - start, replicates, d + 1, d)
+
+    References
+    ----------
+    .. [1] F. Campolongo, J. Cariboni, A. Saltelli, "An effective screening design for sensitivity
+       analysis of large models", Environ. Model. Softw. 22, 1509-1518 (2007).
+    .. [2] M. V. Ruano et al., "An improved sampling strategy based on trajectory design for
+       application of the Morris method to systems with many input factors", Environ. Model.
+       Softw. 37, 103-109 (2012).
+    """
+    return _joined(seed, replicates, d, samples, start, stop, _POOL)
+
+
+def _joined(
+    seed: int, replicates: int, d: int, samples: int, start: int, stop: int, pool: int
+) -> Points:
+    """Return the bundles that hold the trajectories start..stop, cut to them."""
+    edges = np.linspace(0, samples, -(-samples // _BUNDLE) + 1).astype(int)
+    found = [np.empty((0, replicates, d + 1, d))]
+    for bundle, (first, last) in enumerate(zip(edges, edges[1:], strict=False)):
+        if first < stop and start < last:
+            parts = [
+                _bundle(seed, replicate, bundle, d, int(last - first), pool)
+                for replicate in range(replicates)
+            ]
+            found.append(np.stack(parts, axis=1)[max(start - first, 0) : stop - first])
+    return np.concatenate(found)
+
+
+@lru_cache(maxsize=256)
+def _bundle(seed: int, replicate: int, bundle: int, d: int, size: int, pool: int) -> Points:
+    from SALib.sample.morris import sample
+
+    problem = {"num_vars": d, "names": [str(i) for i in range(d)], "bounds": [[0.0, 1.0]] * d}
+    rng = generator(seed, replicate, bundle)
+    best = size if pool > 1 else None
+    levels = sample(problem, pool * size, LEVELS, optimal_trajectories=best, seed=rng)
+    # Whole thirds once more: SALib's arithmetic leaves their last bits to chance.
+    steps = np.rint(levels * (LEVELS - 1)).reshape(size, d + 1, d)
+    points: Points = TAIL + (1 - 2 * TAIL) * steps / (LEVELS - 1)
+    points.setflags(write=False)
+    return points

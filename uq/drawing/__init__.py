@@ -1,0 +1,1 @@
+"""Figures, one kind in a file; `uq.plots` is their public face."""

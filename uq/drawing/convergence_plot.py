@@ -1,0 +1,102 @@
+"""The figure of convergence: estimates from the first rows, ever more of them."""
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
+
+from uq.analysis.convergence import running_estimates
+from uq.drawing.elements_plot import label, look, told_in
+from uq.drawing.figure import COLOURS, LINES, legend, new_figure, sentence, styled, with_symbol
+from uq.rows.elements import independent_rows, named_elements
+
+
+@styled
+def convergence(ds: xr.Dataset, output: str, running: pd.DataFrame | None = None) -> Figure | None:
+    """Draw how the mean of an output, or its median, settles as rows come in, with its interval.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        An output that is no category, or one element of it.
+    running : pandas.DataFrame, optional
+        What `uq.running_estimates` returns, if that is known already.
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        None where there is no estimate. The interval at each size is for that size alone.
+
+    Raises
+    ------
+    InputError
+        When the first rows of the design are no design.
+    """
+    running = running_estimates(ds) if running is None else running
+    chosen = named_elements(independent_rows(ds), output)
+    own = running[running["output"].isin([element.name for element in chosen])]
+    means = own[own["estimate"] == "mean"].dropna(subset="value")
+    kind = "mean" if len(means) else "quantile 0.5"
+    told = own[own["estimate"] == kind].dropna(subset="value")
+    told = told[np.isfinite(told["value"])]
+    if told.empty:
+        return None
+    unit, per = told_in(chosen[0].units, told["value"].to_numpy(float))
+    figure, (axes,) = new_figure(2.1, entries=len(chosen))
+    for i, element in enumerate(chosen):
+        colour, line = look(i, element, chosen)
+        _curve(axes, told[told["output"] == element.name], per, colour, line, label(ds, element))
+    what = "mean" if kind == "mean" else "median"
+    axes.set_ylabel(sentence(f"{what}: {chosen[0].meaning}", unit, width=30))
+    _finish(axes, ds)
+    return figure
+
+
+@styled
+def index_convergence(
+    ds: xr.Dataset, target: str, running: pd.DataFrame, words: str
+) -> Figure | None:
+    """Draw how the total indices of one target settle; parameters as in `convergence`."""
+    own = running[(running["output"] == target) & running["estimate"].str.startswith("ST ")]
+    own = own.dropna(subset="value")
+    if own.empty:
+        return None
+    last = own[own["samples"] == own["samples"].max()].sort_values("value", ascending=False)
+    leading = last["estimate"].tolist()[: len(COLOURS)]
+    figure, (axes,) = new_figure(2.1, entries=len(leading))
+    for i, estimate in enumerate(leading):
+        name = sentence(with_symbol(ds[estimate.removeprefix("ST ")]), width=60)
+        colour, line = COLOURS[i], LINES[i % len(LINES)]
+        _curve(axes, own[own["estimate"] == estimate], 1.0, colour, line, name)
+    axes.set_ylabel("Total index (ST) [1]")
+    # An interval from the first few rows must not squeeze the rest.
+    low, high = axes.get_ylim()
+    axes.set_ylim(max(low, -0.25), min(high, 1.25))
+    figure.suptitle(words, x=0.01, ha="left", fontsize=8)
+    _finish(axes, ds)
+    return figure
+
+
+def _curve(
+    axes: Axes, lines: pd.DataFrame, per: float, colour: str, style: str, words: str
+) -> None:
+    value, low, high = (lines[end].to_numpy(float) / per for end in ("value", "low", "high"))
+    samples = lines["samples"].to_numpy(float)
+    axes.plot(samples, value, color=colour, ls=style, marker=".", label=words)
+    axes.fill_between(samples, low, high, color=colour, alpha=0.2, lw=0)
+
+
+def _finish(axes: Axes, ds: xr.Dataset) -> None:
+    axes.set_xscale("log", base=2)
+    axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.minorticks_off()
+    replicates = int(ds.attrs["replicates"])
+    axes.set_xlabel("Samples" + (f" of each of {replicates} replicates" if replicates > 1 else ""))
+    known = any(len(band.get_paths()) for band in axes.collections)
+    axes.set_title("As rows come in" + known * ", with 95 % interval", loc="left")
+    legend(axes)

@@ -1,0 +1,105 @@
+"""Histograms of an output: of all rows, and of the rows in each regime."""
+
+import textwrap
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from uq.drawing.elements_plot import (
+    bins,
+    explain,
+    label,
+    look,
+    occurring_regimes,
+    regime_colours,
+    rows_in_words,
+    told_in,
+)
+from uq.drawing.figure import legend, logarithmic, new_figure, sentence, styled
+from uq.rows.elements import independent_rows, named_elements
+
+_MOST_PANELS = 4
+
+
+@styled
+def histogram(ds: xr.Dataset, output: str) -> Figure:
+    """Draw how the values of an output are distributed.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        An output that is not a lifetime or category, or one element of it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    chosen = named_elements(independent_rows(ds), output)
+    values = [element.at_least for element in chosen]
+    figure, (axes,) = new_figure(2.1, entries=len(chosen))
+    edges, wide = bins(np.concatenate(values))
+    for i, (element, own) in enumerate(zip(chosen, values, strict=True)):
+        colour, line = look(i, element, chosen)
+        counts = np.histogram(own, edges)[0] / max(len(own), 1)
+        alone = len(chosen) == 1
+        axes.stairs(
+            counts,
+            edges,
+            fill=alone,
+            color=colour,
+            ls="-" if alone else line,
+            lw=0 if alone else 1.2,
+            label=label(ds, element),
+        )
+    axes.set(ylim=(0, None), ylabel="Share of rows per bin")
+    axes.set_xlabel(sentence(chosen[0].meaning, chosen[0].units))
+    if wide:
+        logarithmic(axes)
+    explain(axes, chosen)
+    return figure
+
+
+@styled
+def histogram_by_regime(ds: xr.Dataset, output: str) -> Figure:
+    """Draw how the values of an output are distributed, each regime on top of the last.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of a model with regimes.
+    output : str
+        An output that is no category, or one element of it. Of an output with more than four
+        elements the first four are drawn; of a lifetime those that end.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows = independent_rows(ds)
+    chosen = named_elements(rows, output)[:_MOST_PANELS]
+    codes, regimes = rows["regime"].values, occurring_regimes(rows)
+    colours = regime_colours(rows)
+    ended = [np.isfinite(element.values) & ~element.censored for element in chosen]
+    together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
+    unit, per = told_in(chosen[0].units, together)
+    edges, wide = bins(together / per)
+    figure, panels = new_figure(0.7 + 1.1 * len(chosen), len(chosen), entries=len(regimes))
+    for axes, element, mask in zip(panels, chosen, ended, strict=True):
+        base = np.zeros(len(edges) - 1)
+        for name, code in regimes.items():
+            own = element.values[mask & (codes == code)] / per
+            top = base + np.histogram(own, edges)[0] / max(int(mask.sum()), 1)
+            axes.stairs(top, edges, baseline=base, fill=True, color=colours[name], label=name)
+            base = top
+        axes.set(ylim=(0, None), ylabel="Share of rows\nper bin")
+        words = label(ds, element)
+        title = f"{words}{', ' if words else ''}{rows_in_words([element])}"
+        axes.set_title(textwrap.fill(title, 46), loc="left")
+    panels[-1].set_xlabel(sentence(chosen[0].meaning, unit))
+    if wide:
+        logarithmic(panels[-1])
+    legend(panels[0])
+    return figure

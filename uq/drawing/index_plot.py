@@ -1,0 +1,141 @@
+"""The figure of sensitivity indices."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from uq.drawing.figure import (
+    COLOURS,
+    legend,
+    new_figure,
+    place_in_words,
+    roomy,
+    sentence,
+    styled,
+    with_symbol,
+)
+from uq.errors import InputError
+from uq.indices.sensitivities import sensitivities
+from uq.rows.elements import named_elements
+from uq.time_units import time_unit
+
+MEANING = {
+    "S1": "alone (S1)",
+    "ST": "with all interactions (ST)",
+    "delta": "Borgonovo's delta",
+    "pawn": "PAWN, median",
+    "mu": "mean effect (mu)",
+    "sigma": "scatter of effects (sigma)",
+    "mu_star": "mean magnitude of effects (mu*)",
+    "shapley": "Shapley effect",
+    "KS": "Kolmogorov's distance of the rows where it happens",
+}
+
+
+def _is_bar(kind: str, value: Any) -> bool:
+    return isinstance(value, dict) and kind not in ("S2", "dummy")
+
+
+def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:
+    """Draw the sensitivity indices of one output as bars, with their 95 % intervals.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        One of the names that `uq.indices.sensitivities` returns.
+    method : str, optional
+        By default the first that the study asks for.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When there is no such output, it stands for several, or it has no indices.
+    """
+    found = sensitivities(ds, method, output)["outputs"]
+    if len(found) > 1:
+        raise InputError(f"'{output}' stands for several; name one of: {', '.join(found)}")
+    ((name, entry),) = found.items()
+    if "refused" in entry:
+        raise InputError(f"{name}: {entry['refused']}")
+    return bars(ds, name, entry)
+
+
+@styled
+def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
+    """Draw one entry of what `uq.indices.sensitivities` returns.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    name : str
+    entry : dict
+        Not refused.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    kinds = [kind for kind, value in entry.items() if _is_bar(kind, value)]
+    parameters = sorted(entry[kinds[-1]], key=lambda p: float(entry[kinds[-1]][p]["value"]))
+    labels = [_named(ds[parameter]) for parameter in parameters]
+    lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
+    figure, (axes,) = new_figure(0.8 + 0.13 * lines.sum(), entries=2)
+    middle = np.cumsum(lines) - lines / 2
+    thickness = 0.8 * lines.min() / len(kinds)
+    for i, kind in enumerate(kinds):
+        y = middle + thickness * (len(kinds) / 2 - i - 0.5)
+        found = [entry[kind][parameter] for parameter in parameters]
+        table = np.array([(one["value"], one["low"], one["high"]) for one in found], dtype=float)
+        value, ends = table[:, 0], table[:, 1:].T
+        axes.barh(y, value, thickness, color=COLOURS[i], label=MEANING.get(kind, kind))
+        axes.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
+    for limit in entry.get("dummy", {}).values():
+        label = "largest of inputs that play no part"
+        axes.axvline(limit, color="black", ls="--", lw=0.8, label=label)
+    axes.axvline(0, color="black", lw=0.6)
+    # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
+    shares = "mu_star" not in kinds
+    if shares:
+        low, high = axes.get_xlim()
+        axes.set_xlim(max(low, -0.25), min(high, 1.25))
+    axes.set_yticks(middle, labels)
+    axes.set_ylim(0, lines.sum())
+    roomy(axes, ticks=3)  # the labels take most of the width
+    known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
+    axis = "Sensitivity index [1]" if shares else "Effect, in the unit of the output"
+    axes.set_xlabel(axis + known * ",\nwith 95 % interval")
+    figure.suptitle(subject(ds, name), x=0.01, ha="left", fontsize=8)
+    legend(axes)
+    return figure
+
+
+def _named(parameter: xr.DataArray) -> str:
+    """Return the full name of a parameter; the symbol tells apart those of the same meaning."""
+    return sentence(with_symbol(parameter), width=30)
+
+
+def subject(ds: xr.Dataset, name: str) -> str:
+    """Return in words what the indices of a name of `uq.indices.sensitivities` are about."""
+    inside = name.removeprefix("rate(").removeprefix("P(").removesuffix(")")
+    category, _, label = inside.partition("=")
+    if category in ds and ds[category].attrs.get("kind") == "category":
+        return sentence(f"whether it is {label}: {ds[category].attrs['long_name']}", width=56)
+    key, _, threshold = inside.partition("<")
+    (element,) = named_elements(ds, key)
+    place = place_in_words(element, ds[element.output])
+    words = element.meaning + (f", {place}" if place else "")
+    if threshold:
+        unit = time_unit(float(threshold))
+        words = f"whether it ends before {float(threshold) / unit.seconds:g} {unit.name}: {words}"
+    elif name.startswith("rate("):
+        words = f"rate, 1/time: {words}"
+    return sentence(words, width=56)

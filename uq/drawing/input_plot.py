@@ -1,0 +1,79 @@
+"""The figure of the inputs: each law as stated, and what the rows have made of it."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.analysis.realised import EVERYWHERE, stated_and_realised
+from uq.drawing.figure import (
+    COLOURS,
+    WIDTH,
+    is_wide,
+    logarithmic,
+    named_input,
+    roomy,
+    sentence,
+    styled,
+)
+from uq.inputs.conditioning import cdf_within
+from uq.inputs.distributions import Law
+from uq.rows.elements import Floats
+
+_IN_ONE_COLUMN = 3  # inputs
+
+
+@styled
+def inputs(ds: xr.Dataset) -> Figure | None:
+    """Draw how the values of each input are distributed, beside the law that was stated.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    matplotlib.figure.Figure or None
+        None where the rows do not follow the laws.
+    """
+    found = stated_and_realised(ds)
+    if not found:
+        return None
+    columns = 1 if len(found) <= _IN_ONE_COLUMN else 2
+    lines = -(-len(found) // columns)
+    figure = Figure(figsize=(WIDTH, 0.3 + 1.4 * lines), layout="constrained")
+    panels = figure.subplots(lines, columns, squeeze=False).ravel()
+    for axes in panels[len(found) :]:
+        axes.set_axis_off()
+    for axes, (name, (law, values)) in zip(panels, found.items(), strict=False):
+        _panel(axes, law, values, ticks=6 // columns)
+        width = 44 // columns
+        if law.times is None:
+            axes.set_xlabel(named_input(ds[name], width))
+        else:
+            factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
+            axes.set_xlabel(sentence(factor, width=width))
+    rows = len(next(iter(found.values()))[1])
+    panels[0].set_title(f"Share per bin of {rows} rows; line: as stated", loc="left")
+    return figure
+
+
+def _panel(axes: Axes, law: Law, values: Floats, ticks: int) -> None:
+    wide = is_wide(values)
+    scaled = np.log10(values) if wide else values
+    count = min(len(np.histogram_bin_edges(scaled, "scott")) - 1, 60)
+    edges = np.histogram_bin_edges(scaled, max(count, 1))
+    edges = 10**edges if wide else edges
+    edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
+    rows = np.histogram(values, edges)[0] / len(values)
+    # Like the histogram: bins have their lower end, the last one its upper end too.
+    upper = cdf_within(law, np.append(np.nextafter(edges[1:-1], -np.inf), edges[-1]), EVERYWHERE)
+    lower = cdf_within(law, np.nextafter(edges[:1], -np.inf), EVERYWHERE)
+    stated = np.diff(np.append(lower, upper))
+    axes.stairs(rows, edges, fill=True, color=COLOURS[4])
+    axes.stairs(stated, edges, color=COLOURS[1], lw=1.2)
+    axes.set_ylim(0, None)
+    roomy(axes, ticks)
+    if wide:
+        logarithmic(axes)

@@ -1,0 +1,76 @@
+"""The figure of a lifetime: how likely it has ended, and how likely it goes on."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
+
+from uq.analysis.b_lives import B_LIVES, b_lives
+from uq.analysis.lifetime import survival
+from uq.drawing.elements_plot import explain, label, look
+from uq.drawing.figure import is_wide, logarithmic, new_figure, sentence, styled, thinned
+from uq.intervals import Replicates
+from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
+from uq.time_units import TimeUnit, time_unit
+
+
+@styled
+def lifetime(ds: xr.Dataset, output: str) -> Figure:
+    """Draw the probability that a life has ended against time, with its pointwise 95 % band.
+
+    Marks stand at B1, B10 and B50, the times by which 1, 10 and 50 % have ended, with their
+    intervals. On the right the same curve is the probability of a longer life.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        A lifetime, or one element of it.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows = independent_rows(ds)
+    chosen = named_elements(rows, output)
+    ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
+    unit = time_unit(float(np.median(ends)) if len(ends) else 0.0)
+    figure, (axes,) = new_figure(2.3, entries=len(chosen))
+    band = False
+    for i, element in enumerate(chosen):
+        curve = survival(ds, element.name)
+        curve = curve.isel(time=thinned(curve.sizes["time"]))
+        time = curve["time"].values / unit.seconds
+        colour, line = look(i, element, chosen)
+        words = label(ds, element, never=float(curve["never"]))
+        axes.step(time, 1 - curve["survival"], where="post", color=colour, ls=line, label=words)
+        low, high = 1 - curve["high"], 1 - curve["low"]
+        if np.isfinite(low).any():
+            axes.fill_between(time, low, high, step="post", color=colour, alpha=0.2, lw=0)
+            band = True
+        _mark(axes, element, replicates_of(rows), unit, colour)
+    axes.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
+    axes.set_xlabel(sentence(chosen[0].meaning, unit.name))
+    other = axes.secondary_yaxis("right", functions=(_rest, _rest))
+    other.set_ylabel("Probability of\na longer life")
+    if is_wide(ends):
+        logarithmic(axes)
+    explain(axes, chosen, *["pointwise 95 % band"] * band)
+    return figure
+
+
+def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, colour: str) -> None:
+    for name, entry in b_lives(element, replicate).items():
+        if entry["value"] is not None:
+            at = entry["value"] / unit.seconds
+            ends = [entry["value"] if entry[end] is None else entry[end] for end in ("low", "high")]
+            reach = np.abs(np.array(ends)[:, None] / unit.seconds - at)
+            axes.errorbar(
+                at, B_LIVES[name], xerr=reach, fmt="o", ms=2.5, lw=1.0, capsize=2.0, color=colour
+            )
+
+
+def _rest(share: ArrayLike) -> ArrayLike:
+    return 1 - np.asarray(share)

@@ -1,0 +1,178 @@
+"""Figures of a machine's motion: time histories, phase portraits and Poincare sections."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.drawing.figure import COLOURS, LINES, new_figure, powers, sentence, styled
+from uq.drawing.panel import above, are_many, finish, legend_above, panel_of
+from uq.drawing.quantities import (
+    Scale,
+    find,
+    label,
+    pair,
+    place_in,
+    scale_of,
+    with_quantities,
+    words,
+)
+from uq.errors import InputError
+from uq.rows.elements import Floats
+
+_BESIDE = 32  # characters that the label of a vertical axis has room for
+
+
+@styled
+def plot_history(ds: xr.Dataset, quantities: Sequence[str | Sequence[str]] | None = None) -> Figure:
+    """Draw quantities against time, a panel for each.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `uq.simulate`, with a ``trajectory``, or any Dataset with variables along ``time``.
+        For a stretch of it, ``ds.sel(time=slice(3, 4))``.
+    quantities : sequence of str or of sequences of str, optional
+        In this order, by default all; those named together share a panel, for instance
+        ``["disphasing_angle", ["speed_1", "speed_2"]]`` for a run-up.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist, or two of unlike units are to share a panel.
+    """
+    ds = with_quantities(ds)
+    if quantities is None:
+        quantities = [str(name) for name, one in ds.data_vars.items() if one.dims == ("time",)]
+    groups = [[one] if isinstance(one, str) else list(one) for one in quantities]
+    if not groups:
+        raise InputError("there is nothing along time")
+    found = [[find(ds, name) for name in group] for group in groups]
+    scales = [scale_of(group) for group in found]
+    clock = scale_of([find(ds, "time")])
+    time = ds["time"].values * clock.factor
+    figure, panels = new_figure(0.4 + 1.0 * len(groups), len(groups))
+    for axes, group, scale in zip(panels, found, scales, strict=True):
+        for i, one in enumerate(group):
+            colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
+            series, text = one.values * scale.factor, sentence(words(one))
+            axes.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
+        if len(group) > 1:
+            axes.set_ylabel(f"[{powers(scale.unit)}]")
+            legend_above(axes)
+        else:
+            above(axes, label(group[0], scale))
+    panels[-1].set_xlabel(label(ds["time"], clock))
+    return figure
+
+
+@styled
+def plot_phase_portrait(
+    ds: xr.Dataset,
+    x: str = "displacement",
+    y: str = "velocity",
+    section: xr.Dataset | None = None,
+    axes: Axes | None = None,
+) -> Figure:
+    """Draw one quantity of a motion against another, and the points of its Poincare section.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `uq.simulate`, or any Dataset with both quantities along time or phase, the last
+        dimension. Along the one before, if there is one, a curve for each.
+    x, y : str
+        What lies along the axes.
+    section : xarray.Dataset, optional
+        With the same quantities at the instants of a section.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        That of `axes`, if given.
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist.
+    """
+    ds = with_quantities(ds)
+    axes = panel_of(axes, 2.6)
+    scales = _label_both(axes, ds, x, y)
+    for i, (name, xs, ys) in enumerate(_families(ds, x, y, scales)):
+        colour, thin = COLOURS[i % len(COLOURS)], 0.7 if len(xs) < 5000 else 0.4
+        axes.plot(xs, ys, color=colour, lw=thin, label=name, rasterized=are_many(len(xs) // 10))
+    if section is not None:
+        for name, xs, ys in _families(section, x, y, scales):
+            axes.plot(xs, ys, "ko", ms=2.5, mew=0, label=f"Poincaré section {name}".strip())
+    return finish(axes)
+
+
+@styled
+def plot_section(
+    ds: xr.Dataset, x: str = "displacement", y: str = "velocity", axes: Axes | None = None
+) -> Figure:
+    """Draw the points of a Poincare section.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        With both quantities at the instants of the section, the last dimension. Along the one
+        before, if there is one, a colour for each.
+    x, y, axes
+        As in `plot_phase_portrait`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist.
+    """
+    axes = panel_of(axes, 2.6)
+    scales = _label_both(axes, ds, x, y)
+    for i, (name, xs, ys) in enumerate(_families(ds, x, y, scales)):
+        size, many = _point_size(xs, ys), are_many(len(xs))
+        colour = COLOURS[i % len(COLOURS)]
+        axes.plot(xs, ys, "o", ms=size, mew=0, color=colour, label=name, rasterized=many)
+    return finish(axes)
+
+
+def _point_size(xs: Floats, ys: Floats) -> float:
+    """Return how large to draw points: larger where they are few, or fall on few places."""
+    points = np.stack([xs, ys], axis=1)
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) == 0:
+        return 1.0
+    places = np.unique(np.round(100 * points / np.ptp(points, axis=0).clip(1e-300)), axis=0)
+    return 3.0 if len(places) < 60 else 1.0
+
+
+def _label_both(axes: Axes, ds: xr.Dataset, x: str, y: str) -> tuple[Scale, Scale]:
+    across, up = find(ds, x), find(ds, y)
+    scales = scale_of([across]), scale_of([up])
+    axes.set_xlabel(label(across, scales[0]))
+    axes.set_ylabel(label(up, scales[1], _BESIDE))
+    return scales
+
+
+def _families(
+    ds: xr.Dataset, x: str, y: str, scales: tuple[Scale, Scale]
+) -> Iterator[tuple[str, Floats, Floats]]:
+    """Yield name and coordinates of each curve: of all there are along the first dimension."""
+    across, up = pair(ds, x, y)
+    if across.ndim == 1:
+        across, up = (one.expand_dims("") for one in (across, up))
+    for i in range(len(across)):
+        name = place_in(across, i) if len(across) > 1 else ""
+        yield name, across[i].values * scales[0].factor, up[i].values * scales[1].factor

@@ -1,0 +1,159 @@
+"""Quantities of a Dataset as axes show them: in words, with their unit, in handy numbers."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from uq.drawing.figure import sentence
+from uq.errors import InputError, nearest
+from uq.time_units import time_unit
+
+_PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "rad", "Hz"}
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+
+
+class Scale(NamedTuple):
+    """How the numbers of an axis are written.
+
+    Attributes
+    ----------
+    factor : float
+        By which values are multiplied.
+    unit : str
+        Of the products.
+    """
+
+    factor: float
+    unit: str
+
+
+def with_quantities(ds: xr.Dataset) -> xr.Dataset:
+    """Return a time history of `uq.simulate` as a Dataset with a variable for each quantity.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        One that has its quantities apart already is returned as it is.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    if "trajectory" not in ds:
+        return ds
+    series = {
+        str(one["quantity"].item()): (
+            "time",
+            one.values,
+            {"units": one["unit"].item(), "long_name": one["meaning"].item()},
+        )
+        for one in ds["trajectory"].transpose("quantity", "time")
+    }
+    time = ds["trajectory"]["time"]
+    return xr.Dataset(series, {"time": ("time", time.values, time.attrs)})
+
+
+def find(ds: xr.Dataset, name: str) -> xr.DataArray:
+    """Return a variable by its name.
+
+    Raises
+    ------
+    InputError
+        When there is none.
+    """
+    if name not in ds.variables:
+        names = [str(other) for other in ds.variables]
+        raise InputError(f"no such quantity '{name}'{nearest(name, names)}")
+    return ds[name]
+
+
+def pair(ds: xr.Dataset, x: str, y: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return two variables, both along all dimensions of either: of x first, one or two in all.
+
+    Raises
+    ------
+    InputError
+        When one does not exist, or they have no dimension or too many.
+    """
+    across, up = xr.broadcast(find(ds, x), find(ds, y))
+    if across.ndim not in (1, 2):
+        dims = ", ".join(map(str, across.dims)) or "nothing"
+        raise InputError(f"'{y}' and '{x}' are along {dims}: one or two dimensions can be drawn")
+    return across, up
+
+
+def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
+    """Return how to write quantities that share an axis: 0.00025 m as 0.25 mm.
+
+    Parameters
+    ----------
+    variables : sequence of xarray.DataArray
+        Of numbers.
+
+    Returns
+    -------
+    Scale
+
+    Raises
+    ------
+    InputError
+        When they have not one unit, or are no numbers.
+    """
+    for one in variables:
+        if one.dtype.kind not in "fiub":
+            raise InputError(f"'{one.name}' is not a number, and has no axis")
+    units = {str(one.attrs.get("units", "1")): one.name for one in variables}
+    if len(units) > 1:
+        unlike = ", ".join(f"{name} [{unit}]" for unit, name in units.items())
+        raise InputError(f"quantities of unlike units have no axis in common: {unlike}")
+    (unit,) = units
+    largest = max(_largest(one) for one in variables)
+    if unit == "s" and largest >= 3600.0:
+        time = time_unit(largest)
+        return Scale(1 / time.seconds, time.name)
+    base = unit.split(" ")[0]
+    if base not in _PREFIXED or largest == 0 or 0.1 <= largest < 1e4:
+        return Scale(1.0, unit)
+    power = int(np.clip(3 * np.floor(np.log10(largest) / 3), min(_PREFIXES), max(_PREFIXES)))
+    return Scale(10.0**-power, _PREFIXES[power] + unit)
+
+
+def words(variable: xr.DataArray) -> str:
+    """Return what a variable is, with its symbol where it has one, without its unit."""
+    meaning = str(variable.attrs.get("long_name", str(variable.name).replace("_", " ")))
+    symbol = variable.attrs.get("symbol")
+    return f"{meaning} ({symbol})" if symbol else meaning
+
+
+def label(variable: xr.DataArray, scale: Scale, width: int = 44) -> str:
+    """Return the text of an axis: what it shows, and its unit.
+
+    Parameters
+    ----------
+    variable : xarray.DataArray
+    scale : Scale
+    width : int
+        Of a line [characters].
+
+    Returns
+    -------
+    str
+    """
+    whole = scale.unit.replace(" ", "\u00a0")  # a unit stays on one line
+    return sentence(words(variable), whole, width).replace("\u00a0", " ")
+
+
+def place_in(variable: xr.DataArray, i: int) -> str:
+    """Return in words which along its first dimension this is: ``left``, ``start 2``."""
+    dim = str(variable.dims[0])
+    if dim not in variable.coords:
+        return f"{dim} {i + 1}"
+    value = variable[dim].values[i]
+    return str(value) if isinstance(value, str) else f"{words(variable[dim])} {value:g}"
+
+
+def _largest(variable: xr.DataArray) -> float:
+    values = np.abs(np.asarray(variable.values, float))
+    return float(values[np.isfinite(values)].max(initial=0.0))

@@ -1,0 +1,189 @@
+"""Figures of how a machine responds: curves, bifurcation diagrams and basins of attraction."""
+
+from collections.abc import Sequence
+from itertools import cycle
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+
+from uq.drawing.figure import COLOURS, LINES, powers, sentence, styled
+from uq.drawing.panel import are_many, finish, panel_of
+from uq.drawing.quantities import find, label, pair, place_in, scale_of
+from uq.errors import InputError
+
+_BESIDE = 32  # characters that the label of a vertical axis has room for
+_OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
+
+
+@styled
+def plot_curve(ds: xr.Dataset, y: str, x: str, axes: Axes | None = None) -> Figure:
+    """Draw one quantity against another: work-rates against gaps, gaps against the time of wear.
+
+    Where the regime, if ``ds["regime"]`` tells one, changes along the curve, there is a dotted
+    line.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    y : str
+        A variable along one dimension, and perhaps a second, for instance ``site``: a curve for
+        each.
+    x : str
+        A variable along the first of these, and perhaps the second.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        That of `axes`, if given.
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist.
+    """
+    across, up = pair(ds, x, y)
+    scales = scale_of([across]), scale_of([up])
+    axes = panel_of(axes, 2.2)
+    along = across.dims[0]
+    across, up = across.transpose(..., along), up.transpose(..., along)
+    family = up if up.ndim > 1 else up.expand_dims("")
+    places = across if across.ndim > 1 else across.expand_dims("")
+    for i in range(len(family)):
+        axes.plot(
+            places[i].values * scales[0].factor,
+            family[i].values * scales[1].factor,
+            color=COLOURS[i % len(COLOURS)],
+            ls=LINES[i % len(LINES)],
+            label=place_in(family, i) if len(family) > 1 else "",
+        )
+    if "regime" in ds and ds["regime"].dims == (along,):
+        kinds = ds["regime"].values
+        changed = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
+        for i, where in enumerate(places[0].values[changed] * scales[0].factor):
+            text = "" if i else "change of regime"
+            axes.axvline(where, color="black", ls=":", lw=0.7, zorder=0, label=text)
+    axes.set_xlabel(label(across, scales[0]))
+    axes.set_ylabel(label(up, scales[1], _BESIDE))
+    return finish(axes)
+
+
+@styled
+def plot_bifurcation(
+    ds: xr.Dataset, y: str, x: str, by: str | None = None, axes: Axes | None = None
+) -> Figure:
+    """Draw all values that a quantity takes at each value of a parameter, as points.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    y : str
+        A variable along that of `x` and other dimensions, NaN where there is no value.
+    x : str
+        A variable along one dimension.
+    by : str, optional
+        A variable of words along the same, for instance ``regime``: a colour for each.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        That of `axes`, if given.
+
+    Raises
+    ------
+    InputError
+        When a quantity does not exist.
+    """
+    up, across = find(ds, y), find(ds, x)
+    kinds = find(ds, by) if by else xr.full_like(across, "", dtype=object)
+    axes = panel_of(axes, 2.4)
+    scales = scale_of([across]), scale_of([up])
+    up, across, kinds = xr.broadcast(up, across, kinds)
+    there = np.isfinite(up.values)
+    values, places = (one.values * s.factor for one, s in ((up, scales[1]), (across, scales[0])))
+    words = [str(word) for word in np.unique(kinds.values[there])]
+    for word, colour in zip(words, cycle(COLOURS)):
+        chosen = there & (kinds.values == word)
+        points = places[chosen], values[chosen]
+        size = 1.2 if there.sum() > 2000 else 2.0
+        many = are_many(int(chosen.sum()))
+        axes.plot(*points, "o", ms=size, mew=0, color=colour, label=word, rasterized=many)
+    axes.set_xlabel(label(across, scales[0]))
+    axes.set_ylabel(label(up, scales[1], _BESIDE))
+    return finish(axes)
+
+
+@styled
+def plot_basins(ds: xr.Dataset, outputs: Sequence[str] = (), axes: Axes | None = None) -> Figure:
+    """Draw which points of a grid lead to which attractor.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `uq.basins`, over two parameters.
+    outputs : sequence of str
+        Of which the legend gives the values that the first point of each basin has, beside its
+        share of the grid and the words of categories.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        That of `axes`, if given.
+
+    Raises
+    ------
+    InputError
+        When there are not two parameters, or an output does not exist.
+    """
+    attractor = find(ds, "attractor")
+    if attractor.ndim != 2:
+        raise InputError(f"basins are drawn over two parameters, not {attractor.ndim}")
+    across, up = (ds[dim] for dim in attractor.dims)
+    scales = scale_of([across]), scale_of([up])
+    texts = [_basin(ds.isel(basin=i), outputs) for i in range(ds.sizes["basin"])]
+    axes = panel_of(axes, 2.6)
+    # More attractors than colours: the rare ones share the last.
+    shown = np.where(attractor.values < 0, len(COLOURS) + 1, attractor.values)
+    shown = np.where(attractor.values >= len(COLOURS), len(COLOURS), shown)
+    axes.pcolormesh(
+        across.values * scales[0].factor,
+        up.values * scales[1].factor,
+        shown.T,
+        cmap=ListedColormap([*COLOURS, _OTHERS, _FAILED]),
+        vmin=-0.5,
+        vmax=len(COLOURS) + 1.5,
+        rasterized=True,
+    )
+    entries = list(zip(COLOURS, texts, strict=False))
+    rare = float(ds["share"][len(COLOURS) :].sum())
+    if len(texts) > len(COLOURS):
+        entries.append((_OTHERS, f"{len(texts) - len(COLOURS)} others, {rare:.1%}"))
+    if (attractor.values < 0).any():
+        entries.append((_FAILED, f"failed, {float((attractor < 0).mean()):.1%}"))
+    for colour, text in entries:
+        axes.plot([], [], "s", color=colour, mec="black", mew=0.4, label=text)
+    axes.set_xlabel(label(across, scales[0]))
+    axes.set_ylabel(label(up, scales[1], _BESIDE))
+    return finish(axes)
+
+
+def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
+    """Return in words what is known of an attractor: its regime, numbers asked for, its share."""
+    known = [
+        str(value.item())
+        for name, value in one.data_vars.items()
+        if str(name).startswith("representative_") and value.dtype.kind in "UO" and not value.ndim
+    ]
+    for name in outputs:
+        value = find(one, f"representative_{name}")
+        scale = scale_of([value])
+        known.append(f"{value.item() * scale.factor:.3g} {powers(scale.unit)}".removesuffix(" 1"))
+    return sentence(", ".join([*known, f"{float(one['share']):.1%}"]), width=60)

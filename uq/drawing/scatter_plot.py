@@ -1,0 +1,235 @@
+"""Rows as points: an output against the inputs that move it most, and inputs by regime."""
+
+import textwrap
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from uq import intervals
+from uq.drawing.elements_plot import (
+    label,
+    occurring_regimes,
+    regime_colours,
+    rows_in_words,
+    told_in,
+)
+from uq.drawing.figure import (
+    COLOURS,
+    WIDTH,
+    is_wide,
+    legend,
+    logarithmic,
+    named_input,
+    roomy,
+    sentence,
+    styled,
+    thinned,
+    whole_numbers,
+)
+from uq.errors import InputError
+from uq.indices.independent_inputs import independent_inputs
+from uq.rows.elements import Element, Floats, independent_rows, named_elements, replicates_of
+
+_MOST_INPUTS = 3
+_MOST_POINTS = 3000
+_IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
+
+
+@styled
+def scatter(ds: xr.Dataset, output: str) -> Figure:
+    """Draw the rows of one output against the inputs that move it most, with conditional means.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        An output without dimensions, or one element of another: of an output with several, its
+        first. Where lives never end or are censored, or values spread over decades, the line is
+        the conditional median.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    rows = independent_rows(ds)
+    element = named_elements(rows, output)[0]
+    inputs = independent_inputs(rows)
+    leading = _leading(inputs, element)[:_MOST_INPUTS]
+    figure = Figure(figsize=(WIDTH, 0.5 + 1.5 * len(leading)), layout="constrained")
+    panels = figure.subplots(len(leading), sharey=True, squeeze=False)[:, 0]
+    finite = np.isfinite(element.values)
+    unit, per = told_in(element.units, element.values)
+    wide = is_wide(element.values[finite])
+    independent = replicates_of(rows) is None
+    for axes, name in zip(panels, leading, strict=True):
+        _points(axes, inputs[name], element, per)
+        _conditional(axes, inputs[name], element, per, wide, independent)
+        _name_input(axes, rows, name)
+        whole_numbers(axes.yaxis)
+        axes.set_ylabel(sentence(element.meaning, unit, width=24))
+        if wide:
+            logarithmic(axes, vertical=True)
+    words = label(ds, element)
+    title = f"{words}{', ' if words else ''}{rows_in_words([element])}"
+    panels[0].set_title(textwrap.fill(title, 46), loc="left")
+    legend(panels[0])
+    return figure
+
+
+def _points(axes: Axes, x: Floats, element: Element, per: float) -> None:
+    y, shown = element.values / per, np.zeros(len(x), dtype=bool)
+    shown[thinned(len(x), _MOST_POINTS)] = True
+    ended = shown & np.isfinite(y) & ~element.censored
+    size = _marker(shown.sum())
+    style: Any = {"ls": "", "rasterized": True, "alpha": 0.6, "mew": 0}
+    axes.plot(x[ended], y[ended], ".", ms=size, color=COLOURS[4], **style)
+    if (going := shown & element.censored & np.isfinite(y)).any():
+        words = "censored: still going on"
+        axes.plot(x[going], y[going], "^", ms=size, color=COLOURS[3], label=words, **style)
+    if (never := shown & element.never).any():
+        top = np.full(int(never.sum()), 1.0)
+        axes.plot(
+            x[never],
+            top,
+            "|",
+            ms=5,
+            color=COLOURS[5],
+            label="never, at the top edge",
+            transform=axes.get_xaxis_transform(),
+            clip_on=False,
+            rasterized=True,
+        )
+
+
+def _marker(rows: int) -> float:
+    """Return the size of points so that many do not make one blot."""
+    return 3.0 if rows > 1000 else 4.5
+
+
+def _conditional(
+    axes: Axes, x: Floats, element: Element, per: float, wide: bool, independent: bool
+) -> None:
+    """Draw the mean within slices of the input, or the median where the mean says little."""
+    present = element.present
+    x, values = x[present], element.at_most / per
+    medians = wide or not np.isfinite(values).all()
+    count = min(_MOST_BINS, len(x) // _IN_BIN)
+    if count < 2:
+        return
+    slices = np.array_split(np.argsort(x, kind="stable"), count)
+    middle = np.array([x[rows].mean() for rows in slices])
+    if medians:
+        line = np.array([intervals.quantile(values[rows], 0.5) for rows in slices])
+        ends = [intervals.quantile_interval(values[rows], 0.5) for rows in slices]
+    else:
+        line = np.array([values[rows].mean() for rows in slices])
+        ends = [intervals.mean_interval(values[rows]) for rows in slices]
+    line = np.where(np.isfinite(line), line, np.nan)
+    words = f"{'median' if medians else 'mean'} of slices of {len(x) // count} rows"
+    axes.plot(middle, line, color=COLOURS[1], label=words + independent * ", 95 % band")
+    ended = values[np.isfinite(values)]
+    if independent and len(ended):
+        low, high = np.array(ends, dtype=float).T
+        top = ended.max()  # an end that is never would hide all others
+        axes.fill_between(middle, low, np.minimum(high, top), color=COLOURS[1], alpha=0.25, lw=0)
+
+
+def _leading(inputs: dict[str, Floats], element: Element) -> list[str]:
+    """Return the inputs, the one first whose slices differ most in the mean rank of the output."""
+    from scipy.stats import rankdata
+
+    present = element.present
+    ranks = rankdata(element.at_most)
+    count = max(1, min(_MOST_BINS, len(ranks) // _IN_BIN))
+
+    def between(x: Floats) -> float:
+        slices = np.array_split(ranks[np.argsort(x[present], kind="stable")], count)
+        means = np.array([part.mean() if len(part) else 0.0 for part in slices])
+        return -float(np.average((means - ranks.mean()) ** 2)) if len(ranks) else 0.0
+
+    return sorted(inputs, key=lambda name: between(inputs[name]))
+
+
+def _name_input(axes: Axes, rows: xr.Dataset, name: str, width: int = 44, ticks: int = 6) -> None:
+    axes.set_xlabel(named_input(rows[name], width))
+    roomy(axes, ticks)
+
+
+@styled
+def pairs(ds: xr.Dataset) -> Figure:
+    """Draw the inputs that decide the regime against each other, the rows coloured by regime.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of a model with regimes, and of a study with two uncertain inputs or more.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When there are no regimes, or there is only one input.
+    """
+    rows = independent_rows(ds)
+    regimes = occurring_regimes(rows)
+    inputs = independent_inputs(rows)
+    if not regimes or len(inputs) < 2:
+        raise InputError("pairs by regime need a model with regimes and two uncertain inputs")
+    codes = rows["regime"].values
+    leading = sorted(inputs, key=lambda name: -_told_apart(inputs[name], codes))[:_MOST_INPUTS]
+    size = len(leading) - 1
+    figure = Figure(figsize=(WIDTH, 0.8 + 1.45 * size), layout="constrained")
+    panels = figure.subplots(size, size, squeeze=False, sharex="col", sharey="row")
+    shown = thinned(len(codes), _MOST_POINTS)
+    colours = regime_colours(rows)
+    for i, down in enumerate(leading[1:]):
+        for j, across in enumerate(leading[:-1]):
+            axes = panels[i, j]
+            if j > i:
+                axes.set_axis_off()
+                continue
+            for name, code in regimes.items():
+                own = shown[codes[shown] == code]
+                axes.plot(
+                    inputs[across][own],
+                    inputs[down][own],
+                    ".",
+                    ms=_marker(len(shown)),
+                    mew=0,
+                    alpha=0.7,
+                    color=colours[name],
+                    label=name,
+                    rasterized=True,
+                )
+            axes.locator_params(axis="y", nbins=4)
+            whole_numbers(axes.yaxis)
+            if i == size - 1:
+                _name_input(axes, rows, across, width=22, ticks=6 if size == 1 else 3)
+            if j == 0:
+                axes.set_ylabel(named_input(rows[down], width=18))
+    panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
+    legend(panels[0, 0])
+    return figure
+
+
+def _told_apart(x: Floats, codes: NDArray[Any]) -> float:
+    """Return the largest distance between an input's values in one regime and in the others."""
+    ascending = np.sort(x)
+    far = 0.0
+    for code in np.unique(codes[codes >= 0]):
+        inside = codes == code
+        if min(inside.sum(), (~inside).sum()) > 0:
+            one, other = (
+                np.searchsorted(np.sort(x[mask]), ascending, side="right") / mask.sum()
+                for mask in (inside, ~inside)
+            )
+            far = max(far, float(np.abs(one - other).max()))
+    return far

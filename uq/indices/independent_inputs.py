@@ -1,0 +1,50 @@
+"""The inputs of a result that vary on their own, each a column of its design."""
+
+import xarray as xr
+
+from uq.rows.elements import Floats
+from uq.study.file import Tied
+from uq.study.reading import read_study_text
+
+
+def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
+    """Return the values of each input as its own law gives them.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n,)
+        Without parameters that equal another; of one that is another times a factor, the factor.
+        Inputs with rank correlations are there all the same.
+    """
+    entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
+    found = {}
+    for name, entry in entries.items():
+        if not isinstance(entry, Tied):
+            values = ds[name].values
+            found[name] = values if entry.times is None else values / ds[entry.times].values
+    return found
+
+
+def are_dependent(ds: xr.Dataset) -> bool:
+    """Whether the study of a result states rank correlations, or its rows were imported."""
+    study = read_study_text(ds.attrs["study"], "study of this result")
+    return study.dependence is not None or study.design.method == "imported"
+
+
+def notes_on_inputs(ds: xr.Dataset) -> list[str]:
+    """Return sentences on what stands for what among the inputs of a result."""
+    entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
+    notes = []
+    for name, entry in entries.items():
+        if isinstance(entry, Tied):
+            notes.append(f"{name} equals {entry.equals}: the index of {entry.equals} is of both")
+        elif entry.times is not None:
+            notes.append(f"{name} is {entry.times} times a factor: its index is of the factor")
+    if are_dependent(ds):
+        notes.append("inputs are dependent: an input may owe its index to another")
+    return notes

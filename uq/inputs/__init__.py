@@ -1,0 +1,1 @@
+"""What is uncertain: laws, dependence between inputs, observed data."""

@@ -1,0 +1,234 @@
+"""A law inside the bounds of its parameter: does it fit, and its quantiles given that it does."""
+
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Parameter
+from uq.inputs.distributions import (
+    Beta,
+    Law,
+    LogUniform,
+    Normal,
+    Pert,
+    Triangular,
+    TruncatedNormal,
+    Uniform,
+)
+from uq.inputs.observed import Listed
+
+OUTSIDE_AT_MOST = 1e-6
+"""Probability a law may have outside its parameter's bounds."""
+
+_LEAST_KEPT = 1e-290
+"""A truncation that keeps less of its parent reaches into denormal numbers."""
+
+
+def ppf_within(
+    law: Law, u: NDArray[np.float64], bounds: tuple[float, float]
+) -> NDArray[np.float64]:
+    """Map the unit interval to a law conditioned on lying within bounds.
+
+    The lower half goes through the distribution function, the upper half through the survival
+    function, so that both tails keep their relative accuracy.
+
+    Parameters
+    ----------
+    law : Law
+    u : ndarray, shape (n,)
+        Contiguous, in (0, 1); each value is mapped by itself.
+    bounds : tuple of float
+        Both ends included, in the law's unit.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Never outside the bounds.
+    """
+    return _quantiles(_condition(law, bounds), u)
+
+
+def ppf_between(
+    law: Law, u: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Map the unit interval to a law conditioned on ends that differ from row to row.
+
+    Parameters
+    ----------
+    law : Law
+    u, low, high : ndarray, shape (n,)
+        As in `ppf_within`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    return _quantiles(_shares(law, *_tightened(law, low, high)), u)
+
+
+def cdf_within(
+    law: Law, x: NDArray[np.float64], bounds: tuple[float, float]
+) -> NDArray[np.float64]:
+    """Return the probability up to and including x of a law conditioned on lying within bounds.
+
+    Parameters
+    ----------
+    law : Law
+    x : ndarray, shape (n,)
+    bounds : tuple of float
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    to = _condition(law, bounds)
+    share = (to.parent.cdf(x) - to.below) / (to.not_above - to.below)
+    return np.clip(np.where(x < to.low, 0.0, share), 0.0, 1.0)
+
+
+def factor_ends(other: Any, bounds: tuple[float, float]) -> tuple[Any, Any]:
+    """Return the ends of a factor that keep its product with another parameter within bounds."""
+    ends = bounds[0] / other, bounds[1] / other
+    return np.minimum(*ends), np.maximum(*ends)
+
+
+def support(law: Law, bounds: tuple[float, float]) -> tuple[float, float]:
+    """Return the least and the greatest value that a row can have."""
+    ends = ppf_within(law, np.array([2.0**-54, 1.0 - 2.0**-53]), bounds)
+    return float(ends[0]), float(ends[1])
+
+
+class _Condition(NamedTuple):
+    """Where a law may lie, and how much of its parent lies below and above either end.
+
+    Each is a number, or an array with one number per row.
+    """
+
+    parent: Any
+    low: Any
+    high: Any
+    below: Any
+    not_below: Any
+    not_above: Any
+    above: Any
+
+
+def _quantiles(to: _Condition, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    x = np.empty_like(u)
+    with np.errstate(all="ignore"):
+        p = to.below + u * (to.not_above - to.below)
+        q = to.above + (1.0 - u) * (to.not_below - to.above)
+        lower_half = p <= 0.5
+        upper_half = ~lower_half
+        x[lower_half] = to.parent.ppf(p[lower_half])
+        x[upper_half] = to.parent.isf(q[upper_half])
+    return np.clip(x, to.low, to.high)
+
+
+@lru_cache(maxsize=1024)  # making a scipy distribution costs more than a thousand quantiles
+def _condition(law: Law, bounds: tuple[float, float]) -> _Condition:
+    low, high = map(float, _tightened(law, *bounds))
+    if isinstance(law, Listed):  # rounding must not lead to an end that is none of the values
+        low, high = law.between(low, high) or (low, high)
+    found = _shares(law, low, high)
+    return _Condition(found.parent, *map(float, found[1:]))
+
+
+def _tightened(law: Law, low: Any, high: Any) -> tuple[Any, Any]:
+    """Return where a law may lie: within some ends, and within its own truncation."""
+    _, lower, upper = law.parent()
+    return np.maximum(low, lower), np.minimum(high, upper)
+
+
+def _shares(law: Law, low: Any, high: Any) -> _Condition:
+    parent, _, _ = law.parent()
+    # The value at the lower end is inside, which matters where it has a probability of its own.
+    end = np.nextafter(low, -np.inf) if law.discrete else low
+    with np.errstate(all="ignore"):
+        shares = parent.cdf(end), parent.sf(end), parent.cdf(high), parent.sf(high)
+    return _Condition(parent, low, high, *shares)
+
+
+class LawProblem(NamedTuple):
+    """Why a law does not suit a parameter.
+
+    Attributes
+    ----------
+    text : str
+        What is wrong and what to do.
+    argument : tuple of str
+        The guilty argument, if it is one.
+    value : float or None
+        Its value.
+    """
+
+    text: str
+    argument: tuple[str, ...] = ()
+    value: float | None = None
+
+
+def law_problem(law: Law, parameter: Parameter) -> LawProblem | None:
+    """Say why a law does not suit a parameter, or return None.
+
+    Parameters
+    ----------
+    law : Law
+    parameter : Parameter
+
+    Returns
+    -------
+    LawProblem or None
+    """
+    low, high = parameter.bounds
+    bounds = f"the parameter's bounds, {low!r} to {high!r} [{parameter.unit}]"
+    cut = law.truncate is not None or isinstance(law, TruncatedNormal)
+    for argument in ("mean", "median", "mode"):
+        value = getattr(law, argument, None)
+        if value is not None and not low <= value <= high and not cut:
+            return LawProblem(f"must lie within {bounds}", (argument,), value)
+    if isinstance(law, Listed) and law.between(*map(float, _tightened(law, low, high))) is None:
+        return LawProblem(f"has no value within {bounds}")
+    outside = outside_share(law, low, high)
+    if outside is None:
+        return LawProblem("these numbers are too extreme to compute with; use others")
+    if outside <= OUTSIDE_AT_MOST:
+        return None
+    return LawProblem(
+        f"has {outside:.2g} of its probability outside {bounds}"
+        f" (allowed: {OUTSIDE_AT_MOST:g}); {_remedy(law)}"
+    )
+
+
+def outside_share(law: Law, low: Any, high: Any) -> Any:
+    """Return how much of a law, after its truncation, lies outside some ends.
+
+    Parameters
+    ----------
+    law : Law
+    low, high : float or ndarray, shape (n,)
+
+    Returns
+    -------
+    float, ndarray of shape (n,), or None
+        None if it cannot be computed.
+    """
+    parent, lower, upper = law.parent()
+    own = _shares(law, lower, upper)
+    ends = _shares(law, *_tightened(law, low, high))
+    with np.errstate(all="ignore"):
+        kept = np.maximum(own.not_above - own.below, own.not_below - own.above)
+        outside = ((ends.below - own.below) + (ends.above - own.above)) / kept
+        extreme = min(parent.sf(lower), parent.cdf(upper)) < _LEAST_KEPT or not kept > 0
+    return None if extreme or np.isnan(outside).any() else np.minimum(outside, 1.0)
+
+
+def _remedy(law: Law) -> str:
+    if law.truncate is not None:
+        return f"truncate = [{law.truncate[0]!r}, {law.truncate[1]!r}] must lie within them"
+    if isinstance(law, Uniform | LogUniform | TruncatedNormal | Triangular | Pert | Beta):
+        return f"lower = {law.lower!r} and upper = {law.upper!r} must lie within them"
+    if isinstance(law, Normal):
+        return "use a truncated-normal with lower and upper within them, or other numbers"
+    return "add truncate = [lower, upper] within them, or use other numbers"

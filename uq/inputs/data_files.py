@@ -1,0 +1,186 @@
+"""Columns of numbers that a study file names: read from CSV or netCDF, kept in the study's text.
+
+A result carries the text of its study. With the numbers at its end that text is complete: it gives
+the same rows when the files have changed or are gone.
+"""
+
+import csv
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.errors import nearest
+from uq.inputs.faults import Fault
+from uq.literals import key
+
+MAX_NUMBERS = 1_000_000
+"""Numbers in a column: they become part of every result."""
+
+Columns = dict[str, dict[str, str]]
+"""File -> column -> numbers, as text."""
+
+
+def columns_of_files(
+    tables: Mapping[str, Mapping[str, Any]], folder: Path | None
+) -> tuple[Columns, list[Fault]]:
+    """Return every column that a study file names.
+
+    Parameters
+    ----------
+    tables : dict
+        The sound entries of a study file; where its [data] has a file, that is not read.
+    folder : Path or None
+        What names of files are relative to; None if there are no files, only [data].
+
+    Returns
+    -------
+    columns : dict
+    faults : list of Fault
+    """
+    columns: Columns = {}
+    faults = []
+    for path, file, column in _named(tables):
+        try:
+            if file in tables["data"]:
+                found = _kept(tables["data"][file], column)
+            else:
+                found = _as_text(_read(folder, file, column))
+        except ValueError as error:
+            fault = Fault(path, str(error), file)
+            if fault not in faults:  # the same for each column of a file that cannot be read
+                faults.append(fault)
+        else:
+            columns.setdefault(file, {})[column] = found
+    return columns, faults
+
+
+def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
+    """Return the text of a study file with the columns it names at its end.
+
+    Parameters
+    ----------
+    text : str
+    columns : dict
+    kept : dict
+        What its [data] has already.
+
+    Returns
+    -------
+    str
+        TOML; the same text if there is nothing to add.
+    """
+    lines = [] if text.endswith("\n") else [""]
+    for file, table in columns.items():
+        if file not in kept:
+            lines += ["# Kept by uq, so that this text is complete.", f"[data.{key(file)}]"]
+            lines += [f"{key(column)} = '{numbers}'" for column, numbers in table.items()]
+    return "\n".join([text, *lines, ""]) if any(lines) else text
+
+
+@lru_cache(maxsize=128)
+def numbers(text: str) -> NDArray[np.float64]:
+    """Return the numbers of a column; read-only."""
+    found = np.array(text.split(), dtype=float)
+    found.setflags(write=False)
+    return found
+
+
+def _named(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str, str]]:
+    """Yield where a file is named, its name, and each column that is wanted of it."""
+    uncertain, design = tables["uncertain"], tables["design"]
+    for name, entry in uncertain.items():
+        if "file" in entry:
+            yield ("uncertain", name, "file"), entry["file"], entry["column"]
+    if design.get("method") == "imported" and "file" in design:
+        for name, entry in uncertain.items():
+            if "equals" not in entry:
+                yield ("design", "file"), design["file"], name
+
+
+def _kept(columns: Mapping[str, str], column: str) -> str:
+    if column not in columns:
+        raise ValueError(f"[data] has no column '{column}' of this file")
+    try:
+        _checked(numbers(columns[column]))
+    except ValueError:
+        raise ValueError(f"[data] is spoilt: column '{column}' must be numbers") from None
+    return columns[column]
+
+
+def _as_text(values: NDArray[np.float64]) -> str:
+    return " ".join(map(repr, values.tolist()))
+
+
+def _read(folder: Path | None, file: str, column: str) -> NDArray[np.float64]:
+    """Read a column; a `ValueError` says what is wrong."""
+    if folder is None:
+        raise ValueError("the text of this study does not hold the file's numbers")
+    path = folder / file
+    if not path.is_file():
+        names = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
+        raise ValueError(f"no such file in {folder.absolute()}{nearest(path.name, names)}")
+    read = _read_netcdf if path.suffix == ".nc" else _read_csv
+    try:
+        return _checked(read(path, column))
+    except OSError as error:
+        raise ValueError(f"cannot be read: {error.strerror or error}") from None
+
+
+def _checked(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    if not 1 <= len(values) <= MAX_NUMBERS:
+        raise ValueError(f"has {len(values)} rows (allowed: 1 to {MAX_NUMBERS})")
+    if not np.isfinite(values).all():
+        raise ValueError(f"row {int(np.argmin(np.isfinite(values))) + 1} is not finite")
+    return values
+
+
+def _read_csv(path: Path, column: str) -> NDArray[np.float64]:
+    with path.open(newline="", encoding="utf-8-sig") as lines:
+        try:
+            rows = csv.reader(lines, skipinitialspace=True, strict=True)
+            names = [name.strip() for name in next(rows, [])]
+            if names.count(column) != 1:
+                raise ValueError(_no_column(column, names))
+            place = names.index(column)
+            return np.array(
+                [_number(row, place, column, rows.line_num) for row in rows if any(row)]
+            )
+        except csv.Error as error:
+            raise ValueError(f"not CSV: {error}") from None
+        except UnicodeDecodeError:
+            raise ValueError("not a text file in UTF-8") from None
+
+
+def _number(row: list[str], place: int, column: str, line: int) -> float:
+    cell = row[place].strip() if place < len(row) else ""
+    try:
+        value = float(cell)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value):
+        raise ValueError(f"line {line}: column '{column}' must be a finite number: '{cell}'")
+    return value
+
+
+def _read_netcdf(path: Path, column: str) -> NDArray[np.float64]:
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as ds:
+            wide = [str(name) for name in ds.variables if ds[name].ndim == 1]
+            if column not in wide:
+                raise ValueError(_no_column(column, wide))
+            return np.asarray(ds[column].values, dtype=float)
+    except (OSError, RuntimeError, TypeError):
+        raise ValueError("not a netCDF file of numbers") from None
+
+
+def _no_column(column: str, names: list[str]) -> str:
+    many = "several columns" if column in names else "no column"
+    known = ", ".join(names) if names else "none"
+    return f"has {many} '{column}'{nearest(column, names)} (its columns: {known})"

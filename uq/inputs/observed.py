@@ -1,0 +1,181 @@
+"""Laws of listed values: choices, whole numbers, measured values as they are or counted in bins."""
+
+from functools import lru_cache
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from uq.inputs.law import LIST, BaseLaw, Positive, Scipy
+
+Floats = NDArray[np.float64]
+Numbers = Annotated[tuple[float, ...], LIST]
+
+MAX_VALUES = 100_000
+"""Values of an empirical law; a histogram says the same of more."""
+
+
+class Steps(NamedTuple):
+    """A discrete distribution with the methods of `scipy.stats` that are used here.
+
+    That of scipy compares every probability with every value.
+
+    Attributes
+    ----------
+    values : ndarray, shape (k,)
+        Ascending.
+    cumulated : ndarray, shape (k,)
+        Probability up to and including each value; the last is 1.
+    """
+
+    values: Floats
+    cumulated: Floats
+
+    def cdf(self, x: Any) -> Any:
+        """Return P(X <= x)."""
+        return np.append(0.0, self.cumulated)[np.searchsorted(self.values, x, side="right")]
+
+    def sf(self, x: Any) -> Any:
+        """Return P(X > x)."""
+        return 1.0 - self.cdf(x)
+
+    def ppf(self, p: Any) -> Any:
+        """Return the least value with P(X <= value) >= p."""
+        place = np.searchsorted(self.cumulated, p, side="left")
+        return self.values[np.minimum(place, len(self.values) - 1)]
+
+    def isf(self, q: Any) -> Any:
+        """Return the least value with P(X > value) <= q."""
+        return self.ppf(1.0 - np.asarray(q))
+
+    def mean(self) -> float:
+        """Return the mean."""
+        return float(self.values @ np.diff(self.cumulated, prepend=0.0))
+
+    def std(self) -> float:
+        """Return the standard deviation."""
+        square = (self.values - self.mean()) ** 2 @ np.diff(self.cumulated, prepend=0.0)
+        return float(np.sqrt(square))
+
+
+@lru_cache(maxsize=64)
+def _steps(values: tuple[float, ...], weights: tuple[float, ...] | None) -> Steps:
+    found, place = np.unique(values, return_inverse=True)
+    cumulated = np.cumsum(np.bincount(place, weights))
+    return Steps(found, cumulated / cumulated[-1])
+
+
+class Listed(BaseLaw):
+    """A law that takes some values only."""
+
+    discrete: ClassVar[bool] = True
+
+    def between(self, low: float, high: float) -> tuple[float, float] | None:
+        """Return the first and the last value between two ends, or None if there is none."""
+        values = self.frozen().values
+        inside = values[(low <= values) & (values <= high)]
+        return (float(inside[0]), float(inside[-1])) if len(inside) else None
+
+
+class DiscreteChoice(Listed):
+    """One of some values, each with its weight; alike if no weights are given."""
+
+    distribution: Literal["discrete-choice"]
+    values: Annotated[Numbers, Field(min_length=1)]
+    weights: Annotated[tuple[Positive, ...], LIST] | None = Field(
+        None, description="how likely each value is, relative to the others"
+    )
+
+    @model_validator(mode="after")
+    def _check_values(self) -> Self:
+        if len(set(self.values)) < 2:
+            raise ValueError("takes one value only; put the parameter into [fixed]")
+        if self.weights is not None and len(self.weights) != len(self.values):
+            raise ValueError(f"has {len(self.values)} values but {len(self.weights)} weights")
+        return self
+
+    def frozen(self) -> Steps:
+        """Return the law before `truncate`."""
+        return _steps(self.values, self.weights)
+
+
+class IntegerRange(Listed):
+    """A whole number between two ends, both included, all alike."""
+
+    _ascending = ("lower", "upper")
+
+    distribution: Literal["integer-range"]
+    lower: int = Field(ge=-(2**53), le=2**53)
+    upper: int = Field(ge=-(2**53), le=2**53)
+
+    def _scipy(self) -> Scipy:
+        return "randint", {"low": self.lower, "high": self.upper + 1}
+
+    def between(self, low: float, high: float) -> tuple[float, float] | None:
+        """Return the first and the last whole number between two ends, or None."""
+        first, last = max(np.ceil(low), self.lower), min(np.floor(high), self.upper)
+        return (float(first), float(last)) if first <= last else None
+
+
+class Empirical(Listed):
+    """The values in a column of a CSV file, all alike: sampling them is drawing one of them."""
+
+    distribution: Literal["empirical"]
+    file: str | None = Field(None, description="CSV file with a header, beside the study file")
+    column: str | None = Field(None, description="name of the column")
+    values: Numbers | None = Field(None, description="the values themselves, instead of a file")
+
+    @model_validator(mode="after")
+    def _check_values(self) -> Self:
+        if {"file", "column", "values"} & self.model_fields_set not in (
+            {"file", "column"},
+            {"values"},
+        ):
+            raise ValueError("an empirical law takes either file and column, or values")
+        if self.values is not None and (problem := values_problem(self.values)):
+            raise ValueError(problem)
+        return self
+
+    def frozen(self) -> Steps:
+        """Return the law before `truncate`."""
+        assert self.values is not None, "the column has not been read"
+        return _steps(self.values, None)
+
+
+def values_problem(values: tuple[float, ...]) -> str | None:
+    """Say why values make no empirical law, or return None."""
+    if len(set(values)) < 2:
+        return "needs two different values at least"
+    if len(values) > MAX_VALUES:
+        return f"has {len(values)} values (at most {MAX_VALUES}); use a histogram"
+    return None
+
+
+class Histogram(BaseLaw):
+    """Counts of values in bins, alike within each bin."""
+
+    distribution: Literal["histogram"]
+    edges: Numbers = Field(description="ends of the bins, ascending, one more than counts")
+    counts: Annotated[tuple[Annotated[float, Field(ge=0)], ...], LIST] = Field(
+        description="number of values, or any weight, of each bin"
+    )
+
+    @model_validator(mode="after")
+    def _check_bins(self) -> Self:
+        if len(self.edges) != len(self.counts) + 1:
+            raise ValueError(
+                f"must have one edge more than counts: {len(self.edges)} edges,"
+                f" {len(self.counts)} counts"
+            )
+        if not all(low < high for low, high in zip(self.edges, self.edges[1:], strict=False)):
+            raise ValueError("edges must ascend")
+        if not sum(self.counts) > 0:
+            raise ValueError("all counts are zero")
+        return self
+
+    def frozen(self) -> Any:
+        """Return the law before `truncate` as a `scipy.stats.rv_histogram`."""
+        from scipy import stats
+
+        return stats.rv_histogram((np.array(self.counts), np.array(self.edges)), density=False)

@@ -1,0 +1,1 @@
+"""Rows of a study: drawn, evaluated, laid out in a result."""

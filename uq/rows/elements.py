@@ -1,0 +1,258 @@
+"""The elements of a result's outputs: one plain array each, with what became of every row."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.columns import censored_name, lacking
+from uq.designs.table import DESIGNS
+from uq.errors import InputError, choices, nearest
+from uq.intervals import Replicates
+from uq.rows.results import elements, failed
+from uq.study.file import AnalysisTable, StudyFile
+from uq.study.reading import read_study_text
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Element:
+    """One number per row: an output, or one element of an output that has dimensions.
+
+    Attributes
+    ----------
+    name : str
+        ``work_rate[site=left]``.
+    output : str
+        ``work_rate``.
+    kind : str
+        As `uq.contract.Output` has it, but never ``"category"``.
+    units : str
+    meaning : str
+        One line: what the output is.
+    place : dict of str to object
+        Dimension -> coordinate; empty for an output without dimensions.
+    values : ndarray, shape (n,)
+        NaN where there is no value; +inf for a lifetime that is never reached.
+    censored : ndarray of bool, shape (n,)
+        Where the value is only a lower bound.
+    failed : ndarray of bool, shape (n,)
+        Where the value is lacking because the row failed.
+    """
+
+    name: str
+    output: str
+    kind: str
+    units: str
+    meaning: str
+    place: dict[str, Any]
+    values: Floats
+    censored: Mask
+    failed: Mask
+
+    @property
+    def undefined(self) -> Mask:
+        """Where the row is sound and the value has no meaning."""
+        return np.isnan(self.values) & ~self.failed
+
+    @property
+    def never(self) -> Mask:
+        """Where a lifetime is known never to end."""
+        return np.isposinf(self.values) & ~self.censored
+
+    @property
+    def present(self) -> Mask:
+        """Where there is a value."""
+        return ~np.isnan(self.values)
+
+    @property
+    def at_least(self) -> Floats:
+        """The values, shape (present,), with each censored one at the bound it reached."""
+        return self.values[self.present]
+
+    @property
+    def at_most(self) -> Floats:
+        """The values, shape (present,), with each censored one as late as it may be: never."""
+        return np.where(self.censored, np.inf, self.values)[self.present]
+
+
+def analysis_of(ds: xr.Dataset) -> AnalysisTable:
+    """Return the [analysis] of the study that a result carries."""
+    return study_file_of(ds).analysis
+
+
+def study_file_of(ds: xr.Dataset) -> StudyFile:
+    """Return the study that a result carries."""
+    return read_study_text(ds.attrs["study"], "study of this result")
+
+
+def independent_rows(ds: xr.Dataset) -> xr.Dataset:
+    """Return the rows for plain statistics: A and B where a design has these, all rows of others.
+
+    The mixed blocks between repeat the numbers of A and B. Where the rows do not follow
+    the laws of the inputs there are none.
+    """
+    design = DESIGNS[ds.attrs["design"]]
+    labels = flags(ds["block"]) if design.follows_laws else []
+    plain = [code for code, label in labels if not label.startswith(("AB_", "BA_"))]
+    chosen = np.isin(ds["block"].values, plain)
+    return ds if chosen.all() else ds.isel(sample=chosen)
+
+
+def replicates_of(rows: xr.Dataset) -> Replicates:
+    """Return the replicate of each row, or None where the rows are independent."""
+    return None if rows.attrs["design"] == "monte-carlo" else rows["replicate"].values
+
+
+def flags(variable: xr.DataArray) -> list[tuple[int, str]]:
+    """Return the codes of a CF flag variable with their labels."""
+    codes = np.atleast_1d(variable.attrs["flag_values"]).tolist()
+    return list(zip(codes, variable.attrs["flag_meanings"].split(), strict=True))
+
+
+def labels(variable: xr.DataArray) -> xr.DataArray:
+    """Return the words that the codes of a variable stand for.
+
+    Parameters
+    ----------
+    variable : xarray.DataArray
+        The ``status``, the ``regime`` or another category of a result, or some rows of it.
+
+    Returns
+    -------
+    xarray.DataArray
+        Of the same shape, for instance to colour a figure or to group by.
+
+    Raises
+    ------
+    InputError
+        When the variable is not a category.
+    """
+    if "flag_values" not in variable.attrs:
+        raise InputError(f"'{variable.name}' is a quantity, not a category: it has no labels")
+    codes, words = zip(*flags(variable), strict=True)
+    order = np.argsort(codes)
+    places = np.searchsorted(codes, variable.values, sorter=order)
+    found = variable.copy(data=np.array(words)[order][places])
+    found.attrs = {"long_name": variable.attrs["long_name"]}
+    return found
+
+
+def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
+    """Return the outputs that a study wants to see: those it names, or else all."""
+    named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds)))
+    return named if analysis.outputs else output_names(ds)
+
+
+def output_names(ds: xr.Dataset) -> tuple[str, ...]:
+    """Return the names of all outputs of a result."""
+    return tuple(
+        str(name) for name, variable in ds.data_vars.items() if variable.attrs["role"] == "output"
+    )
+
+
+def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
+    """Yield the elements of some outputs, in order; categories have none.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, or some rows of one.
+    outputs : sequence of str
+        Names of outputs.
+
+    Yields
+    ------
+    Element
+
+    Raises
+    ------
+    InputError
+        When the result has no such output.
+    """
+    unsound = failed(ds)
+    for output in outputs:
+        if output not in (known := output_names(ds)):
+            raise InputError(
+                f"no such output '{output}'{nearest(output, known)} (allowed: {choices(known)})"
+            )
+        variable = ds[output]
+        if variable.attrs["kind"] == "category":
+            continue
+        flag = censored_name(output)
+        for name, column in elements(variable):
+            place = {str(dim): column[dim].item() for dim in variable.dims if dim != "sample"}
+            values = column.values
+            absent = lacking(variable.attrs["kind"], values)
+            censored = (
+                ds[flag].sel(place).values.astype(bool) & ~absent
+                if flag in ds
+                else np.zeros(len(values), dtype=bool)
+            )
+            yield Element(
+                name,
+                output,
+                variable.attrs["kind"],
+                variable.attrs["units"],
+                variable.attrs["long_name"],
+                place,
+                np.where(absent, np.nan, values),
+                censored,
+                absent & unsound,
+            )
+
+
+def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
+    """Return the elements that a user means by the name of an output or of one element.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    name : str
+        ``time_to_depth`` for all its elements, ``time_to_depth[site=left,depth=0.00025]`` for one.
+
+    Returns
+    -------
+    list of Element
+
+    Raises
+    ------
+    InputError
+        When there is no such output or element, or it is a category.
+    """
+    output = name.partition("[")[0]
+    found = list(elements_of(ds, [output]))
+    if not found:
+        raise InputError(
+            f"'{output}' is a category: it has no numbers; 'uq summary' shows shares of regimes,"
+            f" and 'uq sensitivity --output {output}' what decides them"
+        )
+    if name == output:
+        return found
+    chosen = [element for element in found if element.name == name]
+    if not chosen:
+        names = [element.name for element in found]
+        raise InputError(
+            f"no such element '{name}'{nearest(name, names)} (allowed: {choices(names)})"
+        )
+    return chosen
+
+
+def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
+    """Return the elements of a lifetime that a user means; see `named_elements`.
+
+    Raises
+    ------
+    InputError
+        Also when the output is not a lifetime.
+    """
+    found = named_elements(ds, name)
+    if found[0].kind != "lifetime":
+        lives = [one for one in output_names(ds) if ds[one].attrs["kind"] == "lifetime"]
+        raise InputError(f"'{name}' is not a lifetime (lifetimes: {choices(lives)})")
+    return found

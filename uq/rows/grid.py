@@ -1,0 +1,145 @@
+"""Grids: a model on evenly spaced values of some of its parameters."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from math import prod
+from operator import index
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Model
+from uq.errors import InputError
+from uq.inputs.values import parameter_problem, read_settings
+from uq.rows.sampling import Rows, row_seeds
+from uq.study.registry import find_model, model_names
+
+Axis = tuple[float, float, int]
+"""First value, last value, number of values."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Rows of a model on the points of a grid, the last axis running fastest.
+
+    Attributes
+    ----------
+    model : Model
+    reference : str
+        What another process finds the model by; empty if nothing.
+    axes : dict of str to Axis
+        Of the parameters that vary.
+    constants : dict of str to float
+        All other parameters.
+    settings : object
+        An instance of ``model.settings``.
+    """
+
+    model: Model
+    reference: str
+    axes: Mapping[str, Axis]
+    constants: Mapping[str, float]
+    settings: Any
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of values along each axis."""
+        return tuple(count for _, _, count in self.axes.values())
+
+    @property
+    def rows(self) -> int:
+        """Number of points."""
+        return prod(self.shape)
+
+    @property
+    def choices(self) -> list[Any]:
+        """All that decides the rows, fit for JSON."""
+        model, axes, constants = self.model, list(self.axes.items()), dict(self.constants)
+        return [model.name, model.version, axes, constants, asdict(self.settings)]
+
+    def values(self, name: str) -> NDArray[np.float64]:
+        """Return the values along an axis."""
+        return np.linspace(*self.axes[name])
+
+    def block(self, start: int, stop: int) -> Rows:
+        """Return the rows start..stop, as `uq.rows.sampling.row_block` does."""
+        number = np.arange(start, stop)
+        places = dict(zip(self.axes, np.unravel_index(number, self.shape), strict=True))
+        x = np.empty((len(number), len(self.model.parameter_names)))
+        for i, name in enumerate(self.model.parameter_names):
+            x[:, i] = self.values(name)[places[name]] if name in places else self.constants[name]
+        none = np.zeros(len(number), np.int64)
+        return Rows(x, row_seeds(0, number), none.astype(np.int32), number, none.astype(np.int16))
+
+
+def grid_of(
+    model: str | Model,
+    axes: Mapping[str, Axis],
+    fixed: Mapping[str, float],
+    settings: Mapping[str, Any],
+) -> Grid:
+    """Check what makes a grid, and make it.
+
+    Parameters
+    ----------
+    model : str or Model
+    axes : dict of str to Axis
+    fixed : dict of str to float
+        Other parameters that are not to have their nominal values.
+    settings : dict
+        Numerical settings by name.
+
+    Returns
+    -------
+    Grid
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong, one line each.
+    """
+    found = find_model(model) if isinstance(model, str) else model
+    for what, given in (("axes", axes), ("fixed", fixed), ("settings", settings)):
+        if not isinstance(given, Mapping):
+            raise InputError(f"{what} must be a dictionary with names as keys: {given!r}")
+    faults = [] if axes else ["axes: nothing varies; give at least one parameter its values"]
+    for name, axis in axes.items():
+        if problem := _axis_problem(found, name, axis):
+            faults.append(f"axes: {name} = {axis!r}: {problem}")
+    for name, value in fixed.items():
+        if name in axes:
+            faults.append(f"fixed: {name} = {value!r}: is among the axes too; keep one of the two")
+        elif problem := parameter_problem(found, name, value):
+            faults.append(f"fixed: {name} = {value!r}: {problem}")
+    frozen, wrong = read_settings(found, settings)
+    for name, problem in wrong.items():
+        faults.append(f"settings: {name} = {settings[name]!r}: {problem}" if name else problem)
+    if faults:
+        raise InputError(*faults)
+    return Grid(
+        found,
+        _reference(model),
+        {name: (float(a), float(b), index(n)) for name, (a, b, n) in axes.items()},
+        {name: float(x) for name, x in (found.nominal | dict(fixed)).items() if name not in axes},
+        frozen,
+    )
+
+
+def _axis_problem(model: Model, name: str, axis: Any) -> str | None:
+    try:
+        first, last, count = axis
+        enough = index(count) >= 2
+    except (TypeError, ValueError):
+        return "must be (first value, last value, number of values)"
+    for value in (first, last):
+        if problem := parameter_problem(model, name, value):
+            return problem
+    return None if enough and first < last < np.inf else "must ascend, two finite values at least"
+
+
+def _reference(model: str | Model) -> str:
+    if isinstance(model, str):
+        return model
+    installed = model.name in model_names() and find_model(model.name) is model
+    return model.name if installed else ""

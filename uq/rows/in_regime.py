@@ -1,0 +1,48 @@
+"""The rows of a result that are in one regime."""
+
+import numpy as np
+import xarray as xr
+
+from uq.errors import InputError, choices, nearest
+from uq.rows.elements import flags
+from uq.rows.results import failed
+
+
+def within_regime(ds: xr.Dataset, regime: str) -> xr.Dataset:
+    """Return the rows in one regime, and those that failed before they had one.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    regime : str
+
+    Returns
+    -------
+    xarray.Dataset
+        Failed rows without a regime stay: any of them may have belonged here, and what counts
+        failed rows must see them.
+
+    Raises
+    ------
+    InputError
+        When the result has no regimes, not this one, or no row in it.
+    """
+    if "regime" not in ds:
+        raise InputError(
+            f"this result has no regimes: '{regime}' means nothing here; leave out --regime"
+        )
+    codes = {label: code for code, label in flags(ds["regime"]) if code >= 0}
+    if regime not in codes:
+        known = list(codes)
+        raise InputError(
+            f"no such regime '{regime}'{nearest(regime, known)} (allowed: {', '.join(known)})"
+        )
+    found = ds["regime"].values == codes[regime]
+    if not found.any():
+        there = np.unique(ds["regime"].values)
+        occurring = [label for label, code in codes.items() if code in there]
+        raise InputError(
+            f"no row is in the regime '{regime}' (there are rows in: {choices(occurring)})"
+        )
+    return ds.isel(sample=np.flatnonzero(found | ((ds["regime"].values < 0) & failed(ds))))

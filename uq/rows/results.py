@@ -1,0 +1,254 @@
+"""The schema of a result: one flat, self-describing Dataset, built here and checked here.
+
+One dimension ``sample``; one variable per parameter (``role`` is ``input`` where it is uncertain,
+``fixed`` where it is one number), one per output (``role="output"``, plus the model's own
+dimensions), one ``<name>_censored`` beside each lifetime that can be censored, and ``status``.
+``replicate``, ``group`` and ``block`` say which place of the design a row has. Nothing in it
+depends on clock, host, chunks or workers.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.columns import failed_rows
+from uq.contract import Model
+from uq.errors import InputError, choices, nearest
+from uq.provenance import provenance
+from uq.rows.soundness import unsound
+from uq.rows.variables import (
+    SCHEMA_VERSION,
+    Columns,
+    coordinates,
+    model_attributes,
+    output_variables,
+    parameter_variable,
+    places,
+    study_attributes,
+)
+from uq.study.code import made_here
+
+if TYPE_CHECKING:
+    from uq.rows.sampling import Rows
+    from uq.study.definition import Study
+
+CHECKSUM = "checksum"
+"""Attribute of the file; see `uq.store.seal`."""
+
+UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, TypeError)
+"""What a damaged file makes netCDF4 and xarray raise."""
+
+_IN_MEMORY_BYTES = 200_000_000
+_INFLATED_BYTES, _INFLATION = 100_000_000, 100  # a file that claims more was not made by us
+
+
+def build(
+    study: "Study",
+    rows: "Rows",
+    columns: Columns,
+    status: NDArray[np.int8],
+    failures: Mapping[str, str],
+    numbers: NDArray[np.int64] | None = None,
+) -> xr.Dataset:
+    """Put the rows of a study and what the model made of them into one Dataset.
+
+    Parameters
+    ----------
+    study : Study
+    rows : Rows
+        Inputs and place in the design, n rows.
+    columns : dict of str to ndarray
+        What ``batch`` returns, joined: output name -> (n, *dims), ``<name>_censored`` -> (n,
+        *dims).
+    status : ndarray of int8, shape (n,)
+    failures : dict of str to str
+        Status label -> what happened to the first row with that status.
+    numbers : ndarray of int64, shape (n,), optional
+        Of the rows; by default they are the first.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    model = study.model
+    varied = dict(study.uncertain) | dict(study.tied)
+    inputs: dict[str, Any] = {}
+    for i, name in enumerate(model.parameter_names):
+        if name in varied:
+            inputs[name] = parameter_variable(model, name, rows.x[:, i], varied[name].source)
+        else:
+            value = study.fixed.get(name, model.nominal[name])
+            inputs[name] = parameter_variable(model, name, value)
+    ds = xr.Dataset(
+        inputs | output_variables(model, columns, status, failures),
+        places(study, rows, numbers) | coordinates(model, study.settings),
+        study_attributes(study),
+    )
+    for variable in ds.variables.values():
+        variable.encoding["_FillValue"] = None
+    return ds
+
+
+def build_rows(
+    model: Model,
+    settings: Any,
+    values: Mapping[str, float | NDArray[np.float64]],
+    columns: Columns,
+    status: NDArray[np.int8],
+    failures: Mapping[str, str],
+) -> xr.Dataset:
+    """Put rows computed outside of any study into a Dataset of the same schema.
+
+    Parameters
+    ----------
+    model : Model
+    settings : object
+    values : dict of str to float or ndarray, shape (n,)
+        Every parameter.
+    columns, status, failures
+        As in `build`.
+
+    Returns
+    -------
+    xarray.Dataset
+    """
+    inputs = {name: parameter_variable(model, name, value) for name, value in values.items()}
+    attrs = {"title": model.title} | model_attributes(model) | provenance()
+    outputs = output_variables(model, columns, status, failures)
+    return xr.Dataset(inputs | outputs, coordinates(model, settings), attrs)
+
+
+def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
+    """Yield name and values of each element of an output: ``work_rate[site=left]``.
+
+    Parameters
+    ----------
+    variable : xarray.DataArray
+        With or without the dimension ``sample``.
+
+    Yields
+    ------
+    tuple of str and xarray.DataArray
+        Coordinates appear as Python's repr without quotes.
+    """
+    dims = [str(dim) for dim in variable.dims if dim != "sample"]
+    for index in np.ndindex(*(variable.sizes[dim] for dim in dims)):
+        place = dict(zip(dims, index, strict=True))
+        label = ",".join(f"{dim}={variable[dim].values[i].item()}" for dim, i in place.items())
+        yield f"{variable.name}[{label}]" if label else str(variable.name), variable.isel(place)
+
+
+def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") -> xr.Dataset:
+    """Open a result and check its schema.
+
+    One that takes less than 200 MB is read into memory, and its file closed; what is larger is
+    read when it is used.
+
+    Parameters
+    ----------
+    path : str or Path
+    remedy : str, optional
+        What an error line says can be done.
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    InputError
+        When the file does not exist, is not netCDF, or is not a result of this schema version.
+
+    Examples
+    --------
+    >>> ds = uq.run("studies/ishigami.toml")
+    >>> uq.open_result("results/ishigami.nc").identical(ds)
+    True
+    """
+    path = Path(path)
+    if not path.exists():
+        raise InputError(f"{path}: no such file{_others(path)}; {remedy}")
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder, not a result{_others(path / '_')}; {remedy}")
+    try:
+        ds = _opened(path)
+        check(ds, path)
+    except InputError as error:
+        raise InputError(f"{error}; {remedy}") from None
+    ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
+    return ds
+
+
+def _opened(path: Path) -> xr.Dataset:
+    try:
+        ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False)
+        if ds.nbytes > _INFLATED_BYTES + _INFLATION * path.stat().st_size:
+            ds.close()
+            raise InputError(
+                f"{path}: not a sound result: its {path.stat().st_size / 1e6:.3g} MB claim to be "
+                f"{ds.nbytes / 1e9:.3g} GB"
+            )
+        if ds.nbytes < _IN_MEMORY_BYTES:
+            with ds:
+                ds.load()
+        return ds
+    except UNREADABLE:
+        raise InputError(f"{path}: not a readable netCDF file") from None
+
+
+def _others(path: Path) -> str:
+    """Return which results there are in the folder of a path that is none."""
+    there = sorted(one.name for one in path.parent.glob("*.nc"))
+    return nearest(path.name, there) or (f" (there: {choices(there)})" if there else "")
+
+
+def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
+    """Refuse a Dataset that is not a result of this schema version.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    path : str or Path
+        What the message calls it.
+
+    Raises
+    ------
+    InputError
+    """
+    version = ds.attrs.get("schema_version")
+    if version is None or "study" not in ds.attrs or "status" not in ds:
+        raise InputError(f"{path}: not a result of 'uq run'")
+    if version != SCHEMA_VERSION:
+        raise InputError(
+            f"{path}: written with schema version {version}; this version of vibrolife reads "
+            f"{SCHEMA_VERSION}: run the study again, or read it with xarray"
+        )
+    if fault := unsound(ds):
+        raise InputError(f"{path}: not a sound result: {fault}")
+
+
+def failed(ds: xr.Dataset) -> NDArray[np.bool_]:
+    """Return which rows of a result failed, shape (n,), by the rule of `failed_rows`."""
+    required = (
+        (variable.attrs["kind"], variable.values)
+        for variable in ds.data_vars.values()
+        if variable.attrs.get("role") == "output" and not variable.attrs["may_be_undefined"]
+    )
+    return failed_rows(ds["status"].values, required)
+
+
+def relabel(ds: xr.Dataset, study: "Study") -> xr.Dataset:
+    """Return the same rows under the present text of their study.
+
+    Comments, sources and [analysis] of a study may change without a row being computed again.
+    """
+    here = made_here(study.model_reference)
+    made = {name: ds.attrs[name] for name in here if name in ds.attrs}
+    ds = ds.assign_attrs(study_attributes(study) | made)
+    for name, entry in (dict(study.uncertain) | dict(study.tied)).items():
+        ds[name].attrs["source"] = entry.source or study.model.parameter(name).source
+    return ds

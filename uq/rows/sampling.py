@@ -1,0 +1,193 @@
+"""Rows of a study: from the unit cube to physical inputs, any range of them, always the same bits.
+
+Rows are numbered so that more samples append: row = (j * replicates + r) * blocks + b for base
+point j, replicate r and block b of its group.
+"""
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.designs.table import DESIGNS
+from uq.inputs.conditioning import factor_ends, ppf_between, ppf_within
+from uq.inputs.data_files import numbers
+from uq.inputs.dependence import correlated
+
+if TYPE_CHECKING:
+    from uq.study.definition import Study
+
+
+class Rows(NamedTuple):
+    """Some rows of a study.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n, d)
+        All parameters of the model, uncertain or not, in declared order; C-contiguous.
+    seed : ndarray of uint64, shape (n,)
+        For models that draw random numbers of their own.
+    replicate : ndarray of int32, shape (n,)
+    group : ndarray of int64, shape (n,)
+        Base point of the replicate's design.
+    block : ndarray of int16, shape (n,)
+        Place in the group.
+    """
+
+    x: NDArray[np.float64]
+    seed: NDArray[np.uint64]
+    replicate: NDArray[np.int32]
+    group: NDArray[np.int64]
+    block: NDArray[np.int16]
+
+    def part(self, first: int, last: int) -> "Rows":
+        """Return the rows from `first` to before `last` of these."""
+        fields: list[NDArray[Any]] = [field[first:last] for field in self]
+        return Rows(*fields)
+
+
+def group_size(study: "Study") -> int:
+    """Return how many rows stand or fall together in the indices: 1 for plain designs."""
+    design = DESIGNS[study.design.method]
+    return design.blocks(len(study.uncertain), study.design.second_order)
+
+
+def rows(study: "Study") -> int:
+    """Return the number of rows of a study."""
+    return study.design.samples * study.design.replicates * group_size(study)
+
+
+def row_block(study: "Study", start: int, stop: int) -> Rows:
+    """Return the rows start..stop of a study.
+
+    Parameters
+    ----------
+    study : Study
+    start, stop : int
+        Any range within 0..rows(study); it need not respect groups.
+
+    Returns
+    -------
+    Rows
+        Row i depends on the study and i alone: not on the range, to the bit.
+    """
+    table, blocks = study.design, group_size(study)
+    number = np.arange(start, stop)
+    place, block = np.divmod(number, blocks)
+    group, replicate = np.divmod(place, table.replicates)
+
+    x = _imported(study, start, stop) if study.imported else _drawn(study, start, stop)
+    return Rows(
+        x,
+        row_seeds(table.seed, replicate, group, block),
+        replicate.astype(np.int32),
+        group,
+        block.astype(np.int16),
+    )
+
+
+def _drawn(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
+    """Return the inputs of the rows start..stop, shape (n, all parameters)."""
+    table = study.design
+    per_group = table.replicates * group_size(study)
+    first, last = start // per_group, -(-stop // per_group)
+    cube = DESIGNS[table.method].unit_rows(
+        seed=table.seed,
+        replicates=table.replicates,
+        d=len(study.uncertain),
+        samples=table.samples,
+        second_order=table.second_order,
+        start=first,
+        stop=max(first, last),
+    )
+    offset = first * per_group
+    unit = cube.reshape(-1, cube.shape[-1])[start - offset : stop - offset]
+    return physical(study, unit)
+
+
+def physical(study: "Study", unit: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Map points of the unit cube to all parameters of the model.
+
+    Parameters
+    ----------
+    study : Study
+        Its rows are not imported.
+    unit : ndarray, shape (n, len(study.uncertain))
+        Inside the open unit cube; independent coordinates.
+
+    Returns
+    -------
+    ndarray, shape (n, d)
+        In declared order, each in its unit, with dependence, scaled and tied inputs as the study
+        has them; C-contiguous.
+    """
+    if study.dependence is not None:
+        columns = [list(study.uncertain).index(name) for name in study.dependence.parameters]
+        unit = unit.copy()
+        unit[:, columns] = correlated(unit[:, columns], study.dependence.rank_correlation)
+
+    x = _constants(study, len(unit))
+    names = study.model.parameter_names
+    scaled = []
+    for column, (name, law) in zip(unit.T, study.uncertain.items(), strict=True):
+        # A contiguous copy: on strided data numpy may take another path, with other last bits.
+        u = np.ascontiguousarray(column)
+        if law.times is None:
+            x[:, names.index(name)] = ppf_within(law, u, study.bounds(name))
+        else:
+            scaled.append((name, law, u))
+    for name, law, u in scaled:  # once those that they scale are known
+        other, bounds = x[:, names.index(law.times)].copy(), study.bounds(name)
+        factor = ppf_between(law, u, *factor_ends(other, bounds))
+        x[:, names.index(name)] = np.clip(factor * other, *bounds)
+    return _with_ties(study, x)
+
+
+def _imported(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
+    """Return the inputs of the rows start..stop as the file has them."""
+    x = _constants(study, stop - start)
+    for name, column in study.imported.items():
+        x[:, study.model.parameter_names.index(name)] = numbers(column)[start:stop]
+    return _with_ties(study, x)
+
+
+def _constants(study: "Study", count: int) -> NDArray[np.float64]:
+    x = np.empty((count, len(study.model.parameter_names)))
+    x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
+    return x
+
+
+def _with_ties(study: "Study", x: NDArray[np.float64]) -> NDArray[np.float64]:
+    names = study.model.parameter_names
+    for name, tied in study.tied.items():
+        x[:, names.index(name)] = x[:, names.index(tied.equals)]
+    return x
+
+
+def row_seeds(seed: int, *keys: NDArray[np.int64]) -> NDArray[np.uint64]:
+    """Hash a study's seed and the keys of rows into one seed per row.
+
+    Parameters
+    ----------
+    seed : int
+        0 to 2^63 - 1.
+    *keys : ndarray of int, shape (n,)
+        What tells rows apart.
+
+    Returns
+    -------
+    ndarray of uint64, shape (n,)
+    """
+    state = np.full(len(keys[0]), seed, np.uint64)
+    for key in keys:
+        state = _splitmix64(state) ^ key.astype(np.uint64)
+    return _splitmix64(state)
+
+
+def _splitmix64(z: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    # One step of SplitMix64: Steele, Lea, Flood, "Fast splittable pseudorandom number generators",
+    # OOPSLA 2014, 453-472, constants as in java.util.SplittableRandom.
+    z = z + np.uint64(0x9E3779B97F4A7C15)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return z ^ (z >> np.uint64(31))

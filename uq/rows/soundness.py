@@ -1,0 +1,73 @@
+"""Whether a Dataset has the shape of a result: it may be damaged, or come from a stranger."""
+
+from collections.abc import Iterator
+from typing import Any, get_args
+
+import numpy as np
+import xarray as xr
+
+from uq.contract import Kind
+from uq.designs.table import DESIGNS
+
+_TEXTS = ("title", "source", "study", "study_identity", "design")
+_NUMBERS = ("samples", "replicates")
+_PLACES = ("replicate", "group", "block", "status")
+_ROLES = ("input", "fixed", "output", "censored", "status", "rerun")
+
+
+def unsound(ds: xr.Dataset) -> str:
+    """Return the first thing that no result has, in words; nothing if all is well."""
+    return next(_faults(ds), "")
+
+
+def _faults(ds: xr.Dataset) -> Iterator[str]:
+    for text in _TEXTS:
+        if not isinstance(ds.attrs.get(text), str):
+            yield f"attribute '{text}' is no text"
+    for number in _NUMBERS:
+        if not isinstance(ds.attrs.get(number), int | np.integer) or ds.attrs[number] < 1:
+            yield f"attribute '{number}' is no positive number"
+    if ds.attrs.get("design") not in DESIGNS:
+        yield "its design is not known"
+    for place in _PLACES:
+        if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
+            yield f"'{place}' is not one whole number per row"
+    for flag in ("block", "status"):
+        if fault := _flag_fault(ds[flag]):
+            yield fault
+    for name, variable in ds.data_vars.items():
+        role = variable.attrs.get("role")
+        if role not in _ROLES:
+            continue
+        if role in ("input", "output", "censored") and variable.dims[:1] != ("sample",):
+            yield f"'{name}' has no row dimension"
+        if variable.dtype.kind not in "fiu":
+            yield f"'{name}' holds no numbers"
+        texts = (
+            ("long_name",) if role in ("status", "censored", "rerun") else ("long_name", "units")
+        )
+        for attribute in texts:
+            if not isinstance(variable.attrs.get(attribute), str):
+                yield f"'{name}' lacks the attribute '{attribute}'"
+        if role == "output":
+            yield from _output_faults(str(name), variable)
+
+
+def _output_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
+    if variable.attrs.get("kind") not in get_args(Kind):
+        yield f"'{name}' is of no known kind"
+    elif variable.attrs["kind"] == "category" and (fault := _flag_fault(variable)):
+        yield fault
+    if not isinstance(variable.attrs.get("may_be_undefined"), int | np.integer):
+        yield f"'{name}' lacks the attribute 'may_be_undefined'"
+    for dim in variable.dims[1:]:
+        if dim not in variable.coords:
+            yield f"'{name}' lacks the coordinate '{dim}'"
+
+
+def _flag_fault(variable: xr.DataArray) -> str:
+    codes: Any = variable.attrs.get("flag_values")
+    labels = variable.attrs.get("flag_meanings")
+    if codes is None or not isinstance(labels, str) or np.size(codes) != len(labels.split()):
+        return f"'{variable.name}' lacks the meaning of its numbers"
+    return ""

@@ -1,0 +1,146 @@
+"""When a run has seen enough: looks at fixed sizes, and intervals that stay honest for it.
+
+Whoever looks often enough sees any interval narrow by luck. So a run looks at few sizes, fixed
+before it starts, each half as large as the next, and the interval of each of K looks has the
+confidence 1 - 0.05/K: the chance that one of them misses is at most 5 %, whenever the run stops.
+"""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from uq import intervals
+from uq.designs.table import DESIGNS
+from uq.intervals import Interval
+from uq.rows.elements import Element, independent_rows, named_elements
+
+if TYPE_CHECKING:
+    from uq.study.file import DesignTable, Until
+
+_FIRST = 32  # samples of the first look at least
+
+
+class Look(NamedTuple):
+    """What a run sees when it looks.
+
+    Attributes
+    ----------
+    value : float
+    interval : Interval
+        With the confidence of one look.
+    reached : bool
+        Whether every element asked for is known as well as asked for; the numbers are those of the
+        one known worst.
+    """
+
+    value: float
+    interval: Interval
+    reached: bool
+
+
+def looks(design: "DesignTable") -> tuple[int, ...]:
+    """Return the numbers of samples at which a run looks, the last being all of them."""
+    size = design.samples
+    sizes = [size]
+    while (size := -(-size // 2)) >= _FIRST:
+        sizes.append(size)
+    return tuple(reversed(sizes))
+
+
+def confidence(design: "DesignTable") -> float:
+    """Return the confidence of the interval of one look (Bonferroni)."""
+    return 1 - (1 - intervals.CONFIDENCE) / len(looks(design))
+
+
+def look(design: "DesignTable", ds: xr.Dataset) -> Look:
+    """Look at the rows of a run so far.
+
+    Parameters
+    ----------
+    design : DesignTable
+        With `until`.
+    ds : xarray.Dataset
+        Its rows.
+
+    Returns
+    -------
+    Look
+    """
+    until = design.until
+    assert until is not None
+    rows = independent_rows(ds)
+    replicate = None if DESIGNS[design.method].independent else rows["replicate"].values
+    seen = [
+        _estimate(element, until, replicate, confidence(design))
+        for element in named_elements(rows, until.output)
+    ]
+    halves = [(interval.high - interval.low) / 2 for _, interval in seen]
+    worst = int(np.argmax(np.nan_to_num(halves, nan=np.inf)))
+    return Look(*seen[worst], bool(halves[worst] <= until.half_width))
+
+
+def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
+    """Return whether a result that is smaller than its budget is where the run ends."""
+    size = _latest(design, ds)
+    return size > 0 and look(design, _first(ds, size)).reached
+
+
+def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
+    """Return the size of the latest look at a result, 0 before the first or without `until`.
+
+    The result may be larger: somebody may have extended it.
+    """
+    if design.until is None:
+        return 0
+    return max((size for size in looks(design) if size <= ds.attrs["samples"]), default=0)
+
+
+def _first(ds: xr.Dataset, samples: int) -> xr.Dataset:
+    return ds.isel(sample=ds["group"].values < samples)
+
+
+def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
+    """Say why a run ended where it did, and what is known for that."""
+    until, samples = design.until, int(ds.attrs["samples"])
+    assert until is not None
+    size = _latest(design, ds)
+    seen = look(design, _first(ds, size))
+    what = f"{until.estimate} of {until.output}"
+    known = f"{seen.value:.6g}, {seen.interval.low:.6g} to {seen.interval.high:.6g}"
+    if not seen.reached:
+        return (
+            f"the budget of {samples} samples is spent: {what} is {known}, and a half-width of"
+            f" {until.half_width:g} was asked for"
+        )
+    number = 1 + looks(design).index(size)
+    first = "" if size == samples else f" with the first {size} of {samples} samples"
+    return (
+        f"{what} is {known}: the asked half-width of {until.half_width:g} was reached at look"
+        f" {number} of at most {len(looks(design))}{first}. This interval,"
+        f" {confidence(design):.2%} at each look, is one of 95 % for a run that stops so; the"
+        " others are for a number of rows fixed beforehand"
+    )
+
+
+def _estimate(
+    element: Element, until: "Until", replicate: intervals.Replicates, level: float
+) -> tuple[float, Interval]:
+    kept = ~element.failed
+    if until.threshold is not None:
+        values = np.abs(element.values) if element.kind == "angle" else element.values
+        if (element.censored & (values < until.threshold)).any():
+            return np.nan, intervals.UNKNOWN
+        hits = values > until.threshold if until.above is not None else values < until.threshold
+        within = None if replicate is None else replicate[kept]
+        value = hits[kept].mean() if kept.any() else np.nan
+        return float(value), intervals.share_interval(hits[kept], within, level)
+    present = element.present
+    within = None if replicate is None else replicate[present]
+    values = element.at_most
+    if until.quantile is not None:
+        value = intervals.quantile(values, until.quantile)
+        return value, intervals.quantile_interval(values, until.quantile, within, level)
+    if not len(values) or not np.isfinite(values).all():
+        return np.nan, intervals.UNKNOWN
+    return float(values.mean()), intervals.mean_interval(values, within, level)

@@ -1,0 +1,133 @@
+"""The variables of a result, and what they say of themselves."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.columns import censored_name
+from uq.contract import Model, Status
+from uq.designs.table import DESIGNS, block_names
+from uq.study.code import made_here
+
+if TYPE_CHECKING:
+    from uq.rows.sampling import Rows
+    from uq.study.definition import Study
+
+SCHEMA_VERSION = 1
+
+Columns = Mapping[str, NDArray[Any]]
+"""What ``batch`` returns: output name -> (n, *dims), ``<name>_censored`` -> (n, *dims)."""
+
+
+def parameter_variable(
+    model: Model, name: str, value: Any, source: str = ""
+) -> tuple[Any, Any, Any]:
+    """Return the variable of a parameter: one number, or one per row."""
+    declared = model.parameter(name)
+    uncertain = isinstance(value, np.ndarray)
+    attrs = {
+        "role": "input" if uncertain else "fixed",
+        "units": declared.unit,
+        "long_name": declared.meaning,
+        "symbol": declared.symbol,
+        "source": source or declared.source,
+    }
+    return (("sample",), value, attrs) if uncertain else ((), np.float64(value), attrs)
+
+
+def output_variables(
+    model: Model, columns: Columns, status: NDArray[np.int8], failures: Mapping[str, str]
+) -> dict[str, Any]:
+    """Return the variables of the outputs, flags of censored lives and the status among them."""
+    variables: dict[str, Any] = {}
+    for name, output in model.outputs.items():
+        dims = ("sample", *output.dims)
+        attrs: dict[str, Any] = {
+            "role": "output",
+            "kind": output.kind,
+            "units": output.unit,
+            "long_name": output.meaning,
+            "may_be_undefined": int(output.may_be_undefined),
+        }
+        if output.kind == "category":
+            attrs |= _flags(("none", *output.categories), np.int8, first=-1)
+        variables[name] = (dims, columns[name], attrs)
+        if output.has_censored_flag:
+            flag = censored_name(name)
+            attrs = {"role": "censored", "long_name": f"whether {name} is only a lower bound"}
+            variables[flag] = (dims, columns[flag].astype(np.int8), attrs)
+    attrs = {"role": "status", "long_name": "how the row ended"}
+    attrs |= _flags([status.label for status in Status], np.int8)
+    for label, message in failures.items():
+        attrs[f"example_{label.replace('-', '_')}"] = message
+    return variables | {"status": (("sample",), status, attrs)}
+
+
+def coordinates(model: Model, settings: Any) -> dict[str, Any]:
+    """Return the coordinates of the dimensions that outputs have."""
+    values = model.coordinates(settings)
+    used = {dim for output in model.outputs.values() for dim in output.dims}
+    coordinates: dict[str, Any] = {}
+    for dim in sorted(used):
+        described = zip(("units", "long_name"), model.dimensions.get(dim, ()), strict=False)
+        coordinates[dim] = ((dim,), np.asarray(values[dim]), dict(described))
+    return coordinates
+
+
+def places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> dict[str, Any]:
+    """Return the place in the design of each row, as coordinates."""
+    sample = ("sample",)
+    numbers = np.arange(len(rows.x)) if numbers is None else numbers
+    block = {"long_name": "block of the design"} | _flags(_block_labels(study), np.int16)
+    return {
+        "sample": (sample, numbers, {"long_name": "row"}),
+        "replicate": (sample, rows.replicate, {"long_name": "independent scramble of the design"}),
+        "group": (sample, rows.group, {"long_name": "base point of the design"}),
+        "block": (sample, rows.block, block),
+    }
+
+
+def _flags(labels: Sequence[str], dtype: type[np.integer[Any]], first: int = 0) -> dict[str, Any]:
+    values = np.arange(first, first + len(labels), dtype=dtype)
+    if len(labels) == 1:
+        values = values[0]  # what netCDF makes of an attribute of one number
+    return {"flag_values": values, "flag_meanings": " ".join(labels)}
+
+
+def _block_labels(study: "Study") -> list[str]:
+    design = study.design
+    return list(block_names(DESIGNS[design.method], tuple(study.uncertain), design.second_order))
+
+
+def study_attributes(study: "Study") -> dict[str, Any]:
+    """Return the attributes of a result of a study."""
+    design = study.design
+    return (
+        {"title": study.description or study.name}
+        | model_attributes(study.model)
+        | {
+            "study": study.text,
+            "study_sha256": hashlib.sha256(study.text.encode()).hexdigest(),
+            "study_identity": study.identity,
+            "design": design.method,
+            "samples": design.samples,
+            "replicates": design.replicates,
+            "second_order": int(design.second_order),
+            "seed": design.seed,
+        }
+        | made_here(study.model_reference)
+    )
+
+
+def model_attributes(model: Model) -> dict[str, Any]:
+    """Return the attributes of whatever a model computed."""
+    return {
+        "Conventions": "CF-1.11",
+        "schema_version": SCHEMA_VERSION,
+        "source": f"{model.name} {model.version}",
+        "model": model.name,
+        "model_version": model.version,
+    }

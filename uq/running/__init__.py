@@ -1,0 +1,1 @@
+"""Rows carried out: here, in processes of their own, on dask workers."""

@@ -1,0 +1,224 @@
+"""Rows computed in a process of their own, which they may crash or never leave.
+
+Rows that do so are computed again in parts, down to single ones: the guilty ones get a status and a
+sentence, the others the values that they have anywhere.
+"""
+
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from math import ceil
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Status
+from uq.environment import command, inherited
+from uq.errors import RunError
+from uq.interrupts import undone
+from uq.rows.evaluate import Chunk, Fault, joined, lost_rows
+from uq.running import child
+from uq.study.code import code_of
+
+if TYPE_CHECKING:
+    from uq.rows.work import Work
+
+# Somebody else may have killed a process: three, that of its chunk included, make a row guilty.
+_SINGLE_CRASHES = 2
+_PARTS = 8  # of rows that crashed: more would be small for kernels, fewer would crash more often
+_STARTS = 3
+_FIRST_SECONDS = 5.0  # a first call loads compiled code: 1 s, more where the computer is busy
+_DYING_SECONDS = 5.0
+_POLL_SECONDS = 0.2  # so that an interrupt is seen
+
+
+Evaluate = Callable[[NDArray[np.float64], NDArray[np.uint64], int], Chunk]
+"""``evaluate(x, seed, start)`` -> chunk, as `uq.rows.evaluate.evaluate` for one model."""
+
+
+def task_of(work: "Work") -> child.Task:
+    """Return what a process that computes rows of some work is told beforehand."""
+    settings = tuple(asdict(work.settings).items())
+    code = code_of(work.model_reference)
+    return child.Task(work.model_reference, work.model.version, settings, work.output, code)
+
+
+@contextmanager
+def isolated(
+    work: "Work", limit: float | None = None, compiling: Callable[[], object] = lambda: None
+) -> Iterator[Evaluate]:
+    """Yield a function that computes rows of some work in a process of their own.
+
+    Parameters
+    ----------
+    work : Work
+    limit : float, optional
+        Longest time for one row [s].
+    compiling : callable
+        Called when that process begins to compile.
+    """
+    process = Isolated(task_of(work), limit, compiling)
+    with undone(process.close):
+        yield process.evaluate
+
+
+class Isolated:
+    """A process that computes rows, replaced when it dies.
+
+    Parameters
+    ----------
+    task : uq.running.child.Task
+    limit : float or None
+        Longest time for one row [s]; compiling does not count.
+    compiling : callable
+        Called when the process begins to compile.
+    """
+
+    def __init__(
+        self,
+        task: child.Task,
+        limit: float | None = None,
+        compiling: Callable[[], object] = lambda: None,
+    ) -> None:
+        self.task = task
+        self.limit = limit
+        self._compiling = compiling
+        self._process: subprocess.Popen[bytes] | None = None
+        self._connection: Connection | None = None
+        self._grace = 0.0
+        self._closed = threading.Event()
+
+    def start(self) -> None:
+        """Start the process and load the model, if that is not done yet.
+
+        Raises
+        ------
+        InputError
+            When it has no such model, or another version of it.
+        RunError
+            When it cannot start, or was closed.
+        """
+        self._connection = self._connection or self._started()
+
+    def evaluate(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int = 0) -> Chunk:
+        """Run some rows; parameters and exceptions as `uq.rows.evaluate.evaluate`.
+
+        Raises
+        ------
+        RunError
+            When the process cannot start, or was closed from another thread.
+        """
+        chunk = self._ask(child.Request(x, seed, start))
+        if isinstance(chunk, Chunk):
+            return chunk
+        if len(x) == 1:
+            return self._single(x, seed, start)
+        # A time that is over costs more than rows that are taken singly.
+        size = ceil(len(x) / _PARTS) if chunk.status is Status.CRASHED else 1
+        parts = range(0, len(x), size)
+        part = self.evaluate if size > 1 else self._single
+        return joined([part(x[i : i + size], seed[i : i + size], start + i) for i in parts])
+
+    def _single(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
+        """Run one row on its own, so that it is known who is guilty."""
+        for _ in range(_SINGLE_CRASHES):
+            outcome = self._ask(child.Request(x, seed, start))
+            if isinstance(outcome, Chunk):
+                return outcome
+            if outcome.status is not Status.CRASHED:
+                break
+        model = self.task.find_model()
+        settings = model.settings(**dict(self.task.settings))
+        return lost_rows(model, settings, 1, cast(Fault, outcome), start)
+
+    def close(self) -> None:
+        """End the process, whatever it is doing."""
+        self._closed.set()
+        self._end(at_once=True)
+
+    def _ask(self, request: child.Request) -> Chunk | Fault:
+        try:
+            connection = self._connection or self._started()
+            connection.send(request)
+            answer = self._answer(connection, self.limit and self.limit + self._grace)
+        except (EOFError, OSError):
+            return Fault(Status.CRASHED, f"killed its process ({self._end()})")
+        self._grace = 0.0
+        if answer is None:
+            self._end(at_once=True)
+            return Fault(Status.TIMED_OUT, f"did not end within {self.limit:g} s")
+        kind, value = answer
+        if kind == child.REFUSED:
+            raise value
+        chunk: Chunk = value
+        return chunk
+
+    def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
+        """Return what the process has to say, or None when the time is over."""
+        began: float | None = time.monotonic()
+        while True:
+            while not connection.poll(min(limit or _POLL_SECONDS, _POLL_SECONDS)):
+                if limit and began and time.monotonic() > began + limit:
+                    return None
+            kind, value = connection.recv()
+            if kind == child.COMPILING:
+                began = None
+                self._compiling()
+            elif kind == child.COMPILED:
+                began = time.monotonic()
+            else:
+                return kind, value
+
+    def _started(self) -> Connection:
+        """Start the process, again if somebody kills it meanwhile."""
+        for _ in range(_STARTS):
+            if self._closed.is_set():
+                raise RunError("the process for the rows was ended")
+            connection, there = Pipe()
+            with there:
+                self._process = subprocess.Popen(
+                    command("uq.running.child", str(there.fileno())),
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.DEVNULL,
+                    pass_fds=(there.fileno(),),
+                    start_new_session=True,  # Ctrl-C is for this process, which ends that one
+                    env=inherited(),
+                )
+            self._connection = connection
+            try:
+                connection.send(self.task)
+                kind, value = connection.recv()
+            except (EOFError, OSError):
+                reason = self._end()
+                continue
+            if kind == child.REFUSED:
+                self._end()
+                raise value
+            self._grace = _FIRST_SECONDS
+            return connection
+        raise RunError(f"a process for the rows could not start: {reason}")
+
+    def _end(self, at_once: bool = False) -> str:
+        """End the process, unless it is dying by itself; return how it ended."""
+        process, connection = self._process, self._connection
+        self._process = self._connection = None
+        if connection:
+            connection.close()
+        if not process:
+            return "ended"
+        try:
+            process.wait(0.0 if at_once else _DYING_SECONDS)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        if process.stdin:
+            process.stdin.close()
+        code = process.returncode
+        return signal.strsignal(-code) or "signal" if code < 0 else f"exit code {code}"

@@ -1,0 +1,80 @@
+"""What differs between a study and the one that rows were computed for."""
+
+import tomllib
+from collections.abc import Iterator
+from typing import Any
+
+from uq.designs.table import DESIGNS
+from uq.literals import shown
+from uq.study.definition import Study
+
+_FREE = {
+    ("study", "name"),
+    ("study", "description"),
+    ("design", "samples"),
+    ("design", "until"),
+}
+"""Entries that decide no row."""
+
+
+def what_changed(text: str, model_version: str, study: Study) -> str:
+    """Name what makes a study another one.
+
+    Parameters
+    ----------
+    text : str
+        The study file of the rows that there are.
+    model_version : str
+        Of the model that computed them.
+    study : Study
+        With another identity.
+
+    Returns
+    -------
+    str
+        The first difference, such as ``[design] seed = 5, now 6``.
+    """
+    try:
+        before = dict(_entries(tomllib.loads(text)))
+    except (tomllib.TOMLDecodeError, RecursionError):
+        before = {}
+    now = dict(_entries(tomllib.loads(study.text)))
+    for place in (*before, *(place for place in now if place not in before)):
+        if before.get(place) != now.get(place):
+            *tables, name = place
+            old, new = (
+                shown(entry[place]) if place in entry else "nothing" for entry in (before, now)
+            )
+            return f"[{'.'.join(tables)}] {name} = {old}, now {new}"
+    if model_version != study.model.version:
+        return f"version {model_version} of model '{study.model.name}', now {study.model.version}"
+    if list(before) != list(now):
+        return "the order of [uncertain]"
+    return f"the nominal values or default settings of model '{study.model.name}'"
+
+
+def refusal_to_extend(study: Study) -> str | None:
+    """Say why more samples cannot be appended to the rows of a study, or return None."""
+    method = study.design.method
+    if DESIGNS[method].append_only:
+        return None
+    return (
+        f"a '{method}' design cannot be extended: all its rows change with their number; run it "
+        "anew, into another output or with --fresh"
+    )
+
+
+def _entries(table: dict[str, Any], path: tuple[str, ...] = ()) -> Iterator[tuple[Any, Any]]:
+    """Yield place and value of every entry that decides rows."""
+    for name, value in table.items():
+        place = (*path, name)
+        if (
+            place[0] == "analysis"
+            or place[:2] in _FREE
+            or (path[:1] == ("uncertain",) and name == "source")
+        ):
+            continue
+        if isinstance(value, dict) and len(path) < 2:
+            yield from _entries(value, place)
+        else:
+            yield place, value

@@ -1,0 +1,272 @@
+"""A study: a study file bound to its model, checked and frozen."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
+from os import PathLike
+from pathlib import Path
+from typing import Any, Self
+
+from uq.contract import Model
+from uq.designs.table import DESIGNS
+from uq.errors import InputError, nearest
+from uq.inputs.data_files import Columns, columns_of_files, numbers, with_columns
+from uq.inputs.distributions import Law
+from uq.inputs.faults import Fault
+from uq.inputs.values import read_settings
+from uq.study.checks import design_faults, model_faults
+from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied
+from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
+from uq.study.reading import parse, read_study_text, shape_faults, sound_entries
+from uq.study.registry import find_model
+
+_LONGEST = 1_000_000  # bytes of a study file
+
+__all__ = ["Study", "load_study", "read_study_text", "study_from_text"]
+
+
+@dataclass(frozen=True)
+class Study:
+    """Everything a run needs to know, and nothing that depends on where it runs.
+
+    Attributes
+    ----------
+    name : str
+    model : Model
+    model_reference : str
+        What `uq.study.registry.find_model` finds the model by, in another process too.
+    description : str
+    design : DesignTable
+        method, samples, replicates, second_order, seed, until.
+    fixed : dict of str to float
+        Parameters that override their nominal values.
+    uncertain : dict of str to Law
+        In the file's order, which is the order of the design's columns. Of a parameter that is
+        another times a factor this is the law of the factor.
+    settings : object
+        An instance of ``model.settings``.
+    analysis : AnalysisTable
+        outputs (all of them if the file names none), quantiles, max_failed, tolerance,
+        thresholds, twin, sensitivity.
+    text : str
+        The whole study file, with the numbers of the files that it names.
+    path : str
+        Where it was read from.
+    tied : dict of str to Tied
+        Parameters that have the value of another.
+    dependence : DependenceTable or None
+    imported : dict of str to str
+        For an imported design: parameter -> its column, for `uq.inputs.data_files.numbers`.
+    """
+
+    name: str
+    model: Model
+    model_reference: str
+    description: str
+    design: DesignTable
+    fixed: Mapping[str, float]
+    uncertain: Mapping[str, Law]
+    settings: Any
+    analysis: AnalysisTable
+    text: str
+    path: str
+    tied: Mapping[str, Tied] = field(default_factory=dict)
+    dependence: DependenceTable | None = None
+    imported: Mapping[str, str] = field(default_factory=dict)
+
+    def bounds(self, name: str) -> tuple[float, float]:
+        """Return the bounds of a parameter and of those that are tied to it, together."""
+        names = [name, *(other for other, tied in self.tied.items() if tied.equals == name)]
+        lows, highs = zip(*(self.model.parameter(one).bounds for one in names), strict=True)
+        return max(lows), min(highs)
+
+    @property
+    def identity(self) -> str:
+        """SHA-256 of what decides the rows: not how many, comments or [analysis]."""
+        design = self.design.model_dump(exclude={"samples", "file", "until"})
+        constants = {
+            name: self.fixed.get(name, nominal)
+            for name, nominal in self.model.nominal.items()
+            if name not in self.uncertain and name not in self.tied
+        }
+        # What files are called does not matter, what they hold does.
+        laws = [
+            [name, law.model_dump(exclude={"source", "file", "column"}, exclude_none=True)]
+            for name, law in self.uncertain.items()
+        ]
+        parts = [
+            self.model.name,
+            self.model.version,
+            design,
+            constants,
+            laws,
+            asdict(self.settings),
+        ]
+        # Each only where there is any: studies without them keep the identity that they had.
+        if self.tied:
+            parts.append({name: tied.equals for name, tied in self.tied.items()})
+        if self.dependence:
+            parts.append(self.dependence.model_dump(exclude={"source"}))
+        if self.imported:
+            parts.append(dict(self.imported))
+        return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+
+    def with_samples(self, samples: int) -> Self:
+        """Return the same study with another number of samples.
+
+        Parameters
+        ----------
+        samples : int
+            Base size of each replicate.
+
+        Returns
+        -------
+        Study
+
+        Raises
+        ------
+        InputError
+            The design cannot have this size; the line names ``--samples``.
+        """
+        problem = DESIGNS[self.design.method].size_problem(samples)
+        for column in self.imported.values():
+            if samples > (most := len(numbers(column))):
+                problem = f"the file has {most} rows"
+        if problem:
+            raise InputError(f"--samples {samples}: {problem} for '{self.design.method}'")
+        return replace(self, design=self.design.model_copy(update={"samples": samples}))
+
+
+def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
+    """Read and check a study file.
+
+    Parameters
+    ----------
+    path : path-like
+        A TOML file.
+    model : str, optional
+        Use this model (``"package.module:ATTRIBUTE"`` or an installed name) in place of the
+        file's.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong with the file, one line each.
+
+    Examples
+    --------
+    >>> study = uq.load_study("studies/ishigami.toml")
+    >>> study.design.samples, list(study.uncertain)
+    (256, ['x1', 'x2', 'x3'])
+    """
+    return study_from_text(_read(Path(path)), str(path), model, Path(path).parent)
+
+
+def study_from_text(
+    text: str, source: str = "study", model: str | None = None, folder: Path | None = None
+) -> Study:
+    """Check the text of a study file; see `load_study`.
+
+    Parameters
+    ----------
+    text : str
+        The whole TOML.
+    source : str
+        Where it comes from: what error lines call it.
+    model : str, optional
+    folder : Path, optional
+        What the files that it names are relative to; the text in a result needs none.
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    InputError
+    """
+    data = parse(text, source)
+    faults = shape_faults(data)
+    tables = sound_entries(data, faults)
+    lines: list[str] = []
+    columns, more = columns_of_files(tables, folder)
+    entries, spoilt = read_entries(tables, columns)
+    faults += [*more, *spoilt, *dependence_faults(tables, entries)]
+
+    reference = model or tables["study"].get("model")
+    found = None
+    if reference is not None:
+        try:
+            found = find_model(reference)
+        except InputError as error:
+            if model is not None:
+                lines += error.lines
+            else:
+                faults += [Fault(("study", "model"), line, reference) for line in error.lines]
+    if found is not None:
+        faults += model_faults(found, data, tables)
+        faults += input_faults(found, entries)
+        faults += import_faults(found, tables, entries, columns)
+    faults += design_faults(tables)
+    order = (*StudyFile.model_fields, *data)
+    faults.sort(key=lambda fault: order.index(str(fault.path[0])))
+    lines += [f"{source}: {fault.line}" for fault in faults]
+    if lines or found is None or reference is None:
+        raise InputError(*lines)
+
+    file = StudyFile.model_validate(data)
+    settings, _ = read_settings(found, file.settings)
+    outputs = file.analysis.outputs or tuple(found.outputs)
+    return Study(
+        name=file.study.name,
+        model=found,
+        model_reference=reference,
+        description=file.study.description,
+        design=file.design,
+        fixed=file.fixed,
+        uncertain={name: law for name, law in entries.items() if not isinstance(law, Tied)},
+        settings=settings,
+        analysis=file.analysis.model_copy(update={"outputs": outputs}),
+        text=with_columns(text, columns, file.data),
+        path=source,
+        tied={name: tied for name, tied in entries.items() if isinstance(tied, Tied)},
+        dependence=file.dependence,
+        imported=_imported(file, columns),
+    )
+
+
+def _imported(file: StudyFile, columns: Columns) -> dict[str, str]:
+    """Return the columns of an imported design, those that are uncertain, in the file's order."""
+    if file.design.method != "imported" or file.design.file is None:
+        return {}
+    table = columns[file.design.file]
+    return {name: table[name] for name, e in file.uncertain.items() if not isinstance(e, Tied)}
+
+
+def _read(path: Path) -> str:
+    try:
+        with path.open("rb") as file:
+            content = file.read(_LONGEST + 1)
+        if len(content) > _LONGEST:
+            raise InputError(f"{path}: no study is longer than {_LONGEST // 1_000_000} MB")
+        return content.decode("utf-8-sig")
+    except FileNotFoundError:
+        folder = path.parent
+        files = [entry.name for entry in folder.glob("*.toml")] if folder.is_dir() else []
+        remedy = nearest(path.name, files) or f"; 'uq init MODEL > {path.name}' writes one to edit"
+        raise InputError(f"{path}: no such file{remedy}") from None
+    except IsADirectoryError:
+        raise InputError(f"{path}: is a directory; a study is a TOML file") from None
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path}: not a text file in UTF-8 (byte {error.start} is"
+            f" 0x{error.object[error.start]:02x})"
+        ) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{path}: cannot be read: {reason}") from None

@@ -1,0 +1,255 @@
+"""The shape of a study file: its tables and keys, whatever the model.
+
+Pydantic checks files against these classes (`uq.study.reading`), and the JSON Schema for editors
+comes from them (`uq.study.schema`).
+"""
+
+from typing import Annotated, Any, NamedTuple, Self, get_args
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    TypeAdapter,
+    WithJsonSchema,
+    model_validator,
+)
+
+from uq.designs.table import DESIGNS, MAX_SAMPLES
+from uq.errors import nearest
+from uq.inputs.distributions import Law
+from uq.inputs.law import BaseLaw
+from uq.literals import shown
+
+LAW: TypeAdapter[Any] = TypeAdapter(Law)
+LAWS = {
+    get_args(law.model_fields["distribution"].annotation)[0]: law
+    for law in get_args(get_args(Law)[0])
+}
+METHODS = tuple(dict.fromkeys(name for design in DESIGNS.values() for name in design.feeds))
+"""Sensitivity methods that some design can feed."""
+
+
+def _one_of(kind: str, choices: tuple[str, ...]) -> AfterValidator:
+    def check(name: str) -> str:
+        if name not in choices:
+            allowed = f"(allowed: {', '.join(choices)})"
+            raise ValueError(f"no such {kind}{nearest(name, choices)} {allowed}")
+        return name
+
+    return AfterValidator(check)
+
+
+def _tuple(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _numbers(value: Any) -> Any:
+    if isinstance(value, list):
+        return tuple(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError("must be a number or a list of numbers")
+    return (value,)
+
+
+def _distinct(values: tuple[Any, ...]) -> tuple[Any, ...]:
+    for value in values:
+        if values.count(value) > 1:
+            raise ValueError(f"{shown(value)} is listed twice")
+    return values
+
+
+def _needs_table(value: Any) -> Any:
+    if not isinstance(value, dict):
+        raise ValueError("must be a table, such as {coverage = 0.95, confidence = 0.95}")
+    return value
+
+
+def _name_or_settings(value: Any) -> Any:
+    if not isinstance(value, str | dict):
+        raise ValueError("must name an output, or be a table of settings, such as {modes = 4}")
+    return value
+
+
+_LIST = BeforeValidator(_tuple)
+_DISTINCT = AfterValidator(_distinct)
+Share = Annotated[float, Field(gt=0, lt=1)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+
+class StudyTable(_Table):
+    """What the study is."""
+
+    name: Name = Field(description="names the result file: letters, digits, '-' and '_'")
+    model: Name = Field(description="name of an installed model, as 'uq models' lists them")
+    description: str = Field("", description="one line for whoever reads the result")
+
+
+class Until(_Table):
+    """What must be known how well for a run to stop before its budget is spent."""
+
+    output: str = Field(description="an output, all its elements, or one element of it")
+    half_width: float = Field(gt=0, description="of the interval, in the estimate's unit")
+    above: float | None = Field(None, description="of the probability of lying above this")
+    below: float | None = Field(None, description="of the probability of lying below this")
+    quantile: Share | None = Field(None, description="of this quantile; if nothing, of the mean")
+
+    @model_validator(mode="after")
+    def _check_one(self) -> Self:
+        if len({"above", "below", "quantile"} & self.model_fields_set) > 1:
+            raise ValueError("takes at most one of above, below and quantile")
+        return self
+
+    @property
+    def threshold(self) -> float | None:
+        """The limit of a probability, if one is meant."""
+        return self.below if self.above is None else self.above
+
+    @property
+    def estimate(self) -> str:
+        """What is estimated, as tables call it."""
+        if self.quantile is not None:
+            return f"quantile {self.quantile}"
+        if self.threshold is not None:
+            return f"P({'<' if self.above is None else '>'}{self.threshold!r})"
+        return "mean"
+
+
+class DesignTable(_Table):
+    """Which rows are computed."""
+
+    method: Annotated[str, _one_of("design", tuple(DESIGNS))] = Field(
+        description="how rows are chosen", json_schema_extra={"enum": list(DESIGNS)}
+    )
+    samples: int = Field(
+        ge=1, le=MAX_SAMPLES, description="base size of each replicate; see 'uq check' for rows"
+    )
+    replicates: int = Field(
+        1,
+        ge=1,
+        le=10_000,
+        description="independent scrambles of the design: the source of confidence intervals",
+    )
+    second_order: bool = Field(False, description="saltelli only: also pairs of parameters")
+    seed: int = Field(0, ge=0, lt=2**63, description="the same seed gives the same rows")
+    file: str | None = Field(
+        None, description="imported only: CSV or netCDF with a column for each uncertain parameter"
+    )
+    until: Until | None = Field(
+        None, description="stop as soon as this is known well enough; samples is then the budget"
+    )
+
+
+class Tied(_Table):
+    """A parameter that has the value of another in every row."""
+
+    equals: str = Field(description="another uncertain parameter, which has a law of its own")
+    source: str = Field("", description="why they are the same; shown in every result")
+
+
+def _kind(entry: Any) -> str:
+    tied = isinstance(entry, Tied) or (isinstance(entry, dict) and "equals" in entry)
+    return "equals" if tied else "distribution"
+
+
+Entry = Annotated[
+    Annotated[Law, Tag("distribution")] | Annotated[Tied, Tag("equals")], Discriminator(_kind)
+]
+"""How a parameter varies: by a law, or as another does."""
+
+ENTRY: TypeAdapter[BaseLaw | Tied] = TypeAdapter(Entry)
+
+
+class DependenceTable(_Table):
+    """Rank correlations of uncertain parameters, by a Gaussian copula."""
+
+    parameters: Annotated[tuple[str, ...], _LIST, _DISTINCT, Field(min_length=2)] = Field(
+        description="the dependent ones, in the order of the matrix; others are independent"
+    )
+    rank_correlation: Annotated[tuple[Annotated[tuple[float, ...], _LIST], ...], _LIST] = Field(
+        description="Spearman's, a row for each parameter; of the law itself, before it is cut"
+        " into discrete values"
+    )
+    source: str = Field("", description="where the numbers come from")
+
+
+class Tolerance(NamedTuple):
+    """A bound that covers a share of all values, with a confidence."""
+
+    coverage: Share
+    confidence: Share
+
+
+_SHARE_SCHEMA = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+
+
+class AnalysisTable(_Table):
+    """What is made of the rows; may change without a row being computed again."""
+
+    outputs: Annotated[tuple[str, ...], _LIST, _DISTINCT] = Field(
+        (), description="outputs to show; all if not given"
+    )
+    quantiles: Annotated[tuple[Share, ...], _LIST, _DISTINCT] = Field(
+        (0.05, 0.5, 0.95), description="probabilities, each between 0 and 1"
+    )
+    max_failed: float = Field(
+        0.1, ge=0, le=1, description="share of failed rows above which a run counts as failed"
+    )
+    tolerance: Annotated[
+        Tolerance | None,
+        BeforeValidator(_needs_table),
+        WithJsonSchema(
+            {
+                "type": "object",
+                "properties": {"coverage": _SHARE_SCHEMA, "confidence": _SHARE_SCHEMA},
+                "required": ["coverage", "confidence"],
+                "additionalProperties": False,
+            }
+        ),
+    ] = Field(None, description="bounds that cover a share of all values, monte-carlo only")
+    thresholds: dict[
+        str,
+        Annotated[
+            tuple[float, ...],
+            BeforeValidator(_numbers, json_schema_input_type=float | list[float]),
+            _DISTINCT,
+        ],
+    ] = Field({}, description="output = t: probability of lying above and below t")
+    twin: Annotated[str | dict[str, Any], BeforeValidator(_name_or_settings)] = Field(
+        "",
+        description="a cheap output, or settings that make rows cheap: many such rows sharpen the"
+        " estimates, monte-carlo only",
+    )
+    sensitivity: Annotated[
+        tuple[Annotated[str, _one_of("method", METHODS)], ...], _LIST, _DISTINCT
+    ] = Field(
+        (),
+        description="sensitivity methods; the design's own if not given",
+        json_schema_extra={"items": {"enum": list(METHODS)}},
+    )
+
+
+class StudyFile(_Table):
+    """A study: which model, which inputs vary how, which rows, what is made of them."""
+
+    study: StudyTable
+    design: DesignTable
+    # A parameter's bounds say whether it may be infinite.
+    fixed: dict[str, Annotated[float, Field(allow_inf_nan=True)]] = Field(
+        {}, description="parameter = value: overrides the nominal"
+    )
+    uncertain: dict[str, Entry] = Field(description="one table per parameter that varies")
+    dependence: DependenceTable | None = Field(None, description="rank correlations of inputs")
+    settings: dict[str, Any] = Field({}, description="numerical settings of the model")
+    analysis: AnalysisTable = Field(default_factory=AnalysisTable)
+    data: dict[str, dict[str, str]] = Field(
+        {}, description="file -> column -> numbers: what files held, kept in results by 'uq run'"
+    )

@@ -1,0 +1,167 @@
+"""JSON Schema of a study file, for editors: keys, choices, and the names each model knows."""
+
+from math import isfinite
+from typing import Any
+
+from pydantic import TypeAdapter
+from pydantic.json_schema import GenerateJsonSchema
+
+from uq.contract import Model
+from uq.designs.table import DESIGNS, MAX_SAMPLES, Design
+from uq.errors import InputError
+from uq.inputs.values import setting_types
+from uq.study.file import StudyFile
+from uq.study.registry import find_model, model_names
+
+Schema = dict[str, Any]
+
+
+def json_schema() -> Schema:
+    """Return the JSON Schema of study files for the models installed here.
+
+    Draft 7, the newest that TOML plug-ins of editors understand. What needs arithmetic (a law's
+    probability outside the bounds, the order of lower and upper) is left to ``uq check``.
+
+    Returns
+    -------
+    dict
+    """
+    schema = StudyFile.model_json_schema(
+        ref_template="#/definitions/{model}", schema_generator=_WithoutNull
+    )
+    definitions = schema["definitions"] = schema.pop("$defs")
+    uncertain = schema["properties"]["uncertain"]
+    laws, tied = uncertain["additionalProperties"]["oneOf"]
+    definitions["Law"] = laws
+    definitions["Entry"] = {"oneOf": [{"$ref": "#/definitions/Law"}, tied]}
+    uncertain["additionalProperties"] = {"$ref": "#/definitions/Entry"}
+    uncertain["minProperties"] = 1
+    definitions["StudyTable"]["properties"]["model"]["enum"] = list(model_names())
+    schema["allOf"] = [
+        *(_when("study", "model", model.name, _model_schema(model)) for model in _models()),
+        *(_when("design", "method", name, _design_schema(d)) for name, d in DESIGNS.items()),
+    ]
+    return {
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "$id": "vibrolife-study.schema.json",
+        **schema,
+        "title": "Study of a vibrolife model",
+    }
+
+
+class _WithoutNull(GenerateJsonSchema):
+    """Pydantic's generator, for a language that has no null: what may be absent is left out."""
+
+    def nullable_schema(self, schema: Any) -> Schema:
+        return self.generate_inner(schema["schema"])
+
+    def default_schema(self, schema: Any) -> Schema:
+        described = super().default_schema(schema)
+        if described.get("default") is None:
+            described.pop("default", None)
+        return described
+
+
+def _models() -> list[Model]:
+    models = []
+    for name in model_names():
+        try:
+            models.append(find_model(name))
+        except InputError:  # a broken model keeps its name, without the names it knows
+            continue
+    return models
+
+
+def _when(table: str, key: str, value: str, then: dict[str, Schema]) -> Schema:
+    has_value = {"properties": {key: {"const": value}}, "required": [key]}
+    return {
+        "if": {"properties": {table: has_value}, "required": [table]},
+        "then": {"properties": then},
+    }
+
+
+def _model_schema(model: Model) -> dict[str, Schema]:
+    known_outputs = {"enum": list(model.outputs)}
+    settings = _table(
+        {name: _setting(model, name, kind) for name, kind in setting_types(model).items()}
+    )
+    return {
+        "fixed": _table({name: _fixed(model, name) for name in model.parameter_names}),
+        "uncertain": _table({name: _uncertain(model, name) for name in model.parameter_names}),
+        "settings": settings,
+        "analysis": {
+            "properties": {
+                "outputs": {"items": known_outputs},
+                "thresholds": {"propertyNames": known_outputs},
+                "twin": {"anyOf": [{"enum": ["", *model.cheap]}, {"type": "object", **settings}]},
+            }
+        },
+    }
+
+
+def _design_schema(design: Design) -> dict[str, Schema]:
+    table: Schema = {}
+    analysis: Schema = {"sensitivity": {"items": {"enum": list(design.feeds)}}}
+    if design.power_of_two:
+        table["samples"] = {"enum": [2**k for k in range(MAX_SAMPLES.bit_length())]}
+    if not design.crossed:
+        table["second_order"] = {"const": False}
+    if design.least > 1:
+        table["samples"] = {"minimum": design.least}
+    if design.draw is None:
+        table["replicates"] = {"const": 1}
+    else:
+        table["file"] = {"not": {}}
+    if not design.append_only:
+        table["until"] = {"not": {}}
+    if not design.independent:
+        analysis["tolerance"] = {"not": {}}
+        analysis["twin"] = {"const": ""}
+    return {"design": {"properties": table}, "analysis": {"properties": analysis}}
+
+
+def _table(properties: dict[str, Schema]) -> Schema:
+    return {"properties": properties, "additionalProperties": False}
+
+
+def _texts(model: Model, name: str) -> Schema:
+    parameter = model.parameter(name)
+    return {
+        "title": f"{parameter.symbol} [{parameter.unit}]",
+        "description": f"{parameter.meaning} (nominal {model.nominal[name]!r}: {parameter.source})",
+    }
+
+
+def _fixed(model: Model, name: str) -> Schema:
+    nominal = model.nominal[name]
+    default = {"default": nominal} if isfinite(nominal) else {}  # JSON has no infinity
+    limits = _limits(model.parameter(name).bounds)
+    return {"type": "number", **limits, **default, **_texts(model, name)}
+
+
+def _uncertain(model: Model, name: str) -> Schema:
+    return {"allOf": [{"$ref": "#/definitions/Entry"}], **_texts(model, name)}
+
+
+def _setting(model: Model, name: str, kind: Any) -> Schema:
+    declared = model.setting(name)
+    schema: Schema = TypeAdapter(kind).json_schema()
+    if declared.choices:
+        schema["enum"] = list(declared.choices)
+    schema = _limited(schema, {} if declared.bounds is None else _limits(declared.bounds))
+    return {**schema, "title": f"{name} [{declared.unit}]", "description": declared.meaning}
+
+
+def _limited(schema: Schema, limits: Schema) -> Schema:
+    """Put limits on every number, and write lists of a fixed length as Draft 7 does."""
+    if "prefixItems" in schema:
+        items = [_limited(item, limits) for item in schema.pop("prefixItems")]
+        return {**schema, "items": items}
+    if "items" in schema:
+        return {**schema, "items": _limited(schema["items"], limits)}
+    return {**schema, **limits}
+
+
+def _limits(bounds: tuple[float, float]) -> Schema:
+    limits = zip(("minimum", "maximum"), bounds, strict=True)
+    return {key: value for key, value in limits if isfinite(value)}
