@@ -18,7 +18,8 @@ from computed import (
 from SALib.analyze import fast as salib_fast
 from SALib.analyze import morris as salib_morris
 
-from uq.analysis.statistics import summarise, summary
+from uq.analysis.overview import summary
+from uq.analysis.statistics import summarise
 from uq.designs.table import DESIGNS
 from uq.designs.trajectories import LEVELS, STEP, TAIL
 from uq.errors import InputError

@@ -197,13 +197,13 @@ class Job:
         return start, self.work.block(start, stop)
 
     def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
-        self.store.add(start, some, chunk)
         self.store.glimpse.see(chunk)
+        self.store.add(start, some, chunk)
         self._left -= len(some.x)
+        self.tell()  # at once: an interrupt says how many rows are kept
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
             raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")
-        self.tell()  # at once: an interrupt says how many rows are kept
         self.store.keep_up()
 
     def tell(self) -> None:

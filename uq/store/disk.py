@@ -125,10 +125,11 @@ class DiskStore(Tally):
         chunk : Chunk
         """
         data = pack(self.row_type, rows, chunk.columns, chunk.status)
+        failed, by_status = self.failed_in(chunk), ended(chunk.status)
         # Rows last: should a signal end the process in between, they are not kept without these.
         self._pending_failures = joined_failures(self._pending_failures, chunk.failures)
         self._pending.append(Piece(start, data))
-        self.count(len(chunk.status), self.failed_in(chunk), ended(chunk.status), chunk.failures)
+        self.count(len(chunk.status), failed, by_status, chunk.failures)
 
     def keep_up(self) -> None:
         """Write what has arrived, unless that would take more of the time than is due.
