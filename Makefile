@@ -62,7 +62,7 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.store
 	@$(BIN)/python -m benchmarks.large
 
-# How often each printed interval holds the truth: docs/coverage.md, in about an hour.
+# How often each printed interval holds the truth: docs/coverage.md, in about an hour and a half.
 coverage: $(TEST)
 	@$(BIN)/python -m benchmarks.coverage
 
