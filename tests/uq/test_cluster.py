@@ -23,6 +23,16 @@ from uq.running.task import evaluate_rows
 from uq.study.definition import load_study
 
 
+def workers():
+    """Return the living worker processes of this one, and those that compute for it here."""
+    found = set()
+    for child in psutil.Process().children():
+        with contextlib.suppress(psutil.NoSuchProcess):  # also one that is just ending
+            if {"uq.running.worker", "uq.running.child"} & set(child.cmdline()):
+                found.add(child)
+    return found
+
+
 @pytest.fixture
 def tidy(folder, monkeypatch):
     """Check that neither processes nor temporary files outlive the test."""
@@ -32,9 +42,7 @@ def tidy(folder, monkeypatch):
     yield
     assert not any(temporary.iterdir())
     assert not [place for place in sys.path if place.startswith(str(temporary))]
-    left = [child for child in psutil.Process().children() if child.status() != "zombie"]
-    ours = {"uq.running.worker", "uq.running.child"}
-    assert not [child for child in left if ours & set(child.cmdline())]
+    assert not workers()
 
 
 @pytest.mark.parametrize(
@@ -83,10 +91,6 @@ def test_workers_are_started_for_longer_studies_only(
 
 
 def test_a_worker_that_died_is_replaced(tidy):
-    def workers():
-        living = [one for one in psutil.Process().children() if one.status() != "zombie"]
-        return {child for child in living if "uq.running.worker" in child.cmdline()}
-
     with cluster.local(1) as crew:
         crew.client.wait_for_workers(1)
         (first,) = workers()
