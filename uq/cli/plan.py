@@ -56,9 +56,9 @@ def _show(path: str, description: str, cost: Cost, found: dict[str, Any]) -> Non
 
 
 def _show_widths(widths: dict[str, Any]) -> None:
-    asked = next(iter(widths.values()), {"quantiles": {}})["quantiles"]
+    asked = [probability for entry in widths.values() for probability in entry["quantiles"]]
     heading("\nExpected width of the 95 % intervals of mean and quantiles")
-    grid(_widths(widths), header=("", "mean", *asked))
+    grid(_widths(widths), header=("", "mean", *dict.fromkeys(asked)))
     others = [
         (label, _short(width))
         for name, entry in widths.items()
