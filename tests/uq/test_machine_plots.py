@@ -13,7 +13,7 @@ from models.beam.parameters import Params as Beam
 from models.beam.parameters import Settings as BeamSettings
 from models.mole.parameters import Params as Mole
 from models.mole.parameters import Settings as MoleSettings
-from uq.drawing.figure import COLOURS
+from uq.drawing.figure import COLOURS, lay_out
 from uq.errors import InputError
 
 
@@ -143,6 +143,33 @@ def test_curves_are_named_and_marked_where_the_regime_changes(worn):
     assert figure.axes[0].lines[-1].get_xdata()[0] == pytest.approx(300.0)
 
 
+def wearing(regimes):
+    """Return gaps that grow, one twice as fast as the other."""
+    time = np.linspace(0.0, 5e4, len(regimes))
+    gap = 2.5e-4 + np.outer(time, [1e-8, 2e-8])
+    named = {"long_name": "gap between rod and stop", "units": "m"}
+    ds = xr.Dataset({"gap": (("look", "site"), gap, named), "regime": ("look", regimes)})
+    ds["time"] = ("look", time, {"long_name": "time of wear", "units": "s"})
+    ds["rate"] = (("look", "site"), gap**2, {"long_name": "impact work-rate", "units": "W"})
+    return ds.assign_coords(site=["right", "left"])
+
+
+def test_the_change_of_regime_is_marked_on_every_curve_unless_it_never_stops():
+    once = wearing(["periodic"] * 10 + ["aperiodic"] * 10)
+    lines = uq.plot_curve(once, "rate", "gap").axes[0].lines
+    assert [line.get_xdata()[0] for line in lines[2:]] == pytest.approx(
+        1e3 * once["gap"].isel(look=10).values
+    )
+    often = uq.plot_curve(wearing(["periodic", "quasi-periodic"] * 20), "rate", "gap")
+    assert entries(often) == ["right", "left"]
+
+
+def test_the_label_of_a_low_figure_is_whole():
+    figure = uq.plot_curve(wearing(["periodic"] * 10 + ["aperiodic"] * 10), "gap", "time")
+    lay_out(figure)
+    assert figure.axes[0].yaxis.label.get_window_extent().y1 <= figure.bbox.y1
+
+
 def test_basins_are_coloured_by_attractor_and_explained(basins):
     labelled = basins.copy(deep=True)
     labelled["attractor"].values[:] = [[0, 0], [1, -1], [0, 0]]
@@ -152,8 +179,8 @@ def test_basins_are_coloured_by_attractor_and_explained(basins):
     colours = [to_hex(colour).upper() for colour in mesh.get_facecolors()]
     assert colours == [COLOURS[0], COLOURS[1], COLOURS[0], COLOURS[0], "#FFFFFF", COLOURS[0]]
     text = entries(figure)[0]
-    assert text.startswith("No-impact, -") and "µm s⁻¹, " in text and text.endswith("%")
-    assert entries(figure)[-1] == "failed, 16.7%"
+    assert text.startswith("No-impact, -") and "µm s⁻¹, " in text and text.endswith(" %")
+    assert entries(figure)[-1] == "failed, 16.7 %"
     with pytest.raises(InputError, match="over two parameters, not 1"):
         uq.plot_basins(basins.isel(initial_velocity=0))
 

@@ -335,33 +335,37 @@ def test_nothing_sticks_out_of_a_figure():
     y = ds["y"].values
     ds = with_output(ds, "angle", 0.14 * (y - y.mean()) / y.std())
     ds["angle"].attrs["long_name"] = "mean of psi_1 - psi_2 over one revolution"
-    ds["x4"].attrs |= {"long_name": "damping of the supports, b = 2 xi sqrt((M_k + 2m) k)"}
     figure = plots.scatter(ds, "angle")
     lay_out(figure)
     for axes in figure.axes:
         assert axes.yaxis.label.get_window_extent().x0 >= 0
-        assert axes.xaxis.label.get_window_extent().x1 <= figure.bbox.x1
+    ds = with_output(ds, "stroke", 0.00466 + 4e-5 * (y - y.mean()) / y.std())
+    ds["stroke"].attrs["long_name"] = "half peak-to-peak displacement along xi of the deck end"
+    ds["x4"].attrs["long_name"] = "damping of the supports, b = 2 xi sqrt((M_k + 2m) k)"
+    figure = plots.scatter(ds, "stroke")
+    lay_out(figure)
+    end = figure.axes[0].xaxis.label.get_window_extent().x1
+    assert end <= 0.97 * figure.bbox.x1  # a browser's letters may be wider
 
 
 def test_labels_of_pairs_keep_apart():
     ds = linear(samples=64).assign(regime=kinds(samples=64)["regime"])
     for name in ("x1", "x2", "x3", "x4"):
+        ds[name] = ds[name].copy(data=15000 + 300 * ds[name].values)
         ds[name].attrs["long_name"] = "phase of vibrator 1 at the start, from hanging down"
     figure = plots.pairs(ds)
     lay_out(figure)
     _, left, right = (axes for axes in figure.axes if axes.axison)
     one, other = (axes.xaxis.label.get_window_extent() for axes in (left, right))
     assert one.x1 < other.x0 and other.x1 <= figure.bbox.x1
-    alone = kinds(samples=64)
-    alone["x2"].attrs["long_name"] = ds["x2"].attrs["long_name"]
-    figure = plots.pairs(alone)
+    figure = plots.pairs(kinds(samples=64))
     lay_out(figure)
     (axes,) = figure.axes
-    assert axes.bbox.height > axes.yaxis.label.get_window_extent().width
+    assert axes.bbox.height > 0.6 * axes.bbox.width
 
 
 def test_long_numbers_have_room():
-    ds = with_output(linear(), "stroke", np.linspace(0.00459, 0.00473, 64))
+    ds = with_output(linear(), "stroke", np.linspace(0.004593, 0.004727, 64))
     figure = plots.histogram(ds, "stroke")
     lay_out(figure)
     boxes = [label.get_window_extent() for label in figure.axes[0].get_xticklabels()]

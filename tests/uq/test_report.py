@@ -146,6 +146,7 @@ def test_numbers_are_told_as_one_reads_them():
     }
     words = read(computed(study_of(tables))).plain_words
     assert "0.523599 " in words and words.count("0.5235987755982988") == 1  # in the study's text
+    assert words.count("set in this study, under [fixed]") == 1  # the others are nominal
     ds = kinds(samples=40)
     ds = ds.assign(regime=ds["regime"].copy(data=np.zeros(40, np.int8)))
     assert re.search(r"slow 40 100\.0 % .* fast 0 0\.0 %", read(ds).plain_words)

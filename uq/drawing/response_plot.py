@@ -13,8 +13,10 @@ from uq.drawing.figure import COLOURS, LINES, powers, sentence, styled
 from uq.drawing.panel import are_many, finish, panel_of
 from uq.drawing.quantities import find, label, pair, place_in, scale_of
 from uq.errors import InputError
+from uq.wording import percent
 
-_BESIDE = 32  # characters that the label of a vertical axis has room for
+_BESIDE = 26  # characters that the label of a vertical axis has room for
+_MOST_CHANGES = 12  # of regime along a curve, before their marks cover it
 _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 
 
@@ -22,8 +24,8 @@ _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 def plot_curve(ds: xr.Dataset, y: str, x: str, axes: Axes | None = None) -> Figure:
     """Draw one quantity against another: work-rates against gaps, gaps against the time of wear.
 
-    Where the regime, if ``ds["regime"]`` tells one, changes along the curve, there is a dotted
-    line.
+    Where the regime, if ``ds["regime"]`` tells one, changes along a curve, there is a dotted line,
+    unless it changes so often that lines would cover the curve.
 
     Parameters
     ----------
@@ -64,7 +66,8 @@ def plot_curve(ds: xr.Dataset, y: str, x: str, axes: Axes | None = None) -> Figu
     if "regime" in ds and ds["regime"].dims == (along,):
         kinds = ds["regime"].values
         changed = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
-        for i, where in enumerate(places[0].values[changed] * scales[0].factor):
+        changes = np.unique(places.values[:, changed]) * scales[0].factor
+        for i, where in enumerate(changes if len(changed) <= _MOST_CHANGES else ()):
             text = "" if i else "change of regime"
             axes.axvline(where, color="black", ls=":", lw=0.7, zorder=0, label=text)
     axes.set_xlabel(label(across, scales[0]))
@@ -165,9 +168,9 @@ def plot_basins(ds: xr.Dataset, outputs: Sequence[str] = (), axes: Axes | None =
     entries = list(zip(COLOURS, texts, strict=False))
     rare = float(ds["share"][len(COLOURS) :].sum())
     if len(texts) > len(COLOURS):
-        entries.append((_OTHERS, f"{len(texts) - len(COLOURS)} others, {rare:.1%}"))
+        entries.append((_OTHERS, f"{len(texts) - len(COLOURS)} others, {percent(rare)}"))
     if (attractor.values < 0).any():
-        entries.append((_FAILED, f"failed, {float((attractor < 0).mean()):.1%}"))
+        entries.append((_FAILED, f"failed, {percent(float((attractor < 0).mean()))}"))
     for colour, text in entries:
         axes.plot([], [], "s", color=colour, mec="black", mew=0.4, label=text)
     axes.set_xlabel(label(across, scales[0]))
@@ -186,4 +189,4 @@ def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
         value = find(one, f"representative_{name}")
         scale = scale_of([value])
         known.append(f"{value.item() * scale.factor:.3g} {powers(scale.unit)}".removesuffix(" 1"))
-    return sentence(", ".join([*known, f"{float(one['share']):.1%}"]), width=60)
+    return sentence(", ".join([*known, percent(float(one["share"]))]), width=60)

@@ -62,13 +62,15 @@ def input_tables(ds: xr.Dataset) -> Iterator[Table]:
         yield Table(caption, ("pair", "stated"), rows)
     fixed = [name for name in ds.data_vars if ds[name].attrs["role"] == "fixed"]
     if fixed:
-        told = [_fixed(ds, str(name)) for name in fixed]
+        told = [_fixed(ds, str(name), name in study.fixed) for name in fixed]
         yield Table("Fixed inputs", ("input", "value", "known", "source"), told)
 
 
-def _fixed(ds: xr.Dataset, name: str) -> tuple[Cell, ...]:
+def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
     value = ds[name].item()
-    return (_name(ds, name), Cell(_with_unit(ds, name, value), key=value), *_source(ds, name))
+    # What the model says of its nominal value does not hold for another.
+    source = (Cell(""), Cell("set in this study, under [fixed]")) if by_study else _source(ds, name)
+    return (_name(ds, name), Cell(_with_unit(ds, name, value), key=value), *source)
 
 
 def _uncertain(ds: xr.Dataset) -> Table:
@@ -93,9 +95,9 @@ def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
 
 
 def _with_unit(ds: xr.Dataset, name: str, value: float | str) -> str:
-    unit = powers(ds[name].attrs["units"])
+    unit = powers(ds[name].attrs["units"]).replace(" ", "\u00a0")
     text = value if isinstance(value, str) else f"{value:.6g}"
-    return text if unit == "1" else f"{text} {unit}"
+    return text if unit == "1" else f"{text}\u00a0{unit}"
 
 
 def _name(ds: xr.Dataset, name: str) -> Cell:
