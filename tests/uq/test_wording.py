@@ -2,7 +2,7 @@
 
 import pytest
 
-from uq.wording import brief, index, percent
+from uq.wording import brief, duration, index, percent
 
 
 @pytest.mark.parametrize(
@@ -31,3 +31,19 @@ def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
         "99.99 %",
         "100.0 %",
     ]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (None, ""),
+        (3599.0, ""),
+        (7200.0, "2 hours"),
+        (-7200.0, "-2 hours"),
+        (86400.0 * 3, "3 days"),
+        (86400.0 * 365.25 * 40, "40 years"),
+        (float("inf"), ""),
+    ],
+)
+def test_times_in_words(seconds, words):
+    assert duration(seconds) == words
