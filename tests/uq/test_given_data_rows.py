@@ -67,6 +67,14 @@ def test_delta_and_pawn_do_not_depend_on_the_scale_of_the_output():
         assert max(values(found["grown"], method)) < 1
 
 
+def test_quantile_indices_of_noise_are_about_zero():
+    # Without a correction each would be about 0.03: every slice has its quantile fitted to it.
+    noise = np.random.default_rng(5).random(1500)
+    ds = asking(with_output(linear(samples=1500), "noise", noise), quantiles=[0.5])
+    entry = indices(ds, "quantile", "noise")["outputs"]["noise"]
+    assert np.mean(values(entry, "Q0.5")) == pytest.approx(0, abs=0.01)
+
+
 def test_given_data_drops_rows_and_counts_them():
     ds = linear(samples=200, settings={"fail_above": 0.8})
     for method in ("rbd-fast", "delta", "pawn"):

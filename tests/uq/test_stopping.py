@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from computed import UNIFORM, as_text, computed, study_of, with_seed
+import xarray as xr
+from computed import UNIFORM, as_text, computed, kinds, study_of, with_seed
 
 from uq import store
 from uq.analysis.statistics import summarise
@@ -65,6 +66,20 @@ def test_a_stopped_run_is_that_of_fewer_samples_to_the_bit(tmp_path):
     assert int(example.removeprefix("row ").partition(":")[0]) >= 32  # after the first look
     store.write(ds, tmp_path / "out.nc")
     assert open_result(tmp_path / "out.nc").identical(ds)
+
+
+def test_the_element_that_is_known_worst_decides():
+    ds = kinds(samples=256)
+    ds["work"] = ds["work"] * xr.DataArray([1.0, 10.0], dims="side")
+
+    def look(half_width):
+        given = tables({"output": "work", "half_width": half_width}, samples=256)
+        given |= {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
+        return stopping.look(study_of(given, "sample_models:KINDS").design, ds)
+
+    half = (look(1.0).interval.high - look(1.0).interval.low) / 2
+    assert look(1.0).value == pytest.approx(float(ds["work"].sel(side="right").mean()))
+    assert look(1.01 * half).reached and not look(0.99 * half).reached
 
 
 def test_a_budget_that_is_spent_is_said():
