@@ -111,6 +111,14 @@ def test_without_a_terminal_progress_is_plain_lines(capsys, monkeypatch):
     assert lines[-1].endswith("0:00 left, 1 failed; raised 1")
 
 
+def test_quiet_is_quiet(capsys, monkeypatch):
+    monkeypatch.setattr(progress, "_PLAIN_SECONDS", 0.0)
+    with progress.shown(quiet=True) as show:
+        show(Progress(0, 4, 0, compiling=True))
+        show(MUCH)
+    assert capsys.readouterr() == ("", "")
+
+
 def test_plain_lines_stay_short(capsys, monkeypatch):
     monkeypatch.setattr(progress, "_PLAIN_SECONDS", 0.0)
     with progress.shown(quiet=False) as show:
