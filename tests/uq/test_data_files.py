@@ -7,6 +7,7 @@ from input_studies import UNIFORM, inputs_of, tables
 from uq.errors import InputError
 from uq.rows.sampling import row_block
 from uq.study.definition import load_study, study_from_text
+from uq.wording import law
 
 
 @pytest.fixture
@@ -19,7 +20,9 @@ def springs(tmp_path):
 
 
 def test_an_empirical_law_draws_the_values_of_the_column(springs):
-    found = inputs_of(load_study(springs / "study.toml"))["x1"]
+    study = load_study(springs / "study.toml")
+    assert law(study.uncertain["x1"]) == 'empirical(file = "springs.csv", column = "k")'
+    found = inputs_of(study)["x1"]
     assert set(found) == {0.25, 0.5, 0.75}
     assert (found == 0.5).mean() == pytest.approx(0.5, abs=0.04)
 
