@@ -78,14 +78,17 @@ $(BASE): pyproject.toml constraints.txt
 	@touch $@
 
 $(TEST): $(BASE)
+	@echo "Adding the packages of the tests (some minutes, once) ..."
 	@$(PIP) -e ".[test]"
 	@touch $@
 
 $(NOTEBOOK): $(BASE)
+	@echo "Adding the packages of the notebooks (some minutes, once) ..."
 	@$(PIP) -e ".[notebook]"
 	@$(BIN)/python -m ipykernel install --prefix .venv --name vibrolife --display-name vibrolife >/dev/null
 	@touch $@
 
 $(DOCS): $(BASE)
+	@echo "Adding the packages of the documentation (some minutes, once) ..."
 	@$(PIP) -e ".[docs]"
 	@touch $@

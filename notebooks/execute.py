@@ -1,7 +1,7 @@
 """Run notebooks at full size and keep what they show: ``python notebooks/execute.py [01 ...]``.
 
-Without numbers, all of them. With the environment variable ``NOTEBOOK_FEWER=20`` every notebook
-computes a twentieth of its rows; the tests do so.
+Without numbers, all of them. With the environment variable ``NOTEBOOK_FEWER=7`` every notebook
+computes a seventh of its rows; the tests do so.
 """
 
 import sys

@@ -4,8 +4,10 @@ import warnings
 
 import numpy as np
 import pytest
-from asked_indices import indices, ishigami, values
+from asked_indices import INPUTS, indices, ishigami, values
 from computed import asking, linear, with_output
+from SALib.analyze import pawn, rbd_fast
+from SALib.analyze.delta import calc_delta
 from scipy import stats
 
 from uq.indices.given_data import DUMMIES
@@ -47,6 +49,28 @@ def test_dummy_is_passed_by_one_input_in_twenty_that_plays_no_part(method, index
     assert stats.binomtest(sum(passed), len(passed), 0.05).pvalue > 0.01
 
 
+def test_given_data_values_are_those_of_salib():
+    ds = ishigami("monte-carlo", samples=303, replicates=1)
+    x, y = np.column_stack([ds[name].values for name in INPUTS]), ds["y"].values
+    problem = {"num_vars": 3, "names": list(INPUTS)}
+    fast = indices(ds, "rbd-fast")["outputs"]["y"]
+    assert values(fast, "S1") == pytest.approx(rbd_fast.analyze(problem, x, y, seed=1)["S1"])
+    rounded = with_output(ds.assign(x3=ds["x3"].round(0)), "rounded", y.round(0))
+    for one, name in ((ds, "y"), (rounded, "rounded")):
+        x_of = np.column_stack([one[name].values for name in INPUTS])
+        expected = pawn.analyze(problem, x_of, one[name].values)["median"]
+        assert values(indices(one, "pawn")["outputs"][name], "pawn") == pytest.approx(expected)
+    scores = stats.norm.ppf((stats.rankdata(y) - 0.5) / 303)
+    grid, ends = np.linspace(scores.min(), scores.max(), 100), np.linspace(0, 303, 6)
+    assert values(indices(ds, "delta")["outputs"]["y"], "delta") == pytest.approx(
+        [calc_delta(scores, grid, column, ends) for column in x.T]
+    )
+    dummies = np.random.default_rng(0).random((303, DUMMIES))
+    problem = {"num_vars": DUMMIES, "names": [str(i) for i in range(DUMMIES)]}
+    largest = max(rbd_fast.analyze(problem, dummies, y, seed=1)["S1"])
+    assert fast["dummy"]["S1"] == pytest.approx(largest)
+
+
 def test_given_data_depends_on_nothing_but_the_rows():
     ds = ishigami("monte-carlo", samples=200, replicates=1)
     state = np.random.get_state()[1].copy()  # noqa: NPY002
@@ -85,6 +109,11 @@ def test_given_data_drops_rows_and_counts_them():
         sound = ds.isel(sample=~np.isnan(ds["y"].values))
         alone = indices(sound, method)["outputs"]["y"]
         assert alone == found["outputs"]["y"] | {"groups_dropped": 0}
+
+
+def test_given_data_judges_64_rows():
+    for method in ("rbd-fast", "delta", "pawn"):
+        assert "refused" not in indices(linear(samples=64), method)["outputs"]["y"]
 
 
 def test_given_data_refuses_what_it_cannot_judge():

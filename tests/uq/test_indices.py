@@ -2,30 +2,13 @@
 
 import numpy as np
 import pytest
-from asked_indices import INPUTS, indices, ishigami, values
+from asked_indices import INPUTS, indices, ishigami
 from computed import kinds, linear, with_output
-from SALib.analyze import pawn, rbd_fast
 
 import uq
 from uq.contract import Status
 from uq.errors import InputError
-from uq.indices.given_data import DUMMIES
 from uq.indices.sensitivities import methods, sensitivities
-
-
-def test_given_data_values_are_those_of_salib():
-    ds = ishigami("monte-carlo", samples=300, replicates=1)
-    x, y = np.column_stack([ds[name].values for name in INPUTS]), ds["y"].values
-    problem = {"num_vars": 3, "names": list(INPUTS)}
-    fast = indices(ds, "rbd-fast")["outputs"]["y"]
-    assert values(fast, "S1") == pytest.approx(rbd_fast.analyze(problem, x, y, seed=1)["S1"])
-    assert values(indices(ds, "pawn")["outputs"]["y"], "pawn") == pytest.approx(
-        pawn.analyze(problem, x, y)["median"]
-    )
-    dummies = np.random.default_rng(0).random((300, DUMMIES))
-    problem = {"num_vars": DUMMIES, "names": [str(i) for i in range(DUMMIES)]}
-    largest = max(rbd_fast.analyze(problem, dummies, y, seed=1)["S1"])
-    assert fast["dummy"]["S1"] == pytest.approx(largest)
 
 
 def test_method_is_the_studys_or_the_designs_own():

@@ -1,10 +1,11 @@
 """What ``uq plan`` does."""
 
+from collections.abc import Iterator
 from typing import Any
 
 from uq.analysis.widths import expected_widths
 from uq.cli.catalogue import finite
-from uq.cli.printing import console, grid, heading, number, paragraph, print_json
+from uq.cli.printing import console, grid, heading, paragraph, print_json
 from uq.cli.progress import say_compiling
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
@@ -51,18 +52,44 @@ def _show(path: str, description: str, cost: Cost, found: dict[str, Any]) -> Non
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
         ]
     )
-    heading("\nExpected width of the 95 % intervals")
-    for name, entry in found["widths"].items():
-        unit = "" if entry["units"] == "1" else f" [{entry['units']}]"
-        heading(f"\n{name}{unit}")
-        lines = [("mean", number(entry["mean"]))]
-        lines += [(f"quantile {p}", number(width)) for p, width in entry["quantiles"].items()]
-        lines += [(f"P(> {t})", number(width)) for t, width in entry["thresholds"].items()]
-        lines += [(f"{k}, the widest", number(entry[k])) for k in _INDICES if k in entry]
-        grid(lines)
-    if any(entry["mean"] is None for entry in found["widths"].values()):
+    _show_widths(found["widths"])
+
+
+def _show_widths(widths: dict[str, Any]) -> None:
+    asked = [probability for entry in widths.values() for probability in entry["quantiles"]]
+    heading("\nExpected width of the 95 % intervals of mean and quantiles")
+    grid(_widths(widths), header=("", "mean", *dict.fromkeys(asked)))
+    others = [
+        (label, _short(width))
+        for name, entry in widths.items()
+        for label, width in (
+            *((f"P({name} > {t})", width) for t, width in entry["thresholds"].items()),
+            *((f"{kind} of {name}, the widest", entry[kind]) for kind in _INDICES if kind in entry),
+        )
+    ]
+    if others:
+        heading("\nand of")
+        grid(others)
+    if any(entry["mean"] is None for entry in widths.values()):
         console.print()
         paragraph("A dash: not from so few rows, or not from this design.", indent=0)
+
+
+def _widths(widths: dict[str, Any]) -> Iterator[tuple[str, ...]]:
+    """Yield a line for each output, or one with its name and then one for each element."""
+    before = ""
+    for name, entry in widths.items():
+        output, _, place = name.partition("[")
+        label = output if entry["units"] == "1" else f"{output} [{entry['units']}]"
+        if place and output != before:
+            yield label, *[""] * (1 + len(entry["quantiles"]))
+        before = output
+        numbers = (_short(width) for width in (entry["mean"], *entry["quantiles"].values()))
+        yield f"  {place.removesuffix(']')}" if place else label, *numbers
+
+
+def _short(width: float | None) -> str:
+    return "-" if width is None else f"{width:.3g}"
 
 
 def _clock(seconds: float) -> str:

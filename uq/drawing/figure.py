@@ -122,9 +122,16 @@ def lay_out(figure: Figure) -> None:
     figure.set_dpi(DOTS_PER_INCH)
     FigureCanvasAgg(figure)
     if engine := figure.get_layout_engine():
-        for _ in range(2):  # in its first place an axis may have other ticks, with longer numbers
+        before = _tick_labels(figure)
+        engine.execute(figure)
+        if _tick_labels(figure) != before:  # in its place an axis may have longer numbers
             engine.execute(figure)
         figure.set_layout_engine("none")  # it would be done again for each file
+
+
+def _tick_labels(figure: Figure) -> list[str]:
+    sides = (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis))
+    return [label.get_text() for axis in sides for label in axis.get_ticklabels()]
 
 
 @styled

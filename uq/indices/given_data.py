@@ -1,23 +1,22 @@
 """Sensitivity from a plain sample: every method that asks for no design of its own.
 
-RBD-FAST, Borgonovo's delta and HDMR are SALib's estimators; Kolmogorov's distance, which PAWN and
-regional sensitivity take, is scipy's. Their scatter is not known: bootstrap intervals of these
-estimates miss the truth far more often than they say. Beside each index stands what the same
-estimate makes of inputs that play no part; an index below that shows nothing.
+RBD-FAST, Borgonovo's delta, PAWN and HDMR are SALib's estimators. Their scatter is not known:
+bootstrap intervals of these estimates miss the truth far more often than they say. Beside each
+index stands what the same estimate makes of inputs that play no part; an index below that shows
+nothing.
 """
 
 from collections.abc import Callable, Mapping
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from SALib.analyze.delta import calc_delta
-from SALib.analyze.rbd_fast import compute_first_order, permute_outputs, unskew_S1
-from scipy.stats import ks_2samp, norm, rankdata
+from SALib.analyze.rbd_fast import permute_outputs, unskew_S1
+from scipy.fft import rfft
 
 from uq.indices.hdmr import hdmr_indices
 from uq.indices.quantile_oriented import quantile_indices, without_optimism
 from uq.indices.regional import ks_distances
+from uq.indices.slices import delta, pawn
 from uq.indices.targets import Index, Indices, RefusedError
 from uq.intervals import is_constant
 from uq.rows.elements import Floats
@@ -36,8 +35,6 @@ too small besides, of which ten times the rows would mend a third.
 """
 
 _HARMONICS = 10
-_SLICES = 10
-_TIED = 0.01
 
 
 def given_data_indices(
@@ -100,48 +97,16 @@ def given_data_indices(
 
 
 def _rbd_fast(x: Floats, y: Floats) -> Floats:
-    raw = [compute_first_order(permute_outputs(column, y), _HARMONICS) for column in x.T]
-    return unskew_S1(np.array(raw), _HARMONICS, len(y))
-
-
-def _delta(x: Floats, y: Floats) -> Floats:
-    _, counts = np.unique(y, return_counts=True)
-    if counts.max() > _TIED * len(y):
-        raise RefusedError(
-            f"{counts.max()} rows share one value, and delta compares densities; use rbd-fast or"
-            " pawn"
-        )
-    # Delta is the same for any increasing function of y, but its estimate is useless where one
-    # grid must serve a long tail. Normal scores have no tails.
-    n = len(y)
-    y = norm.ppf((rankdata(y) - 0.5) / n)
-    grid = np.linspace(y.min(), y.max(), 100)
-    # Slices of the input, as many as SALib's: Plischke, Borgonovo, Smith, Eur. J. Oper. Res. 226,
-    # 536-550 (2013), section 5.
-    slices = min(int(np.ceil(n ** (2 / (7 + np.tanh((1500 - n) / 500))))), 48)
-    edges = np.linspace(0, n, slices + 1)
-    return np.array([calc_delta(y, grid, column, edges) for column in x.T])
-
-
-def _pawn(x: Floats, y: Floats) -> Floats:
-    """Return the median of distances between the law of y in a slice of an input and anywhere.
-
-    SALib's estimate, without the p-values that it takes most of its time for and drops: F. Pianosi,
-    T. Wagener, Environ. Model. Softw. 108, 197-207 (2018).
-    """
-    edges = np.quantile(x, np.arange(_SLICES + 1) / _SLICES, axis=0)
-    return np.array([_median_distance(*one, y) for one in zip(x.T, edges.T, strict=True)])
-
-
-def _median_distance(column: Floats, edges: Floats, y: Floats) -> float:
-    slices = [y[(column >= low) & (column < high)] for low, high in pairwise(edges)]
-    found = [ks_2samp(one, y, method="asymp").statistic for one in slices if len(one)]
-    return float(np.median(found)) if found else np.nan
+    """Return the share of the first harmonics in the power of y along each input, unbiased."""
+    spectra = (rfft(permute_outputs(column, y)) for column in x.T)
+    first = [np.sum(np.abs(one[1 : _HARMONICS + 1]) ** 2) for one in spectra]
+    share = np.array(first) * 2 / (len(y) ** 2 * y.var())
+    return unskew_S1(share, _HARMONICS, len(y))
 
 
 _METHODS: dict[str, tuple[str, Callable[[Floats, Floats], NDArray[np.float64]]]] = {
     "rbd-fast": ("S1", _rbd_fast),
-    "delta": ("delta", _delta),
-    "pawn": ("pawn", _pawn),
+    "delta": ("delta", delta),
+    "pawn": ("pawn", pawn),
     "regional": ("KS", ks_distances),
 }

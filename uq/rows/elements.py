@@ -152,7 +152,9 @@ def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
 def output_names(ds: xr.Dataset) -> tuple[str, ...]:
     """Return the names of all outputs of a result."""
     return tuple(
-        str(name) for name, variable in ds.data_vars.items() if variable.attrs["role"] == "output"
+        str(name)
+        for name, variable in ds.variables.items()
+        if variable.attrs.get("role") == "output"
     )
 
 

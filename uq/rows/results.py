@@ -235,7 +235,7 @@ def failed(ds: xr.Dataset) -> NDArray[np.bool_]:
     """Return which rows of a result failed, shape (n,), by the rule of `failed_rows`."""
     required = (
         (variable.attrs["kind"], variable.values)
-        for variable in ds.data_vars.values()
+        for variable in ds.variables.values()
         if variable.attrs.get("role") == "output" and not variable.attrs["may_be_undefined"]
     )
     return failed_rows(ds["status"].values, required)
