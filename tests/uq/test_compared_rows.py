@@ -6,6 +6,7 @@ from computed import asking, kinds, linear, with_output, with_status
 
 from uq.analysis.comparison import comparison
 from uq.contract import Status
+from uq.intervals import wilson_interval
 
 ENDS = ("value", "low", "high")
 
@@ -40,6 +41,25 @@ def test_rows_that_failed_count_no_more_than_rows_that_are_not_there():
         one["outputs"]["angle"]["thresholds"]["0.5"]["above"] for one in (found, without)
     )
     assert apart(sides) == pytest.approx(apart(expected), rel=1e-9)
+
+
+def test_shares_that_agree_have_newcombes_interval():
+    # R. G. Newcombe, Stat. Med. 17, 2635 (1998), method 10: half a row counts against agreement.
+    both, first, second, none = counts = (20, 2, 12, 16)
+    n = sum(counts)
+    ds = linear(samples=n)
+    hits = [np.repeat(one, counts) for one in ([1.0, 1.0, 0.0, 0.0], [1.0, 0.0, 1.0, 0.0])]
+    pair = [asking(with_output(ds, "hit", one), thresholds={"hit": 0.5}) for one in hits]
+    a, b = (one.mean() for one in hits)
+    phi = (both * none - first * second - n / 2) / (n**2 * np.sqrt(a * (1 - a) * b * (1 - b)))
+
+    def end(one, other):
+        return np.sqrt(one**2 - 2 * phi * one * other + other**2)
+
+    (low_a, high_a), (low_b, high_b) = (wilson_interval(one, n) for one in (a, b))
+    expected = [b - a, b - a - end(b - low_b, high_a - a), b - a + end(high_b - b, a - low_a)]
+    found = comparison(*pair)["outputs"]["hit"]["thresholds"]["0.5"]["above"]
+    assert apart(found) == pytest.approx(expected)
 
 
 def test_lives_that_suppose_something_are_reckoned_with_at_their_worst():

@@ -49,6 +49,10 @@ def test_a_page_says(told, words):
     assert words in told
 
 
+def test_nothing_on_a_page_acts_where_it_is_copied_to(told):
+    assert told.isprintable()
+
+
 def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples():
     text = page(linear("sobol", samples=16), "out.nc")
     assert "uq run linear.toml\n" in text
