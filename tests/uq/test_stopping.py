@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import xarray as xr
-from computed import UNIFORM, as_text, computed, kinds, study_of, with_seed
+from computed import as_text, computed, study_of, with_seed
+from until_studies import study, tables
 
 from uq import store
 from uq.analysis.statistics import summarise
@@ -16,29 +16,6 @@ from uq.rows.work import work_of
 from uq.running import cluster, further, runner
 from uq.running.standing import standing
 from uq.study.definition import study_from_text
-
-INPUTS = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
-
-
-def tables(until, samples=4096, method="monte-carlo", replicates=1, settings=None):
-    design = {"method": method, "samples": samples, "replicates": replicates, "until": until}
-    return {
-        "study": {"name": "until", "model": "linear"},
-        "design": design,
-        "uncertain": INPUTS,
-        "settings": settings or {},
-    }
-
-
-def study(half_width, **more):
-    estimate = {key: more.pop(key) for key in ("above", "below", "quantile") if key in more}
-    return study_of(tables({"output": "y", "half_width": half_width} | estimate, **more))
-
-
-def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
-    assert stopping.looks(study(0.1, samples=1000).design) == (32, 63, 125, 250, 500, 1000)
-    assert stopping.looks(study(0.1, samples=20).design) == (20,)
-    assert stopping.confidence(study(0.1, samples=1000).design) == pytest.approx(1 - 0.05 / 6)
 
 
 @pytest.mark.parametrize(
@@ -66,50 +43,6 @@ def test_a_stopped_run_is_that_of_fewer_samples_to_the_bit(tmp_path):
     assert int(example.removeprefix("row ").partition(":")[0]) >= 32  # after the first look
     store.write(ds, tmp_path / "out.nc")
     assert open_result(tmp_path / "out.nc").identical(ds)
-
-
-def look_at(ds, **until):
-    """Look at a result of the model with one output of every kind."""
-    given = tables(until, samples=256) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
-    return stopping.look(study_of(given, "sample_models:KINDS").design, ds)
-
-
-def test_the_element_that_is_known_worst_decides():
-    ds = kinds(samples=256)
-    ds["work"] = ds["work"] * xr.DataArray([1.0, 10.0], dims="side")
-
-    def look(half_width):
-        return look_at(ds, output="work", half_width=half_width)
-
-    half = (look(1.0).interval.high - look(1.0).interval.low) / 2
-    assert look(1.0).value == pytest.approx(float(ds["work"].sel(side="right").mean()))
-    assert look(1.01 * half).reached and not look(0.99 * half).reached
-
-
-def test_a_share_is_of_the_rows_that_did_not_fail():
-    of = study(0.1, above=4.0, samples=200, settings={"fail_above": 0.5})
-    ds = computed(of)
-    sound = ds["y"].values[~np.isnan(ds["y"].values)]
-    value, interval, _ = stopping.look(of.design, ds)
-    assert len(sound) < 150 and value == (sound > 4.0).mean()
-    assert interval.low < value < interval.high
-    whole = computed(study(0.1, above=4.0, samples=200))
-    narrower = stopping.look(of.design, whole).interval
-    assert interval.high - interval.low > 1.2 * (narrower.high - narrower.low)
-
-
-def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
-    ds = kinds(samples=256)  # lives of 0.5 to 1.5, censored from 1.3 on
-    name = "life[side=left,depth=0.5]"
-    known = look_at(ds, output=name, below=1.0, half_width=0.5)
-    unknown = look_at(ds, output=name, below=1.4, half_width=0.5)
-    assert known.reached and 0.2 < known.value < 0.4
-    assert np.isnan(unknown.value) and not unknown.reached
-
-
-def test_it_is_said_at_which_look_a_run_knew_enough():
-    (note,) = summarise(runner.compute(study(10.0, samples=500), workers=0))["notes"]
-    assert "was reached at look 1 of at most 5" in note
 
 
 def test_a_budget_that_is_spent_is_said():
