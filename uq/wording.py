@@ -94,8 +94,8 @@ def percent(share: float) -> str:
     """Return a share in per cent: to a tenth, or more exactly where it is close to none or all."""
     if 0 < share < 0.01:
         return f"{100 * share:.2g} %"
-    rest = 1 - share
-    return f"{100 * share:.{1 - floor(log10(100 * rest)) if 0 < rest < 0.001 else 1}f} %"
+    rest = round(1 - share, 12)
+    return f"{100 * share:.{-floor(log10(100 * rest)) if 0 < rest < 0.001 else 1}f} %"
 
 
 def percent_with_interval(entry: Entry) -> str:

@@ -10,7 +10,7 @@ from uq.drawing.figure import place_in_words, powers
 from uq.report.table import Cell, Table, count, estimate, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
 from uq.time_units import TimeUnit, time_unit
-from uq.wording import interval, number, percent, percent_interval, variance_between
+from uq.wording import number, percent, percent_interval, variance_between
 
 Summary = Mapping[str, Any]
 """What `uq.analysis.statistics.summarise` returns."""
@@ -150,7 +150,7 @@ def _statistics(one: Outcome) -> Iterator[Cell]:
     yield one.cell(entry, "sd")
     yield from (one.cell(quantile) for quantile in entry["quantiles"].values())
     split = entry.get("between_regimes")
-    yield Cell(variance_between(split), interval(split), split["value"]) if split else Cell("")
+    yield estimate(split)._replace(text=variance_between(split)) if split else Cell("")
     yield from (count(entry[name]) for name in _COUNTS)
 
 
