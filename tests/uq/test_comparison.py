@@ -62,8 +62,9 @@ def test_a_difference_of_paired_shares_has_the_published_interval():
     )
 
 
-def test_pairs_of_rows_give_the_interval_of_students_paired_test():
-    one, other = study(FOUR), study(FOUR | {"x4": NARROW})
+@pytest.mark.parametrize("design", [{}, {"samples": 100, "replicates": 2}])
+def test_pairs_of_rows_give_the_interval_of_students_paired_test(design):
+    one, other = study(FOUR, **design), study(FOUR | {"x4": NARROW}, **design)
     line = api.compare(one, other).loc[("y", "mean")]
     test = stats.ttest_rel(other["y"].values, one["y"].values).confidence_interval()
     assert (line["low"], line["high"]) == pytest.approx(tuple(test))

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import xarray as xr
 from computed import kinds, linear, with_output
 
 from uq import store
@@ -70,6 +71,18 @@ def test_a_life_without_a_mean_is_judged_by_its_median():
     assert line["estimate"] == "median" and line["sampling"] > 0
 
 
+def test_errors_count_by_their_magnitude_and_for_their_own_element():
+    ds = with_error(0.5)
+    ds["y_error"][::2] *= -1
+    assert enough(ds).loc["y", "own"] == 0.5
+    ds = kinds(samples=64)
+    sizes = xr.DataArray([0.1, 0.2], dims="side") * xr.ones_like(ds["work"])
+    ds = ds.assign(work_error=sizes.transpose(*ds["work"].dims).assign_attrs(ds["work"].attrs))
+    own = enough(ds)["own"]
+    assert own["work[side=left]"] == pytest.approx(0.1)
+    assert own["work[side=right]"] == pytest.approx(0.2)
+
+
 def test_no_interval_is_no_warning():
     ds = with_output(linear("sobol", 64), "y_error", np.ones(64))
     assert enough(ds).loc["y", "warning"] == ""
@@ -83,5 +96,9 @@ def test_the_command_shows_and_writes_json(uq, folder):
     found = json.loads(uq("convergence", "out.nc", "--json").out)["outputs"]["y"]
     assert [line["samples"] for line in found["estimates"]["mean"]] == [16, 32, 64, 128, 256]
     assert found["own_error"] == 1.0 and found["sampling_error"] < 1.0
+    store.write(linear(samples=1024), folder / "long.nc")
+    shown = [line.split() for line in uq("convergence", "long.nc").out.splitlines()]
+    of_mean = shown[shown.index(["samples", "mean", "95", "%", "interval"]) + 1 :]
+    assert [line[0] for line in of_mean[:6]] == ["32", "64", "128", "256", "512", "1024"]
     store.write(linear("latin-hypercube", 64, 8), folder / "lhs.nc")
     assert uq("convergence", "lhs.nc").code == 2

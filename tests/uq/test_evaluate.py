@@ -8,7 +8,7 @@ import sample_models
 
 from models.analytic import EXPONENTIAL_WEAR, LINEAR
 from uq.contract import Output, Status
-from uq.rows.evaluate import KernelError, evaluate
+from uq.rows.evaluate import KernelError, evaluate, joined
 
 
 def linear(x1, how, start=0):
@@ -138,3 +138,13 @@ def test_a_lifetime_that_cannot_be_censored_has_no_flag():
     chunk = evaluate(EXPONENTIAL_WEAR, EXPONENTIAL_WEAR.settings(), x, np.zeros(1, np.uint64))
     assert list(chunk.columns) == ["life"]
     assert isinstance(EXPONENTIAL_WEAR.outputs["life"], Output)
+
+
+def test_of_chunks_that_follow_each_other_the_first_failure_is_told():
+    parts = [linear([0.1, x1], "raise", start) for x1, start in ((0.2, 0), (0.9, 2), (0.95, 4))]
+    whole = joined(parts)
+    assert whole.failures == {"raised": (3, "ValueError: x1 is above fail_above = 0.8")}
+    assert whole.status.tolist() == [0, 0, 0, Status.RAISED, 0, Status.RAISED]
+    np.testing.assert_array_equal(
+        whole.columns["y"], linear([0.1, 0.2, 0.1, 0.9, 0.1, 0.95], "raise").columns["y"]
+    )

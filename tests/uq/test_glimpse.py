@@ -35,3 +35,20 @@ def test_of_many_lives_an_even_part_is_kept(sizes):
     assert 2000 < len(kept) <= 4096 and len(np.unique(np.diff(kept))) == 1
     assert glimpse.median == ("life", pytest.approx(total / 2, rel=1e-3))
     assert glimpse.shares == {}
+
+
+def test_what_is_still_going_on_has_not_ended_and_what_is_frequent_comes_first():
+    inside = {"distribution": "uniform", "lower": 0.3, "upper": 0.9}
+    given = {
+        "study": {"name": "kinds", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 100},
+        "uncertain": {"x1": inside},
+    }
+    study = study_from_text(as_text(given), model="sample_models:KINDS")
+    glimpse, rows = Glimpse(work_of(study)), row_block(study, 0, 100)
+    chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
+    chunk.columns["life_censored"][:60] = True
+    glimpse.see(chunk)
+    assert glimpse.median == ("life[side=left,depth=0.5]", np.inf)
+    assert list(glimpse.shares) == ["fast", "slow"]
+    assert glimpse.shares["slow"] == (chunk.columns["regime"] == 0).mean() < 0.5

@@ -117,6 +117,10 @@ def spoilt(ds):
         attrs = {key: value for key, value in ds[name].attrs.items() if key != attribute}
         other[name].attrs = attrs
         yield f"no {attribute} of {name}", other
+    for name in ("status", "block"):
+        other = ds.copy()
+        other[name].attrs = ds[name].attrs | {"flag_meanings": "one too many for it " * 3}
+        yield f"too many meanings of {name}", other
     yield "study that is none", ds.assign_attrs(study="[study")
     yield "values of text", ds.assign(y=("sample", ds["y"].values.astype(str), ds["y"].attrs))
     yield "values without rows", ds.assign(y=((), 1.0, ds["y"].attrs))

@@ -70,6 +70,16 @@ def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
         assert index["low"] < index["value"] < index["high"]
 
 
+def test_few_rows_have_the_exact_interval_of_a_lognormal_median():
+    life = sample(LOGNORMAL, 20, seed=2)
+    median = uq.life_fits(lives(life), "life")["life"]["lognormal"]["parameters"]["median"]
+    logarithms = np.log(life)
+    exact = stats.ttest_1samp(logarithms, 0).confidence_interval()
+    found = np.log([median[end] for end in ("low", "high")])
+    # The normal law's interval would be shorter by 6 %.
+    assert found - logarithms.mean() == pytest.approx(exact - logarithms.mean(), rel=0.02)
+
+
 def test_what_cannot_be_fitted_is_refused():
     good = sample(WEIBULL)
     never = np.where(np.arange(400) < 7, np.inf, good)

@@ -46,6 +46,12 @@ def test_rows_that_never_end_make_the_plateau():
     assert float(curve["low"][-1]) == pytest.approx(expected.low, abs=0.01)
 
 
+def test_what_was_censored_is_not_known_never_to_end():
+    ds = lives(np.full(16, np.inf), np.arange(16) < 5)
+    entry = summarise(ds)["outputs"]["life"]
+    assert (entry["never"], entry["censored"]) == (11, 5)
+
+
 def test_curve_agrees_with_the_thresholds_of_the_summary():
     ds = asking(lives(np.random.default_rng(2).exponential(size=80)), thresholds={"life": 0.7})
     above = summarise(ds)["outputs"]["life"]["thresholds"]["0.7"]["above"]["value"]

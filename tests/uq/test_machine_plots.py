@@ -15,6 +15,7 @@ from models.mole.parameters import Params as Mole
 from models.mole.parameters import Settings as MoleSettings
 from uq.drawing.figure import COLOURS, lay_out
 from uq.errors import InputError
+from uq.wording import percent
 
 
 def labels(figure):
@@ -102,6 +103,7 @@ def test_a_history_in_panels_of_one_and_of_several_quantities():
     )
     figure = uq.plot_history(run_up, [["a", "b"]])
     assert labels(figure) == ["[m s⁻¹]", "Time [hours]"]
+    assert figure.axes[0].lines[0].get_xdata().tolist() == [0.0, 2.0]
     assert [line.get_label() for line in figure.axes[0].lines] == ["First", "Second"]
     with pytest.raises(InputError, match=r"unlike units .*: x \[m\], v \[m s-1\]"):
         uq.plot_history(ds, [["x", "v"]])
@@ -181,6 +183,9 @@ def test_basins_are_coloured_by_attractor_and_explained(basins):
     text = entries(figure)[0]
     assert text.startswith("No-impact, -") and "µm s⁻¹, " in text and text.endswith(" %")
     assert entries(figure)[-1] == "failed, 16.7 %"
+    share = float(basins["share"][0])
+    many = basins.isel(basin=[0] * (len(COLOURS) + 2))
+    assert entries(uq.plot_basins(many))[len(COLOURS)] == f"2 others, {percent(2 * share)}"
     with pytest.raises(InputError, match="over two parameters, not 1"):
         uq.plot_basins(basins.isel(initial_velocity=0))
 

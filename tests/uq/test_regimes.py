@@ -97,9 +97,26 @@ def test_variance_between_regimes_of_noise_has_no_interval():
         np.array([1.0, 2.0, 4.0, 6.0]), np.array([0, 0, 1, 1]), np.zeros(4, int)
     )
     assert value == pytest.approx(49 / 59)
+    # Of independent rows, less what chance makes of it: 1 - (10/59) 3/2.
+    value, _ = between_share(np.array([1.0, 2.0, 4.0, 6.0]), np.array([0, 0, 1, 1]))
+    assert value == pytest.approx(44 / 59)
     for y, codes in (([1.0, 1.0, 1.0, 1.0], [0, 0, 1, 1]), ([1.0, 2.0], [0, 0]), ([], [])):
         value, interval = between_share(np.array(y), np.array(codes, dtype=int))
         assert np.isnan(value) and np.isnan(interval).all()
+
+
+def test_variance_between_regimes_is_as_uncertain_as_the_jackknife_finds_it():
+    rng, n = np.random.default_rng(4), 400
+    codes = rng.integers(0, 3, n)
+    y = rng.exponential(size=n) * (1 + codes) + codes
+
+    def root(share):
+        return np.arctanh(np.sqrt(share))
+
+    _, (low, high) = between_share(y, codes)
+    error = (root(high) - root(low)) / 2 / stats.norm.ppf(0.975)
+    without = [root(between_share(np.delete(y, i), np.delete(codes, i))[0]) for i in range(n)]
+    assert error == pytest.approx(np.std(without) * np.sqrt(n - 1), rel=0.05)
 
 
 def test_statistics_within_a_regime():

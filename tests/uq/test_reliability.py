@@ -280,6 +280,7 @@ def test_the_command_shows_and_writes_json(uq, write_study):
     options = ("--output", "y", "--above", "9.5", "--samples", 200)
     ended = uq("rare-event", path, *options)
     assert ended.code == 0 and "95 % interval" in ended.out
+    assert ended.out.startswith("P(y > 9.5)")
     found = json.loads(uq("rare-event", path, *options, "--json").out)
     low, value, high = (found["probability"][key] for key in ("low", "value", "high"))
     assert low < value < high

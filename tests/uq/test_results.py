@@ -141,6 +141,7 @@ def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):
     xr.Dataset({"a": 1}).to_netcdf("other.nc")
     store.write(simulate("linear"), folder / "single.nc")
     results.open_result(path).assign_attrs(schema_version=99).to_netcdf("future.nc")
+    results.open_result(path).assign_attrs(schema_version=0).to_netcdf("past.nc")
     for name, words in {
         "missing.nc": "no such file",
         ".": "is a folder",
@@ -148,6 +149,7 @@ def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):
         "other.nc": "not a result of 'uq run'",
         "single.nc": "not a result of 'uq run'",
         "future.nc": "written with schema version 99; this version of vibrolife reads 1",
+        "past.nc": "written with schema version 0; this version of vibrolife reads 1",
     }.items():
         with pytest.raises(InputError) as refused:
             results.open_result(name)

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from computed import UNIFORM, as_text, computed, study_of, with_seed
+from computed import as_text, computed, study_of, with_seed
+from until_studies import study, tables
 
 from uq import store
 from uq.analysis.statistics import summarise
@@ -15,29 +16,6 @@ from uq.rows.work import work_of
 from uq.running import cluster, further, runner
 from uq.running.standing import standing
 from uq.study.definition import study_from_text
-
-INPUTS = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
-
-
-def tables(until, samples=4096, method="monte-carlo", replicates=1, settings=None):
-    design = {"method": method, "samples": samples, "replicates": replicates, "until": until}
-    return {
-        "study": {"name": "until", "model": "linear"},
-        "design": design,
-        "uncertain": INPUTS,
-        "settings": settings or {},
-    }
-
-
-def study(half_width, **more):
-    estimate = {key: more.pop(key) for key in ("above", "below", "quantile") if key in more}
-    return study_of(tables({"output": "y", "half_width": half_width} | estimate, **more))
-
-
-def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
-    assert stopping.looks(study(0.1, samples=1000).design) == (32, 63, 125, 250, 500, 1000)
-    assert stopping.looks(study(0.1, samples=20).design) == (20,)
-    assert stopping.confidence(study(0.1, samples=1000).design) == pytest.approx(1 - 0.05 / 6)
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from command_line import everything
 
 from uq import store
 from uq.errors import InputError, RunError
@@ -14,10 +15,6 @@ from uq.interrupts import undo_all
 from uq.store import chunk_file, files
 
 DS = xr.Dataset({"a": ("sample", np.arange(100_000.0))})
-
-
-def everything(folder):
-    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*"))
 
 
 def test_missing_folders_are_made(folder):

@@ -184,6 +184,9 @@ def test_the_command_shows_and_writes_json(uq, folder):
     assert "less than (worth - 1) / 101 of the time of a row" in words
     found = json.loads(uq("twin", "out.nc", "--json").out)
     assert found["outputs"]["disphasing_angle"]["mean"]["reduction"] > 10
+    mean = found["outputs"]["synchronisation_time"]["mean"]
+    both = (f"{one['low']:.5g} to {one['high']:.5g}" for one in (mean, mean["plain"]))
+    assert " ".join(both) in words
 
 
 def _vibrator(folder):

@@ -2,7 +2,8 @@
 
 import pytest
 
-from uq.wording import brief, index, percent
+from uq.study.file import LAW
+from uq.wording import brief, duration, index, interval, known, law, percent, variance_between
 
 
 @pytest.mark.parametrize(
@@ -25,10 +26,67 @@ def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, 
 def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
     assert index({"value": -0.0002}, "value", "S1") == "0.000"
     assert index({"value": -0.0002}, "value", "mu") == "-0.0002"
-    assert [percent(share) for share in (0.0, 1 / 6000, 0.769, 0.9999, 1.0)] == [
+    assert [percent(share) for share in (0.0, 1 / 6000, 0.769, 0.9999, 0.999962, 1.0)] == [
         "0.0 %",
         "0.017 %",
         "76.9 %",
         "99.99 %",
+        "99.996 %",
         "100.0 %",
     ]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (None, ""),
+        (3599.0, ""),
+        (7200.0, "2 hours"),
+        (-7200.0, "-2 hours"),
+        (86400.0 * 3, "3 days"),
+        (86400.0 * 365.25 * 40, "40 years"),
+        (float("inf"), ""),
+    ],
+)
+def test_times_in_words(seconds, words):
+    assert duration(seconds) == words
+
+
+@pytest.mark.parametrize(
+    ("entry", "told"),
+    [
+        ({"low": 3600.0, "high": 7200.0}, "1 to 2"),
+        ({"low": 3600.0, "high": None, "high_never": True}, "1 to never"),
+        ({"low": 3600.0, "high": None, "high_censored": True}, "1 to beyond the horizon"),
+        ({"low": None, "high": None, "low_never": True, "high_never": True}, ""),
+        ({"low": None, "high": None, "never": True}, ""),
+        ({"low": None, "high": 7200.0}, "- to 2"),
+        ({}, ""),
+    ],
+)
+def test_each_end_of_an_interval_is_a_number_or_says_why_not(entry, told):
+    assert interval(entry, per=3600.0) == told
+
+
+def test_a_number_that_is_none_says_why():
+    assert known({"value": 7200.0}, per=3600.0) == "2"
+    assert known({"value": None, "never": True}) == "never"
+    assert known({"value": None, "censored": True}) == "beyond the horizon"
+    assert known({"value": None, "low_never": True}) == "-"
+
+
+def test_effects_have_digits_whatever_their_unit():
+    assert index({"value": 1234.5}, "value", "mu_star") == "1.23e+03"
+    assert index({"value": 0.12345}, "value", "ST") == "0.123"
+
+
+def test_a_law_is_told_by_its_arguments_alone():
+    given = {"distribution": "normal", "mean": 1.0, "sd": 0.1, "source": "a book", "times": "x"}
+    assert law(LAW.validate_python(given)) == "normal(mean = 1.0, sd = 0.1)"
+    drawn = {"distribution": "empirical", "values": [1.0, 2.0]}
+    assert law(LAW.validate_python(drawn)) == "empirical(values = [1.0, 2.0])"
+
+
+def test_less_variance_between_regimes_than_by_chance_is_none():
+    assert variance_between({"value": -0.00028}) == "none seen"
+    assert variance_between({"value": 0.038428}) == "0.038428"

@@ -1,0 +1,84 @@
+"""Which rows and numbers of two results a comparison takes, and what it says of the others."""
+
+import numpy as np
+import pytest
+from computed import asking, kinds, linear, with_output, with_status
+
+from uq.analysis.comparison import comparison
+from uq.contract import Status
+from uq.intervals import wilson_interval
+
+ENDS = ("value", "low", "high")
+
+
+def apart(found):
+    """Return the difference of an estimate, and the ends of its interval."""
+    return [found["difference"][end] for end in ENDS]
+
+
+def test_what_one_study_asks_for_is_compared():
+    pair = [linear(analysis={"thresholds": {"y": t}}) for t in (4.0, 6.0)]
+    assert list(comparison(*pair)["outputs"]["y"]["thresholds"]) == ["4.0", "6.0"]
+    found = comparison(pair[0], linear())["outputs"]["y"]["thresholds"]["4.0"]["above"]
+    assert apart(found)[0] == 0.0
+
+
+def test_rows_that_failed_count_no_more_than_rows_that_are_not_there():
+    asked = {"outputs": ["angle", "regime"], "thresholds": {"angle": 0.5}}
+    whole, lost = kinds(samples=200, analysis=asked), np.arange(40)
+    other = whole.assign(regime=whole["regime"].copy(), angle=whole["angle"] ** 1.1)
+    other["angle"].attrs = whole["angle"].attrs
+    other["regime"][90:120] = 1
+    failing = with_status(other, lost, Status.RAISED)
+    failing["regime"][lost], failing["angle"][lost], failing["work"][lost] = -1, np.nan, np.nan
+    found = comparison(whole, failing)
+    without = comparison(whole, other.isel(sample=slice(40, None)))
+    assert found["b"]["status"]["raised"] == 40
+    for label in ("slow", "fast"):
+        expected = pytest.approx(apart(without["regime"][label]), rel=1e-9)
+        assert apart(found["regime"][label]) == expected
+    sides, expected = (
+        one["outputs"]["angle"]["thresholds"]["0.5"]["above"] for one in (found, without)
+    )
+    assert apart(sides) == pytest.approx(apart(expected), rel=1e-9)
+
+
+def test_shares_that_agree_have_newcombes_interval():
+    # R. G. Newcombe, Stat. Med. 17, 2635 (1998), method 10: half a row counts against agreement.
+    both, first, second, none = counts = (20, 2, 12, 16)
+    n = sum(counts)
+    ds = linear(samples=n)
+    hits = [np.repeat(one, counts) for one in ([1.0, 1.0, 0.0, 0.0], [1.0, 0.0, 1.0, 0.0])]
+    pair = [asking(with_output(ds, "hit", one), thresholds={"hit": 0.5}) for one in hits]
+    a, b = (one.mean() for one in hits)
+    phi = (both * none - first * second - n / 2) / (n**2 * np.sqrt(a * (1 - a) * b * (1 - b)))
+
+    def end(one, other):
+        return np.sqrt(one**2 - 2 * phi * one * other + other**2)
+
+    (low_a, high_a), (low_b, high_b) = (wilson_interval(one, n) for one in (a, b))
+    expected = [b - a, b - a - end(b - low_b, high_a - a), b - a + end(high_b - b, a - low_a)]
+    found = comparison(*pair)["outputs"]["hit"]["thresholds"]["0.5"]["above"]
+    assert apart(found) == pytest.approx(expected)
+
+
+def test_lives_that_suppose_something_are_reckoned_with_at_their_worst():
+    def lives(factor):
+        values = factor * np.linspace(1, 5, 200)
+        ds = with_output(linear(samples=200), "life", values, "lifetime", np.arange(200) % 3 == 0)
+        return asking(ds, outputs=["life"])
+
+    b50 = comparison(lives(1.0), lives(1.5))["outputs"]["life"]["b_lives"]["B50"]
+    a, b = b50["a"], b50["b"]
+    assert "assumes" in a and "assumes" in b
+    assert apart(b50)[1:] == pytest.approx([b["low"] - a["high"], b["high"] - a["low"]])
+
+
+def test_elements_of_one_result_alone_are_named():
+    both, left = kinds(samples=50), kinds(samples=50).isel(side=[0])
+    for pair, which in (((both, left), "A"), ((left, both), "B")):
+        found = comparison(*pair)
+        (note,) = [note for note in found["notes"] if note.startswith("only ")]
+        assert note.startswith(f"only {which} has work[side=right], life[side=right,depth=0.5]")
+        assert "work[side=left]" in found["outputs"]
+        assert "work[side=right]" not in found["outputs"]

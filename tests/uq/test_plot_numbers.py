@@ -1,0 +1,136 @@
+"""What is drawn is what its axis says: in the unit of the axis, all of it, and in its colour."""
+
+import numpy as np
+import pytest
+from computed import asking, kinds, linear, with_output
+
+from uq import plots
+from uq.analysis.statistics import summarise
+from uq.drawing.figure import COLOURS, thinned
+from uq.drawing.index_plot import index_bars
+from uq.indices.sensitivities import sensitivities
+
+DAY = 86400.0
+
+
+def words(figure):
+    """Return everything that is written in a figure."""
+    texts = [text.get_text() for text in figure.findobj(lambda artist: hasattr(artist, "get_text"))]
+    return " ".join(" ".join(texts).split())
+
+
+def lives(ds):
+    """Return a result with lives of 5 to 15 days."""
+    values = np.linspace(5, 15, ds.sizes["sample"]) * DAY
+    return asking(with_output(ds, "day_long", values, "lifetime"), outputs=["day_long"])
+
+
+def median(ds):
+    """Return the median of the lives, and the ends of its interval [days]."""
+    found = summarise(ds)["outputs"]["day_long"]["quantiles"]["0.5"]
+    return [found[end] / DAY for end in ("value", "low", "high")]
+
+
+def test_estimates_converge_in_the_unit_of_their_axis():
+    never = lives(linear(samples=64))
+    never["day_long"][:5] = np.inf  # of which there is a median alone
+    (axes,) = plots.convergence(never, "day_long").axes
+    value, low, high = median(never)
+    assert axes.get_ylabel().endswith("[days]")
+    assert axes.lines[0].get_ydata()[-1] == pytest.approx(value)
+    band = axes.collections[0].get_paths()[0].vertices
+    last = band[band[:, 0] == 64, 1]
+    assert (last.min(), last.max()) == pytest.approx((low, high))
+
+
+def test_an_interval_is_spoken_of_where_there_is_one():
+    for ds, there in ((linear(samples=64), True), (linear("sobol", samples=64), False)):
+        assert ("95 % interval" in words(plots.convergence(ds, "y"))) is there
+
+
+def test_what_an_input_without_effect_has_is_a_line_across_the_bars():
+    ds = linear(samples=100)
+    (axes,) = index_bars(ds, "y", "rbd-fast").axes
+    idle = sensitivities(ds, "rbd-fast")["outputs"]["y"]["dummy"]["S1"]
+    assert [line.get_xdata()[0] for line in axes.lines if line.get_linestyle() == "--"] == [idle]
+
+
+def test_a_table_has_one_unit():
+    ds = lives(linear(samples=64))
+    told = words(plots.quantile_table(ds, "day_long", summarise(ds)["outputs"]))
+    value, low, high = median(ds)
+    assert "[days]" in told and f" {value:.5g} " in told and f"{low:.5g} to {high:.5g}" in told
+
+
+def test_points_and_bars_stand_in_the_unit_of_their_axis():
+    ds = lives(kinds(samples=64))
+    points = plots.scatter(ds, "day_long").axes[0].lines[0].get_ydata()
+    assert (points.min(), points.max()) == pytest.approx((5, 15))
+    (axes,) = plots.histogram_by_regime(ds, "day_long").axes
+    edges = axes.patches[0].get_data().edges
+    assert (edges[0], edges[-1]) == pytest.approx((5, 15))
+
+
+def test_marks_and_band_of_a_life_lie_at_its_curve():
+    ds = lives(linear(samples=200))
+    (axes,) = plots.lifetime(ds, "day_long").axes
+    (mark,) = [
+        line
+        for line in axes.lines
+        if line.get_marker() == "o" and line.get_ydata()[0] == pytest.approx(0.5)
+    ]
+    assert mark.get_xdata()[0] == pytest.approx(median(ds)[0])
+    curve = axes.lines[0]
+    at = np.searchsorted(curve.get_xdata(), 7)  # a fifth have ended by then
+    band = axes.collections[0].get_paths()[0].vertices
+    low, *_, high = np.sort(band[np.isclose(band[:, 0], curve.get_xdata()[at]), 1])
+    assert 0.1 < low < curve.get_ydata()[at] < high < 0.3
+
+
+def test_rows_without_a_value_are_counted_where_they_are_missing():
+    ds = linear(samples=64, settings={"fail_above": 0.9})
+    lost = int(ds["y"].isnull().sum())
+    assert f"64 rows, {lost} failed" in words(plots.histogram(ds, "y"))
+    ds = kinds(samples=100)
+    censored = int(ds["life_censored"][:, 0, 0].sum())
+    assert f"{censored} censored" in words(plots.scatter(ds, "life[side=left,depth=0.5]"))
+    assert f"up to {censored} censored" in words(plots.lifetime(ds, "life"))
+
+
+def test_censored_rows_are_points_of_their_own_and_not_in_a_histogram_of_ends():
+    ds = kinds(samples=200)
+    name = "life[side=left,depth=0.5]"
+    censored = ds["life_censored"].values[:, 0, 0].astype(bool)
+    finite = np.isfinite(ds["life"].values[:, 0, 0])
+    markers = {
+        line.get_marker(): len(line.get_xdata()) for line in plots.scatter(ds, name).axes[0].lines
+    }
+    assert markers["."] == (finite & ~censored).sum() and markers["^"] == censored.sum() > 0
+    slow, fast = plots.histogram_by_regime(ds, name).axes[0].patches
+    share = np.sum(slow.get_data().values - slow.get_data().baseline)
+    ended = finite & ~censored
+    assert share == pytest.approx((ds["regime"].values[ended] == 0).mean())
+
+
+def test_a_regime_has_its_colour_whichever_others_occur():
+    ds = kinds(samples=100)
+    both = [line.get_color() for line in plots.pairs(ds).axes[0].lines]
+    assert both == list(COLOURS[:2])
+    fast = ds.isel(sample=ds["regime"].values == 1)
+    (bars,) = plots.histogram_by_regime(fast, "angle").axes[0].patches
+    assert bars.get_facecolor()[:3] == pytest.approx(
+        [int(COLOURS[1][i : i + 2], 16) / 255 for i in (1, 3, 5)]
+    )
+
+
+def test_a_dollar_sign_is_no_formula():
+    ds = linear(samples=32)
+    ds["y"].attrs["long_name"] = "price in $, cost in $"
+    label = plots.histogram(ds, "y").axes[0].xaxis.label
+    assert label.get_text() == "Price in $, cost in $" and not label.get_parse_math()
+
+
+def test_of_many_points_the_ends_are_drawn():
+    places = thinned(5000, 100)
+    assert (places[0], places[-1], len(places)) == (0, 4999, 100)
+    assert thinned(3).tolist() == [0, 1, 2]

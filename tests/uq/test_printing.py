@@ -1,0 +1,38 @@
+"""What is printed: nothing in a text can act on a terminal, and numbers stand in columns."""
+
+import json
+
+import pytest
+
+from uq.cli import printing
+
+HOSTILE = "a\x1b[31m\x9b1m\u202e"
+
+
+@pytest.mark.parametrize(
+    "show",
+    [
+        lambda: printing.grid([(HOSTILE, "1")]),
+        lambda: printing.heading(HOSTILE, HOSTILE),
+        lambda: printing.paragraph(HOSTILE),
+        lambda: printing.console.print(HOSTILE),
+        lambda: printing.print_json({HOSTILE: HOSTILE}),
+    ],
+    ids=["grid", "heading", "paragraph", "line", "json"],
+)
+def test_no_text_acts_on_a_terminal(show, capsys, monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    show()
+    out = capsys.readouterr().out
+    assert "a\\u001b[31m" in out and all(one == "\n" or one.isprintable() for one in out)
+
+
+def test_json_with_a_hostile_text_is_json(capsys):
+    printing.print_json({HOSTILE: 1.5})
+    assert json.loads(capsys.readouterr().out) == {HOSTILE: 1.5}
+
+
+def test_numbers_stand_right_and_words_left(capsys):
+    printing.grid([("a", "1 %"), ("bcd", "12.5 %"), ("e", "-")], header=("name", "share"))
+    lines = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert lines == ["  name   share", "  a        1 %", "  bcd   12.5 %", "  e          -"]

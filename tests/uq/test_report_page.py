@@ -1,0 +1,65 @@
+"""What stands around the tables of a report: facts, counts, notes, and how to make it again."""
+
+import re
+
+import numpy as np
+import pytest
+from computed import linear, with_output, with_status
+from markupsafe import escape
+from matplotlib.figure import Figure
+
+from uq.contract import Status
+from uq.literals import plain
+from uq.report import page
+from uq.report.pictures import picture
+
+
+@pytest.fixture(scope="module")
+def told():
+    """Return the text of a page on a result to which much has happened."""
+    ds = linear("saltelli", samples=32, replicates=2, analysis={"max_failed": 0.05})
+    ds = with_output(ds, "product", ds["x1"].values * ds["x2"].values)
+    ds["product"].attrs["long_name"] = "product\x07of two"
+    ds = with_status(ds.assign(y=ds["y"].copy()), [5, 6], Status.RAISED)
+    ds["y"][[5, 6]] = np.nan
+    rerun = np.arange(ds.sizes["sample"]) < 3
+    attrs = {"role": "rerun", "long_name": "which settings"}
+    ds = ds.assign(rerun=("sample", rerun.astype(np.int8), attrs))
+    text = ds.attrs["study"].replace("samples = 32", "samples = 16")
+    ds = ds.assign_attrs(study=text + "# " + "x" * 60_000)
+    return " ".join(re.sub(r"<(?!wbr)[^>]+>", " ", page(ds, "my result.nc")).split())
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "384, statistics from 128 independent ones",
+        "2 replicates",
+        "2 rows failed : they lack",
+        "Up to 5 % may fail",
+        "3 rows were computed again with changed settings",
+        "Cut here; the result carries all of it",
+        "No effect in any row, hence no interval: x3, x4.",
+        "uq run linear.toml --samples 32",
+        f"uq verify {escape(repr('my result.nc'))}",
+        plain("Product\x07of two"),
+    ],
+)
+def test_a_page_says(told, words):
+    assert words in told
+
+
+def test_nothing_on_a_page_acts_where_it_is_copied_to(told):
+    assert told.isprintable()
+
+
+def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples():
+    text = page(linear("sobol", samples=16), "out.nc")
+    assert "uq run linear.toml\n" in text
+    assert "Cut here" not in text and "were computed again" not in text
+
+
+def test_a_picture_is_told_to_who_cannot_see_it():
+    figure = Figure(figsize=(2, 2))
+    figure.subplots().plot([0, 1])
+    assert 'aria-label="a &quot;line&quot;"' in picture(figure, 'a "line"').html

@@ -1,0 +1,194 @@
+"""The tables of a report: each number with its unit and interval, no row of the study left out."""
+
+import numpy as np
+import pytest
+from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_output, with_status
+
+from uq.analysis.statistics import summarise
+from uq.contract import Status
+from uq.report.convergence import convergence_of
+from uq.report.indices import sensitivity_of
+from uq.report.inputs import input_tables
+from uq.report.outcomes import life_table, outcomes, regime_table, result_tables, status_table
+from uq.report.table import Cell, Table, estimate, without_empty_columns
+
+DAY = 86400.0
+
+
+def lines(table):
+    """Return the rows of a table by their first cell, each as header -> text."""
+    return {
+        row[0].text: {name: cell.text for name, cell in zip(table.header, row, strict=True)}
+        for row in table.rows
+    }
+
+
+def lives(censored=0, **analysis):
+    """Return a result with lives of 5 to 15 days, of which the last are censored or never end."""
+    values = np.r_[np.linspace(5, 15, 54) * DAY, np.full(10, np.inf)]
+    flags = np.arange(64) < 54
+    flags[: 54 - censored] = False
+    ds = with_output(linear(samples=64), "life", values, "lifetime", flags)
+    return asking(ds, outputs=["life", "y"], **analysis)
+
+
+def results_of(ds, tolerance=None):
+    return list(result_tables(outcomes(ds, summarise(ds)), tolerance))
+
+
+def test_statistics_are_in_the_unit_of_their_line():
+    ds = lives()
+    (table,) = results_of(ds)
+    life, y = lines(table).values()
+    median = summarise(ds)["outputs"]["life"]["quantiles"]["0.5"]
+    assert life["unit"] == "days" and life["50 % quantile"] == f"{median['value'] / DAY:.5g}"
+    assert (life["mean"], life["never"]) == ("-", "10")
+    assert y["unit"] == "" and y["mean"] == f"{float(ds['y'].mean()):.5g}"
+    cell = table.rows[0][table.header.index("50 % quantile")]
+    assert cell.more == f"{median['low'] / DAY:.5g} to\u00a0{median['high'] / DAY:.5g}"
+    assert cell.key == median["value"]  # lines of other units sort among each other
+
+
+def test_tolerance_bounds_say_what_is_covered_and_how_surely():
+    bounds = {"coverage": 0.8, "confidence": 0.95}
+    _, table = results_of(lives(tolerance=bounds), (0.8, 0.95))
+    assert table.caption == (
+        "Tolerance bounds: with 95 % confidence each, 80 % of all lie above the lower, and 80 %"
+        " below the upper"
+    )
+    assert lines(table)["life"]["upper"] == "never"
+    assert 5 < float(lines(table)["life"]["lower"]) < 7
+
+
+def test_probabilities_stand_on_their_side_of_the_threshold():
+    _, table = results_of(lives(thresholds={"life": [7 * DAY]}))
+    ((_, threshold, above, below),) = table.rows
+    assert (threshold.text, threshold.key) == ("7 days", 7 * DAY)
+    assert float(above.text) == pytest.approx(53 / 64, abs=1e-4)
+    assert float(below.text) == pytest.approx(11 / 64, abs=1e-4)
+
+
+def test_a_probability_that_supposes_something_says_so():
+    ds = lives(censored=30, thresholds={"life": [14 * DAY]})
+    entry = summarise(ds)["outputs"]["life"]["thresholds"][f"{14 * DAY!r}"]
+    _, table = results_of(ds)
+    line = lines(table)["life"]
+    assert line["note"].startswith(entry["reason"]) and "Kaplan and Meier" in line["note"]
+    assert line["P(below)"] == f"{entry['kaplan_meier']['below']['value']:.5g}"
+
+
+def test_b_lives_are_beside_the_rows_that_did_not_end():
+    ds = lives(censored=3)
+    line = lines(life_table(outcomes(ds, summarise(ds))))["life"]
+    assert line["unit"] == "days" and 5 < float(line["B10"]) < 7
+    assert (line["rows never ending"], line["rows censored"]) == ("10", "3")
+
+
+def test_the_status_table_is_of_all_rows():
+    ds = with_status(linear("saltelli", 8, 2), [0, 1], Status.OUT_OF_BUDGET)
+    ds["status"].attrs["example_out_of_budget"] = "row 0: too long"
+    line = lines(status_table(ds, summarise(ds)))["out-of-budget"]
+    assert (line["rows"], line["share"]) == ("2", "2.1 %")  # of 96, of which 32 are independent
+    assert line["the first such row said"] == "row 0: too long"
+
+
+def test_shares_of_regimes_have_their_interval():
+    summary = summarise(kinds(samples=50))
+    label, rows, share = regime_table(summary).rows[0]
+    low, high = (100 * summary["regime"]["slow"][end] for end in ("low", "high"))
+    assert (label.text, rows.text) == ("slow", "25")
+    assert (share.text, share.more) == ("50.0 %", f"{low:.1f} to {high:.1f} %")
+
+
+def test_inputs_are_told_as_stated_and_as_the_rows_have_them():
+    uncertain = {
+        "x1": UNIFORM | {"source": "a book: fitted"},
+        "x2": {"equals": "x1"},
+        "x4": {"distribution": "uniform", "lower": 0.4, "upper": 0.6, "times": "x1"},
+    }
+    ds = computed(
+        study_of(
+            {
+                "study": {"name": "inputs", "model": "linear"},
+                "design": {"method": "sobol", "samples": 1024},
+                "uncertain": uncertain,
+            }
+        )
+    )
+    table, _ = input_tables(ds)
+    found = lines(table)
+    assert (found["x1"]["known"], found["x1"]["source"]) == ("fitted", "a book: fitted")
+    assert float(found["x1"]["95 %"]) == pytest.approx(0.95, abs=2e-3)
+    assert found["x2"]["law"] == "equals x1" and found["x2"]["50 %"] == ""
+    assert found["x4"]["law"] == "x1 times uniform(lower = 0.4, upper = 0.6)"
+    assert float(found["x4"]["50 %"]) == pytest.approx(0.5, abs=2e-3)  # of the factor
+
+
+def test_fixed_inputs_have_units_and_correlations_a_source():
+    dependence = {
+        "parameters": ["rate", "threshold"],
+        "rank_correlation": [[1.0, 0.5], [0.5, 1.0]],
+        "source": "a guess",
+    }
+    uncertain = {
+        "rate": {"distribution": "lognormal", "median": 1e-9, "sigma": 0.1},
+        "threshold": {"distribution": "uniform", "lower": 0.1, "upper": 0.2},
+    }
+    ds = computed(
+        study_of(
+            {
+                "study": {"name": "inputs", "model": "exponential-wear"},
+                "design": {"method": "monte-carlo", "samples": 16},
+                "uncertain": uncertain,
+                "dependence": dependence,
+            }
+        )
+    )
+    laws, ranks, fixed = input_tables(ds)
+    assert lines(laws)["threshold"]["law"] == "uniform(lower = 0.1, upper = 0.2) m s⁻¹"
+    assert ranks.caption == "Rank correlations: a guess"
+    assert [[cell.text for cell in row] for row in ranks.rows] == [["threshold, rate", "0.5"]]
+    assert lines(fixed)["depth"]["value"] == "0.00025 m"
+
+
+def test_indices_are_ranked_beside_an_input_without_effect():
+    ds = asking(linear(samples=200, settings={"fail_above": 0.95}), sensitivity=["rbd-fast"])
+    (method,) = sensitivity_of(ds)
+    lost = int(ds["y"].isnull().sum())
+    assert lost > 0
+    assert method.used.startswith(f"{200 - lost} rows used, {lost} groups dropped")
+    (table,) = method.subjects[0].tables
+    names = [row[0].text for row in table.rows]
+    assert names == ["x4", "x3", "x2", "x1", "(an input without effect)"]
+
+
+def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
+    (method,) = sensitivity_of(linear("saltelli", samples=32, replicates=4))
+    assert method.used == "768 rows used"
+    first, *_ = method.subjects[0].tables[0].rows
+    low, high = map(float, first[1].more.split(" to "))
+    assert low < float(first[1].text) < high
+
+
+def test_errors_of_the_rows_stand_beside_that_of_sampling_in_one_unit():
+    ds = with_output(lives(), "life_error", np.full(64, 0.5 * DAY), "lifetime")
+    found = convergence_of(ds, outcomes(ds, summarise(ds)))
+    line = lines(found.table)["life"]
+    assert (line["unit"], line["error of the rows"]) == ("days", "0.5")
+    assert float(line["half-width of its interval"]) == pytest.approx(1.6, abs=0.1)
+    assert found.warnings == [] and found.refused == ""
+
+
+def test_rows_less_exact_than_their_number_are_warned_of():
+    ds = with_output(linear("latin-hypercube", 16, 4), "y_error", np.ones(64))
+    found = convergence_of(ds, outcomes(ds, summarise(ds)))
+    (warning,) = found.warnings
+    assert warning.startswith("y: the rows' own error (1 1)")
+    assert "the designs that grow are" in found.refused and found.pictures == []
+
+
+def test_what_never_ends_sorts_last_and_what_says_nothing_is_left_out():
+    never = estimate({"value": None, "low": 1.0, "high": None, "never": True, "high_never": True})
+    assert (never.text, never.more, never.key) == ("never", "1 to\u00a0never", np.inf)
+    table = Table("", ("name", "empty", "full"), [(Cell("a"), Cell("-"), Cell("1"))])
+    assert without_empty_columns(table).header == ("name", "full")
