@@ -145,10 +145,10 @@ def test_fixed_inputs_have_units_and_correlations_a_source():
         )
     )
     laws, ranks, fixed = input_tables(ds)
-    assert lines(laws)["threshold"]["law"] == "uniform(lower = 0.1, upper = 0.2) m s⁻¹"
+    assert lines(laws)["threshold"]["law"] == "uniform(lower = 0.1, upper = 0.2)\u00a0m\u00a0s⁻¹"
     assert ranks.caption == "Rank correlations: a guess"
     assert [[cell.text for cell in row] for row in ranks.rows] == [["threshold, rate", "0.5"]]
-    assert lines(fixed)["depth"]["value"] == "0.00025 m"
+    assert lines(fixed)["depth"]["value"] == "0.00025\u00a0m"
 
 
 def test_indices_are_ranked_beside_an_input_without_effect():
