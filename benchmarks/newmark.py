@@ -34,7 +34,7 @@ def newmark(frequency, decay, mobility, force, stiffness, forcing, gaps, steps, 
     state : ndarray, shape (3 m + 1,)
         Displacements, velocities, accelerations and the last penetration; updated in place.
     work : ndarray, shape (periods, 2)
-        Set to the nondimensional work of each period and site.
+        Set to the dimensionless work of each period and site.
     """
     m = len(frequency)
     h = 2 * np.pi / (forcing * steps)

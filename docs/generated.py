@@ -73,14 +73,15 @@ def formula(symbol: str) -> str:
 
 
 def unit(text: str) -> str:
-    """Write a CF unit with superscripts.
+    r"""Write a CF unit with superscripts, in one piece.
 
     >>> unit("m2 N-1"), unit("1")
-    ('m² N⁻¹', '1')
+    ('m²\xa0N⁻¹', '1')
     """
     if text == "1":
         return text
-    return re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(_SUPERSCRIPTS), text)
+    raised = re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(_SUPERSCRIPTS), text)
+    return raised.replace(" ", "\u00a0")
 
 
 def value(number: Any) -> str:
@@ -106,6 +107,10 @@ def _end(end: float) -> str:
     if abs(end) in _MULTIPLES:
         return f"{'−' if end < 0 else ''}{_MULTIPLES[abs(end)]}"
     text = f"{end:.0f}" if 1e3 <= abs(end) < 1e6 else f"{end:.4g}"
+    return _minus(text)
+
+
+def _minus(text: str) -> str:
     return text.replace("-", "−", 1) if text.startswith("-") else text
 
 
@@ -115,11 +120,12 @@ def parameters(name: str) -> str:
     lines = []
     for parameter, nominal in model.nominal.items():
         one = model.parameter(parameter)
+        stated = value(nominal) + ("" if one.unit == "1" else f"\u00a0{unit(one.unit)}")
         lines.append(
             (
                 formula(one.symbol),
                 f"`{parameter}`<br>{one.meaning}",
-                f"{value(nominal)} {'' if one.unit == '1' else unit(one.unit)}".strip(),
+                _minus(stated),
                 interval(one.bounds),
                 one.source,
             )
@@ -136,7 +142,7 @@ def settings(name: str) -> str:
         allowed = ", ".join(f'`"{word}"`' for word in one.choices) or interval(one.bounds)
         default = f"`{value(field.default)}`"
         if one.unit != "1":
-            default += f" {unit(one.unit)}"
+            default += f"\u00a0{unit(one.unit)}"
         lines.append((f"`{field.name}`", default, allowed, one.meaning))
     return table(("setting", "default", "allowed", "meaning"), lines)
 

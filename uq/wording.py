@@ -81,8 +81,13 @@ def brief(entry: Entry, per: float = 1.0) -> tuple[str, str]:
         told = known(entry, per=per) if found[0] is None else f"{found[0] / per:.3g}"
         return told, interval(entry, per)
     decimals = -floor(log10((found[2] - found[1]) / per / 3))
-    value, low, high = (number(round(one / per, decimals) + 0.0) for one in found)
+    value, low, high = (_rounded(one / per, decimals) for one in found)
     return value, f"{low} to {high}"
+
+
+def _rounded(value: float, decimals: int) -> str:
+    rounded = round(value, decimals) + 0.0  # no minus sign before what is zero
+    return f"{rounded:.{decimals}f}" if 0 <= decimals <= 6 else number(rounded)
 
 
 def percent(share: float) -> str:

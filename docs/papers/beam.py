@@ -47,7 +47,7 @@ def branch(omega: float) -> xr.Dataset:
     beam = nominal(omega)
     first = beam.forcing_frequency / omega
     down, up = (
-        heavy_right(continue_orbit(beam, stop=(omega + side) * first), "nondimensional_work_rate")
+        heavy_right(continue_orbit(beam, stop=(omega + side) * first), "dimensionless_work_rate")
         for side in (-REACH, REACH)
     )
     joined = xr.concat(
@@ -90,7 +90,7 @@ def pair(cases: dict[float, xr.Dataset], drawn: str, against: str, name: str = "
 
 def work_rates_along_branches(branches: dict[float, xr.Dataset]) -> Shown:
     """Draw Figure 2."""
-    figure = pair(branches, "nondimensional_work_rate", "omega", "branch through")
+    figure = pair(branches, "dimensionless_work_rate", "omega", "branch through")
     (low, low_end), (high, high_end) = (
         (float(ds["omega"].min()), float(ds["omega"].max())) for ds in branches.values()
     )

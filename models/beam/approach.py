@@ -32,7 +32,7 @@ class Approached(NamedTuple):
     state : ndarray, shape (n, k)
         On the orbit.
     work : ndarray, shape (n, 2)
-        Mean nondimensional work per forcing period at the right and the left site.
+        Mean dimensionless work per forcing period at the right and the left site.
     peak : ndarray, shape (n, 2)
         Largest penetration, in initial gaps.
     period : ndarray of int, shape (n,)

@@ -25,7 +25,7 @@ class Mean(NamedTuple):
     Attributes
     ----------
     work, error : ndarray, shape (n, 2)
-        Mean nondimensional work per period at the right and the left site, and its standard error.
+        Mean dimensionless work per period at the right and the left site, and its standard error.
     peak : ndarray, shape (n, 2)
         Largest penetration, in initial gaps.
     """

@@ -22,7 +22,7 @@ _BAND = [Params._fields.index(name) for name in ("random_force_low", "random_for
 
 
 class Simulated(NamedTuple):
-    """The nondimensional results of n beams."""
+    """The dimensionless results of n beams."""
 
     response: response.Response
     lives: Lives
@@ -63,7 +63,7 @@ def batch(
 
 
 def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -> Simulated:
-    """Find the settled response and the nondimensional lives of n beams.
+    """Find the settled response and the dimensionless lives of n beams.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def _in_units(
     """Give the results their units, and apply the horizon."""
     joule = p.contact_stiffness * p.initial_gap**2
     to_watt = (joule * p.forcing_frequency)[:, None]
-    # Gap growth in X0 per nondimensional work at the right site (eq 9).
+    # Gap growth in X0 per dimensionless work at the right site (eq 9).
     wear_rate = p.wear_coefficient / p.contact_area * p.contact_stiffness * p.initial_gap
     to_second = 1 / (p.forcing_frequency * wear_rate)[:, None, None]
     time, error = s.lives.time * to_second, s.lives.error * to_second

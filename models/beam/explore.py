@@ -340,7 +340,7 @@ def _blank(n: int) -> tuple[Array, NDArray[np.int8], Array]:
 
 
 def _watt(params: Params) -> float:
-    """Return the work-rate of one unit of nondimensional work per period [W]."""
+    """Return the work-rate of one unit of dimensionless work per period [W]."""
     joule = params.contact_stiffness * params.initial_gap**2
     return joule * params.forcing_frequency
 

@@ -229,7 +229,7 @@ def advance(
     gaps : ndarray, shape (n, 2)
         Right and left, in initial gaps; updated in place, at the end of each period.
     growth : ndarray, shape (n, 2)
-        Gap growth per unit of nondimensional work; zero for no wear.
+        Gap growth per unit of dimensionless work; zero for no wear.
     periods : int
     trace : bool
         Whether to keep the tip's displacement at every step.

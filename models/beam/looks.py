@@ -38,7 +38,7 @@ class History(NamedTuple):
     gaps : ndarray, shape (n, L, 2)
         [X0]
     work : ndarray, shape (n, L, 2)
-        Mean nondimensional work per period during the look.
+        Mean dimensionless work per period during the look.
     regime : ndarray of int8, shape (n, L)
         Index into `models.beam.parameters.REGIMES`, `UNKNOWN` where the look was too short.
     """

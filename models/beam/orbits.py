@@ -42,7 +42,7 @@ class Orbit(NamedTuple):
     multipliers : ndarray, shape (2 m,), complex
         Of the stroboscopic map over the period, the largest modulus first.
     work : ndarray, shape (2,)
-        Mean nondimensional impact work per forcing period at each site.
+        Mean dimensionless impact work per forcing period at each site.
     peak : ndarray, shape (2,)
         Deepest penetration at each site, in initial gaps.
     impact_velocities : ndarray

@@ -40,7 +40,7 @@ class Response(NamedTuple):
     Attributes
     ----------
     work : ndarray, shape (n, 2)
-        Mean nondimensional work per forcing period at the right and the left site.
+        Mean dimensionless work per forcing period at the right and the left site.
     error : ndarray, shape (n, 2)
         Its standard error, 0 if periodic.
     peak : ndarray, shape (n, 2)

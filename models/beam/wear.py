@@ -32,7 +32,7 @@ class Run(NamedTuple):
     ----------
     time : ndarray, shape (n, 2, D)
         Life of each site to each growth, in forcing periods over the wear per work of the right
-        site [X0 per nondimensional work]; inf if never, else the time reached.
+        site [X0 per dimensionless work]; inf if never, else the time reached.
     reached : ndarray of bool, shape (n, 2, D)
     ended : ndarray of bool, shape (n,)
         Whether wear has stopped for good: what was not reached never will be.
@@ -101,7 +101,7 @@ def run(
     gaps : ndarray, shape (n, 2)
         Initial, in X0; not changed.
     work : ndarray, shape (n, 2)
-        Mean nondimensional work per period at the initial gaps.
+        Mean dimensionless work per period at the initial gaps.
     share : ndarray, shape (n, 2)
         Wear coefficient of each site over that of the right site.
     growths : ndarray, shape (n, D)

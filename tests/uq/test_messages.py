@@ -36,6 +36,19 @@ ONE_FAULT = [
         " (allowed: study, design, fixed, uncertain,"
         " dependence, settings, analysis, data)",
     ),
+    # what is missing because it is misspelt is told once
+    (
+        {"design": {"samples": None, "sampels": 8}},
+        "[design] sampels = 8: no such key; did you mean",
+    ),
+    (
+        {"uncertain": {"x3": {"distribution": "uniform", "lower": 0.0, "uper": 4.0}}},
+        "[uncertain.x3] uper = 4.0: no such argument of x3's law; did you mean 'upper'?",
+    ),
+    (
+        {"analysis": {"tolerance": {"coverage": 0.95, "confidenc": 0.95}}},
+        "[analysis] tolerance.confidenc = 0.95: no such key; did you mean 'confidence'?",
+    ),
     (
         {"study": {"name": "a/b"}},
         "[study] name = \"a/b\": must consist of letters, digits, '-' and '_'",

@@ -1,9 +1,11 @@
+import io
 import xml.etree.ElementTree as ElementTree
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from computed import asking, kinds, linear, with_output
+from IPython.core.formatters import DisplayFormatter
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
@@ -60,6 +62,15 @@ def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
     assert len(drawn) == len(paths) == 3 * 5
 
 
+def test_a_notebook_shows_figures_without_pyplot():
+    ds = kinds(samples=40)
+    drawn = [plots.lifetime(ds, "life"), plots.scatter(ds, "angle"), plots.pairs(ds)]
+    drawn += [plots.inputs(ds), plots.quantile_table(ds, "work", summarise(ds)["outputs"])]
+    for figure in drawn:
+        shown, _ = DisplayFormatter().format(figure)
+        assert imread(io.BytesIO(shown["image/png"])).std() > 0.05
+
+
 def test_categories_alone_have_the_indices_of_each(tmp_path):
     ds = kinds(analysis={"outputs": ["regime"]})
     assert list(sensitivities(ds)["outputs"]) == ["P(regime=slow)", "P(regime=fast)"]
@@ -80,7 +91,7 @@ def test_lifetime_figure_shows_share_band_and_what_never_ends():
     figure = plots.lifetime(ds, "life")
     (axes,) = figure.axes
     assert axes.get_xlabel() == "Meaning of life [days]"
-    assert "never: 25.0%" in words(figure) and "80 rows" in words(figure)
+    assert "never: 25.0 %" in words(figure) and "80 rows" in words(figure)
     (line,) = axes.lines[:1]
     assert line.get_xdata()[0] == pytest.approx(5) and line.get_ydata()[-1] == pytest.approx(0.75)
     band = axes.collections[0].get_paths()[0].get_extents()
@@ -112,6 +123,10 @@ def test_histogram_shows_every_row_once():
     both = plots.histogram(kinds(samples=100), "work")
     assert both.axes[0].get_xlabel() == "Work rate [W]" and "right" in words(both)
     assert "undefined" in words(plots.histogram(kinds(samples=100), "angle"))
+    slow = with_output(linear(samples=64), "slow", np.linspace(2, 9, 64) * 86400.0)
+    slow["slow"].attrs["units"] = "s"
+    (axes,) = plots.histogram(slow, "slow").axes
+    assert axes.get_xlabel() == "Meaning of slow [days]" and axes.get_xlim()[1] < 10
 
 
 def test_index_bars_show_values_intervals_and_full_names():
@@ -189,6 +204,8 @@ def test_histograms_by_regime_add_up():
     assert parts[0] == pytest.approx(float((ds["regime"] == 0).mean()))
     assert "slow" in words(figure) and "Work rate [W]" in words(figure)
     assert len(plots.histogram_by_regime(ds, "life").axes) == 4
+    part = with_output(ds, "part", np.where(ds["regime"] == 0, ds["x1"], np.nan))
+    assert "fast" not in words(plots.histogram_by_regime(part, "part"))
 
 
 def test_scatter_leads_with_what_matters_and_shows_conditional_means():
@@ -239,6 +256,10 @@ def test_convergence_ends_with_all_rows_and_narrows():
     assert "Median: time to a depth" in " ".join(
         plots.convergence(kinds(samples=64), "life").axes[0].get_ylabel().split()
     )
+    lives = np.r_[np.linspace(1.0, 2.0, 60), np.full(4, np.inf)]  # only the first rows have a mean
+    (axes,) = plots.convergence(with_output(linear(), "life", lives, "lifetime"), "life").axes
+    assert axes.get_ylabel().startswith("Median: ")
+    assert axes.lines[0].get_xdata()[-1] == 64
     with pytest.raises(InputError, match="designs that grow"):
         plots.convergence(linear("latin-hypercube", samples=64), "y")
 
@@ -270,6 +291,13 @@ def test_numbers_on_logarithmic_axes_are_plain():
     ):
         figure.draw_without_rendering()
         assert "mathdefault" not in words(figure) and tick in words(figure).split()
+
+
+def test_minus_signs_are_the_same_on_every_axis():
+    ds = with_output(linear(samples=200), "shift", np.linspace(-5.0, 5.0, 200))
+    figure = plots.scatter(ds, "shift")
+    figure.draw_without_rendering()
+    assert "\N{MINUS SIGN}5" in words(figure).split() and "-5" not in words(figure).split()
 
 
 def test_words_and_units_of_axes():
@@ -307,13 +335,37 @@ def test_nothing_sticks_out_of_a_figure():
     y = ds["y"].values
     ds = with_output(ds, "angle", 0.14 * (y - y.mean()) / y.std())
     ds["angle"].attrs["long_name"] = "mean of psi_1 - psi_2 over one revolution"
+    ds["x4"].attrs |= {"long_name": "damping of the supports, b = 2 xi sqrt((M_k + 2m) k)"}
     figure = plots.scatter(ds, "angle")
     lay_out(figure)
     for axes in figure.axes:
         assert axes.yaxis.label.get_window_extent().x0 >= 0
+        assert axes.xaxis.label.get_window_extent().x1 <= figure.bbox.x1
+
+
+def test_labels_of_pairs_keep_apart():
+    ds = linear(samples=64).assign(regime=kinds(samples=64)["regime"])
+    for name in ("x1", "x2", "x3", "x4"):
+        ds[name].attrs["long_name"] = "phase of vibrator 1 at the start, from hanging down"
+    figure = plots.pairs(ds)
+    lay_out(figure)
+    _, left, right = (axes for axes in figure.axes if axes.axison)
+    one, other = (axes.xaxis.label.get_window_extent() for axes in (left, right))
+    assert one.x1 < other.x0 and other.x1 <= figure.bbox.x1
+    alone = kinds(samples=64)
+    alone["x2"].attrs["long_name"] = ds["x2"].attrs["long_name"]
+    figure = plots.pairs(alone)
+    lay_out(figure)
+    (axes,) = figure.axes
+    assert axes.bbox.height > axes.yaxis.label.get_window_extent().width
 
 
 def test_long_numbers_have_room():
+    ds = with_output(linear(), "stroke", np.linspace(0.00459, 0.00473, 64))
+    figure = plots.histogram(ds, "stroke")
+    lay_out(figure)
+    boxes = [label.get_window_extent() for label in figure.axes[0].get_xticklabels()]
+    assert all(one.x1 < other.x0 for one, other in pairwise(boxes))
     axes = Figure().subplots()
     axes.set_xlim(7e4, 5.2e5)
     roomy(axes, ticks=3)

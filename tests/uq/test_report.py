@@ -5,13 +5,23 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-from computed import asking, kinds, linear, with_output, with_status
+from computed import (
+    UNIFORM,
+    asking,
+    computed,
+    kinds,
+    linear,
+    study_of,
+    with_output,
+    with_status,
+)
 from matplotlib.figure import Figure
 
 from uq.contract import Status
 from uq.report import page
 from uq.report.inputs import mark
 from uq.report.pictures import HEAVIEST_SVG, picture
+from uq.report.table import Cell, Table
 from uq.rows import results
 from uq.store.files import write_result
 
@@ -125,6 +135,26 @@ def test_names_from_a_file_are_text():
 def test_the_same_result_gives_the_same_text():
     ds = kinds(samples=64)
     assert page(ds, "a.nc") == page(ds, "a.nc")
+
+
+def test_numbers_are_told_as_one_reads_them():
+    tables = {
+        "study": {"name": "angles", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 40},
+        "fixed": {"x2": 0.5235987755982988},
+        "uncertain": {"x1": UNIFORM},
+    }
+    words = read(computed(study_of(tables))).plain_words
+    assert "0.523599 " in words and words.count("0.5235987755982988") == 1  # in the study's text
+    ds = kinds(samples=40)
+    ds = ds.assign(regime=ds["regime"].copy(data=np.zeros(40, np.int8)))
+    assert re.search(r"slow 40 100\.0 % .* fast 0 0\.0 %", read(ds).plain_words)
+
+
+def test_a_column_of_numbers_may_begin_with_an_empty_cell():
+    rows = [(Cell("first"), Cell("")), (Cell("second"), Cell("2", key=2.0))]
+    table = Table("some", ("name", "number"), rows)
+    assert [table.has_numbers(column) for column in (0, 1)] == [False, True]
 
 
 def test_where_all_rows_failed_the_report_says_why():

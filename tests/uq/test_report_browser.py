@@ -102,6 +102,16 @@ def test_a_report_prints_on_a4(browser, report):
     assert {tuple(round(float(n)) for n in size.split()) for size in sizes} == {(0, 0, 595, 842)}
 
 
+def test_heads_of_tables_are_printed_on_every_page(browser, report):
+    browser.open(report)
+    browser.do("Emulation.setEmulatedMedia", media="print")
+    shown = browser.value(
+        "[...document.querySelectorAll('th button')].map(b => getComputedStyle(b).display)"
+    )
+    browser.do("Emulation.setEmulatedMedia", media="")
+    assert shown and set(shown) == {"contents"}  # Chromium repeats no box of a button
+
+
 def test_a_report_of_one_row_is_shown_too(browser, tmp_path):
     path = tmp_path / "one.html"
     path.write_text(page(linear(samples=1), "one.nc"), encoding="utf-8")

@@ -75,10 +75,15 @@ def show(model: Mapping[str, Any]) -> None:
     lines = [_line(name, parameter) for name, parameter in model["parameters"].items()]
     header = ("name", "symbol", "nominal", "admissible")
     widths = [max(map(len, column)) for column in zip(header, *lines, strict=True)]
-    paragraph(_aligned(header, widths), indent=0)
+    fits = sum(widths) + 2 * (len(widths) - 1) <= console.width
+    if fits:
+        paragraph(_aligned(header, widths), indent=0)
     for line, parameter in zip(lines, model["parameters"].values(), strict=True):
-        name, more = line[0].ljust(widths[0]), _aligned(line[1:], widths[1:])
-        heading(name, more)
+        if fits:
+            heading(line[0].ljust(widths[0]), _aligned(line[1:], widths[1:]))
+        else:
+            heading(line[0], line[1])
+            paragraph(f"{line[2]}, admissible: {line[3]}")
         paragraph(parameter["meaning"])
         paragraph(parameter["source"])
     if model["settings"]:

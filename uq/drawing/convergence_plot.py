@@ -39,11 +39,12 @@ def convergence(ds: xr.Dataset, output: str, running: pd.DataFrame | None = None
     running = running_estimates(ds) if running is None else running
     chosen = named_elements(independent_rows(ds), output)
     own = running[running["output"].isin([element.name for element in chosen])]
-    means = own[own["estimate"] == "mean"].dropna(subset="value")
-    kind = "mean" if len(means) else "quantile 0.5"
-    told = own[own["estimate"] == kind].dropna(subset="value")
-    told = told[np.isfinite(told["value"])]
-    if told.empty:
+    own = own[np.isfinite(own["value"].astype(float))]
+    # Where some life never ends there is a mean of the first rows, but none of all of them.
+    of_all = own[own["samples"] == running["samples"].max()].groupby("estimate")["output"].nunique()
+    kind = max(("mean", "quantile 0.5"), key=lambda one: of_all.get(one, 0))
+    told = own[own["estimate"] == kind]
+    if kind not in of_all:
         return None
     unit, per = told_in(chosen[0].units, told["value"].to_numpy(float))
     figure, (axes,) = new_figure(2.1, entries=len(chosen))

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from uq.drawing.figure import COLOURS, LINES, is_wide, legend, place_in_words
 from uq.rows.elements import Element, Floats, flags
 from uq.time_units import time_unit
+from uq.wording import percent
 
 
 def look(i: int, element: Element, chosen: Sequence[Element]) -> tuple[str, str]:
@@ -26,7 +27,7 @@ def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
     """Return what a curve is called: its place, and the share of rows that never end."""
     words = place_in_words(element, ds[element.output])
     if never > 0:
-        words += f"{', ' if words else ''}never: {never:.1%}"
+        words += f"{', ' if words else ''}never: {percent(never)}"
     return words
 
 

@@ -3,6 +3,7 @@
 import re
 import textwrap
 from collections.abc import Mapping
+from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ WIDTH = 3.4
 """One column of a journal [inch]."""
 
 DOTS_PER_INCH = 200
+_DOTS_PER_INCH_SHOWN = 144
 
 _CHARACTERS = 6
 """Of a number beside each of the ticks that an axis has room for."""
@@ -51,6 +53,15 @@ styled = mpl.rc_context(_STYLE)
 """Decorates whatever draws or writes a figure."""
 
 
+class Drawing(Figure):
+    """A figure that a notebook shows, also where pyplot, which else sees to that, is not in use."""
+
+    def _repr_png_(self) -> bytes:
+        png = BytesIO()
+        self.savefig(png, format="png", dpi=_DOTS_PER_INCH_SHOWN)
+        return png.getvalue()
+
+
 def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure, list[Axes]]:
     """Return an empty figure one column wide, and its panels from top to bottom.
 
@@ -67,7 +78,7 @@ def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure
     -------
     tuple of Figure and list of Axes
     """
-    figure = Figure(figsize=(WIDTH, height + 0.15 * entries), layout="constrained")
+    figure = Drawing(figsize=(WIDTH, height + 0.15 * entries), layout="constrained")
     found = list(figure.subplots(panels, sharex=True, squeeze=False)[:, 0])
     roomy(found[0])
     return figure, found
@@ -88,14 +99,15 @@ def roomy(axes: Axes, ticks: int = 6) -> None:
 
 def whole_numbers(axis: Axis) -> None:
     """Write each number in full: a common factor at the end of an axis covers its label."""
-    axis.set_major_formatter(lambda value, _: f"{value:.6g}")
+    # With the minus sign that matplotlib writes on other axes.
+    axis.set_major_formatter(lambda value, _: f"{value:.6g}".replace("-", "\N{MINUS SIGN}"))
 
 
 class _PlainLog(LogFormatter):
     """Numbers as one writes them, at the ticks that matplotlib would label; never as TeX."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
-        return f"{x:g}" if super().__call__(x, pos) else ""
+        return f"{x:g}".replace("-", "\N{MINUS SIGN}") if super().__call__(x, pos) else ""
 
 
 def logarithmic(axes: Axes, vertical: bool = False) -> None:

@@ -16,7 +16,7 @@ from uq.drawing.elements_plot import (
     rows_in_words,
     told_in,
 )
-from uq.drawing.figure import legend, logarithmic, new_figure, sentence, styled
+from uq.drawing.figure import legend, logarithmic, new_figure, roomy, sentence, styled
 from uq.rows.elements import independent_rows, named_elements
 
 _MOST_PANELS = 4
@@ -40,10 +40,12 @@ def histogram(ds: xr.Dataset, output: str) -> Figure:
     chosen = named_elements(independent_rows(ds), output)
     values = [element.at_least for element in chosen]
     figure, (axes,) = new_figure(2.1, entries=len(chosen))
-    edges, wide = bins(np.concatenate(values))
+    together = np.concatenate(values)
+    unit, per = told_in(chosen[0].units, together)
+    edges, wide = bins(together / per)
     for i, (element, own) in enumerate(zip(chosen, values, strict=True)):
         colour, line = look(i, element, chosen)
-        counts = np.histogram(own, edges)[0] / max(len(own), 1)
+        counts = np.histogram(own / per, edges)[0] / max(len(own), 1)
         alone = len(chosen) == 1
         axes.stairs(
             counts,
@@ -55,9 +57,8 @@ def histogram(ds: xr.Dataset, output: str) -> Figure:
             label=label(ds, element),
         )
     axes.set(ylim=(0, None), ylabel="Share of rows per bin")
-    axes.set_xlabel(sentence(chosen[0].meaning, chosen[0].units))
-    if wide:
-        logarithmic(axes)
+    axes.set_xlabel(sentence(chosen[0].meaning, unit))
+    logarithmic(axes) if wide else roomy(axes)
     explain(axes, chosen)
     return figure
 
@@ -80,9 +81,10 @@ def histogram_by_regime(ds: xr.Dataset, output: str) -> Figure:
     """
     rows = independent_rows(ds)
     chosen = named_elements(rows, output)[:_MOST_PANELS]
-    codes, regimes = rows["regime"].values, occurring_regimes(rows)
-    colours = regime_colours(rows)
+    codes, colours = rows["regime"].values, regime_colours(rows)
     ended = [np.isfinite(element.values) & ~element.censored for element in chosen]
+    drawn = set(codes[np.any(ended, axis=0)].tolist())
+    regimes = {name: code for name, code in occurring_regimes(rows).items() if code in drawn}
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
     unit, per = told_in(chosen[0].units, together)
     edges, wide = bins(together / per)
@@ -99,7 +101,6 @@ def histogram_by_regime(ds: xr.Dataset, output: str) -> Figure:
         title = f"{words}{', ' if words else ''}{rows_in_words([element])}"
         axes.set_title(textwrap.fill(title, 46), loc="left")
     panels[-1].set_xlabel(sentence(chosen[0].meaning, unit))
-    if wide:
-        logarithmic(panels[-1])
+    logarithmic(panels[-1]) if wide else roomy(panels[-1])
     legend(panels[0])
     return figure

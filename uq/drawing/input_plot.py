@@ -9,6 +9,7 @@ from uq.analysis.realised import EVERYWHERE, stated_and_realised
 from uq.drawing.figure import (
     COLOURS,
     WIDTH,
+    Drawing,
     is_wide,
     logarithmic,
     named_input,
@@ -42,7 +43,7 @@ def inputs(ds: xr.Dataset) -> Figure | None:
         return None
     columns = 1 if len(found) <= _IN_ONE_COLUMN else 2
     lines = -(-len(found) // columns)
-    figure = Figure(figsize=(WIDTH, 0.3 + 1.4 * lines), layout="constrained")
+    figure = Drawing(figsize=(WIDTH, 0.3 + 1.4 * lines), layout="constrained")
     panels = figure.subplots(lines, columns, squeeze=False).ravel()
     for axes in panels[len(found) :]:
         axes.set_axis_off()

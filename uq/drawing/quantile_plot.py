@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from uq.drawing.elements_plot import label, rows_in_words, told_in
-from uq.drawing.figure import WIDTH, sentence, styled
+from uq.drawing.figure import WIDTH, Drawing, sentence, styled
 from uq.rows.elements import independent_rows, named_elements
 from uq.wording import interval, known
 
@@ -39,7 +39,7 @@ def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Any]) -> F
     words = [label(ds, element) for element in chosen]
     lines = 3 if any(words) else 2
     height = _LINE * (4.2 + (lines + 0.4) * len(chosen))
-    figure = Figure(figsize=(WIDTH, height))
+    figure = Drawing(figsize=(WIDTH, height))
     axes = figure.add_axes((0.02, 0.0, 0.96, 1.0))
     axes.set_axis_off()
     axes.set(xlim=(0, 1), ylim=(height / _LINE, 0))

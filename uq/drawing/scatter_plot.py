@@ -20,6 +20,7 @@ from uq.drawing.elements_plot import (
 from uq.drawing.figure import (
     COLOURS,
     WIDTH,
+    Drawing,
     is_wide,
     legend,
     logarithmic,
@@ -60,7 +61,7 @@ def scatter(ds: xr.Dataset, output: str) -> Figure:
     element = named_elements(rows, output)[0]
     inputs = independent_inputs(rows)
     leading = _leading(inputs, element)[:_MOST_INPUTS]
-    figure = Figure(figsize=(WIDTH, 0.5 + 1.5 * len(leading)), layout="constrained")
+    figure = Drawing(figsize=(WIDTH, 0.5 + 1.5 * len(leading)), layout="constrained")
     panels = figure.subplots(len(leading), sharey=True, squeeze=False)[:, 0]
     finite = np.isfinite(element.values)
     unit, per = told_in(element.units, element.values)
@@ -155,7 +156,7 @@ def _leading(inputs: dict[str, Floats], element: Element) -> list[str]:
     return sorted(inputs, key=lambda name: between(inputs[name]))
 
 
-def _name_input(axes: Axes, rows: xr.Dataset, name: str, width: int = 44, ticks: int = 6) -> None:
+def _name_input(axes: Axes, rows: xr.Dataset, name: str, width: int = 38, ticks: int = 6) -> None:
     axes.set_xlabel(named_input(rows[name], width))
     roomy(axes, ticks)
 
@@ -186,7 +187,9 @@ def pairs(ds: xr.Dataset) -> Figure:
     codes = rows["regime"].values
     leading = sorted(inputs, key=lambda name: -_told_apart(inputs[name], codes))[:_MOST_INPUTS]
     size = len(leading) - 1
-    figure = Figure(figsize=(WIDTH, 0.8 + 1.45 * size), layout="constrained")
+    alone = size == 1
+    height = 0.5 + (2.1 if alone else 1.45 * size) + 0.15 * len(regimes)
+    figure = Drawing(figsize=(WIDTH, height), layout="constrained")
     panels = figure.subplots(size, size, squeeze=False, sharex="col", sharey="row")
     shown = thinned(len(codes), _MOST_POINTS)
     colours = regime_colours(rows)
@@ -212,9 +215,9 @@ def pairs(ds: xr.Dataset) -> Figure:
             axes.locator_params(axis="y", nbins=4)
             whole_numbers(axes.yaxis)
             if i == size - 1:
-                _name_input(axes, rows, across, width=22, ticks=6 if size == 1 else 3)
+                _name_input(axes, rows, across, *((38, 6) if alone else (17, 3)))
             if j == 0:
-                axes.set_ylabel(named_input(rows[down], width=18))
+                axes.set_ylabel(named_input(rows[down], width=30 if alone else 20))
     panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
     legend(panels[0, 0])
     return figure

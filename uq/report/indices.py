@@ -114,15 +114,16 @@ def _leading(
     if value <= dummy.get(kind, 0.0):
         return ""
     told, low = kind if kind == method else f"{method}: {kind}", entry.get("low")
+    size = index(entry, "value", kind)
     if others and low is not None and low < (kinds[kind][others[0]]["value"] or 0.0):
         return (
             f"Which input matters most to {words} is not settled "
             f"({told} of {first} is {index_interval(entry, kind)})."
         )
     if kind in _SHARES and value < _LEAST:
-        return f"No input alone does much to {words} ({told} is {value:.2g} at most)."
+        return f"No input alone does much to {words} ({told} is {size} at most)."
     name = sentence(with_symbol(ds[first]), width=1000)
-    return f"{name} matters most to {words} ({told} = {value:.2g})."
+    return f"{name} matters most to {words} ({told} = {size})."
 
 
 def _is_index(value: Any) -> bool:

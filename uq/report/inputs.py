@@ -94,7 +94,7 @@ def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
 
 def _with_unit(ds: xr.Dataset, name: str, value: float | str) -> str:
     unit = powers(ds[name].attrs["units"])
-    text = value if isinstance(value, str) else f"{value!r}"
+    text = value if isinstance(value, str) else f"{value:.6g}"
     return text if unit == "1" else f"{text} {unit}"
 
 

@@ -34,7 +34,8 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
 def regime_table(summary: Summary) -> Table:
     """Return the share of each regime among the independent rows."""
     rows = [
-        (Cell(label), count(one["count"]), _share(one)) for label, one in summary["regime"].items()
+        (Cell(label), Cell(f"{one['count']}", key=float(one["count"])), _share(one))
+        for label, one in summary["regime"].items()
     ]
     return Table("Regimes, with 95 % intervals", ("regime", "rows", "share"), rows)
 

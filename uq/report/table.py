@@ -37,6 +37,10 @@ class Table(NamedTuple):
     header: tuple[str, ...]
     rows: Sequence[tuple[Cell, ...]]
 
+    def has_numbers(self, column: int) -> bool:
+        """Whether a column is one of numbers, or of dashes in their place."""
+        return any(row[column].key is not None or row[column].text == "-" for row in self.rows)
+
 
 def count(rows: int) -> Cell:
     """Return the cell of a number of rows; nothing for none."""
@@ -59,7 +63,8 @@ def estimate(entry: Mapping[str, Any], per: float = 1.0, key: str = "value") -> 
     -------
     Cell
     """
-    text, ends = wording.known(entry, key, per), wording.interval(entry, per)
+    text = wording.known(entry, key, per)
+    ends = wording.interval(entry, per).replace(" to ", " to\u00a0")  # breaks in two, not three
     last = float("inf") if text in ("never", "beyond the horizon") else None
     return Cell(text, ends, last if entry[key] is None else entry[key])
 

@@ -52,8 +52,16 @@ def shape_faults(data: dict[str, Any]) -> list[Fault]:
     try:
         StudyFile.model_validate(data)
     except ValidationError as invalid:
-        return [_fault(dict(error)) for error in invalid.errors(include_url=False)]
+        faults = [_fault(dict(error)) for error in invalid.errors(include_url=False)]
+        return [fault for fault in faults if not any(_is_meant(fault, other) for other in faults)]
     return []
+
+
+def _is_meant(missing: Fault, other: Fault) -> bool:
+    """Whether what is missing is what another fault's key is told to mean."""
+    *table, key = missing.path
+    beside = missing.problem.startswith(_MISSING) and other.path[:-1] == tuple(table)
+    return beside and f"did you mean '{key}'?" in other.problem
 
 
 def sound_entries(data: dict[str, Any], faults: list[Fault]) -> dict[str, dict[str, Any]]:
@@ -106,9 +114,9 @@ def _fault(error: dict[str, Any]) -> Fault:
             problem = f"no such {kind}{nearest(str(path[-1]), known)} (allowed: {', '.join(known)})"
             return Fault(tuple(path), problem, value)
         case "missing":
-            return Fault(tuple(path), "is missing")
+            return Fault(tuple(path), _MISSING)
         case "union_tag_not_found":
-            return Fault((*path, "distribution"), f"is missing (one of {', '.join(LAWS)})")
+            return Fault((*path, "distribution"), f"{_MISSING} (one of {', '.join(LAWS)})")
         case "union_tag_invalid":
             name = error["ctx"]["tag"]
             problem = f"no such law{nearest(name, LAWS)} (allowed: {', '.join(LAWS)})"
@@ -134,6 +142,7 @@ def _beside(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[str
     return "key", list(table.model_fields)
 
 
+_MISSING = "is missing"
 _REASONS = {
     "model_type": "must be a table",
     "model_attributes_type": "must be a table",

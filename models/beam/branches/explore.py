@@ -67,7 +67,7 @@ def continue_orbit(
     -------
     xarray.Dataset
         Along ``point``: the parameter; ``gaps`` [m]; ``work_rate`` [W] and
-        ``nondimensional_work_rate`` <u_i> (eqs 6 to 8), the mean of k_c X0^2 w0;
+        ``dimensionless_work_rate`` <u_i> (eqs 6 to 8), the mean of k_c X0^2 w0;
         ``peak_contact_force`` [N]; ``impact_velocity`` [m s-1] at x_c = +x_1, v > 0, along
         ``impact``; ``multiplier_real`` and ``multiplier_imag``, the largest modulus first;
         ``stable``; ``clearance`` [m], how near to a stop's face the tip turns; ``state``. Along
@@ -145,7 +145,7 @@ def follow_wear(
     Returns
     -------
     xarray.Dataset
-        As that of `continue_orbit`, with ``time`` [s] and ``nondimensional_time`` T in place of the
+        As that of `continue_orbit`, with ``time`` [s] and ``dimensionless_time`` T in place of the
         parameter. ``event_value`` is the right gap [m]. Attribute ``end``: the cause of lost
         stability, ``stop``, or ``no-impact`` where contact fades away.
 
@@ -167,12 +167,12 @@ def follow_wear(
     ds = _labelled(params, tuning, worn.orbits, frequencies)
     scaled = [event._replace(value=event.value * x0) for event in worn.events]
     ds = ds.merge(_events(params, scaled, _named("m", "right gap")))
-    nondimensional = worn.time * 2 * np.pi * tuning.fundamental / tuning.forcing
+    dimensionless = worn.time * 2 * np.pi * tuning.fundamental / tuning.forcing
     wear = params.wear_coefficient / params.contact_area * params.contact_stiffness * x0
     time = worn.time / (params.forcing_frequency * wear)
     return ds.assign_attrs(end=worn.end).assign_coords(
         time=("point", time, _named("s", "time of wear")),
-        nondimensional_time=("point", nondimensional, _named("1", "T (eq 12)")),
+        dimensionless_time=("point", dimensionless, _named("1", "T (eq 12)")),
     )
 
 
@@ -213,7 +213,7 @@ def _labelled(
     variables: dict[str, tuple[Any, Array, str, str]] = {
         "gaps": (sited, x0 * np.array([o.gaps for o in orbits]), "m", "gap of each site"),
         "work_rate": (sited, k_c * x0**2 * f * work, "W", "impact work-rate of each site"),
-        "nondimensional_work_rate": (
+        "dimensionless_work_rate": (
             sited,
             f / tuning.fundamental * work,
             "1",

@@ -42,7 +42,7 @@ class WornOrbit(NamedTuple):
         Right and left, in initial gaps.
     time : ndarray, shape (p,)
         Slow time since the first: forcing periods times the wear of a site of share 1 per work
-        [X0 per nondimensional work].
+        [X0 per dimensionless work].
     orbits : tuple of Orbit
         One at each.
     events : tuple of Event

@@ -28,11 +28,11 @@ def kinds(ds):
 )
 def test_work_rates_at_the_start_of_a_branch(omega, rates):
     ds = branch(omega, omega + 1e-3).isel(point=0)
-    heavy = np.sort(ds.nondimensional_work_rate)[::-1]
+    heavy = np.sort(ds.dimensionless_work_rate)[::-1]
     np.testing.assert_allclose(heavy, rates, rtol=1e-6)
     p = at_omega(omega)
     watt = p.contact_stiffness * X0**2 * 2 * np.pi * hertz()
-    np.testing.assert_allclose(ds.work_rate, ds.nondimensional_work_rate * watt, rtol=1e-12)
+    np.testing.assert_allclose(ds.work_rate, ds.dimensionless_work_rate * watt, rtol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_points_of_a_branch_are_settled_motions():
     setup.state[0, :44] = ds.state * 1.001
     work = setup.advance(1000).work[0, -1] * ds.forcing_frequency.item() / hertz() / (2 * np.pi)
     assert ds.forcing_frequency.item() == pytest.approx(9.95 * hertz())
-    np.testing.assert_allclose(work, ds.nondimensional_work_rate, rtol=1e-5)
+    np.testing.assert_allclose(work, ds.dimensionless_work_rate, rtol=1e-5)
 
 
 def test_a_symmetric_branch_goes_straight_through_the_birth_of_asymmetric_orbits():
@@ -156,7 +156,7 @@ def test_wear_at_561_ends_by_complex_multipliers():
 
 def test_wear_at_99_ends_by_grazing():
     ds = follow_wear(at_omega(9.9), stop=3 * X0)
-    named = [*ds.data_vars.values(), ds.time, ds.nondimensional_time]
+    named = [*ds.data_vars.values(), ds.time, ds.dimensionless_time]
     assert all(v.attrs["units"] and v.attrs["long_name"] for v in named)
     assert ds.end == "grazing"
     last = ds.gaps[-1] / X0
@@ -165,7 +165,7 @@ def test_wear_at_99_ends_by_grazing():
     assert ds.event_multiplier[0] == pytest.approx(0.976, abs=0.004)
     place = ds.event_gaps[0] / X0
     assert place.max() == pytest.approx(2.63, abs=0.02)
-    heavy = ds.nondimensional_work_rate[-1]
+    heavy = ds.dimensionless_work_rate[-1]
     np.testing.assert_allclose(np.sort(heavy), [157, 269], rtol=0.05)
 
 
@@ -174,9 +174,9 @@ def test_time_to_gap_two(omega, time):
     p = at_omega(omega)
     ds = follow_wear(p, stop=2 * X0).isel(point=-1)
     assert ds.gaps.max() / X0 == pytest.approx(2, rel=1e-8)
-    assert ds.nondimensional_time == pytest.approx(time, rel=5e-4)
+    assert ds.dimensionless_time == pytest.approx(time, rel=5e-4)
     rate = p.wear_coefficient / p.contact_area * p.contact_stiffness * X0 * 2 * np.pi * hertz()
-    np.testing.assert_allclose(ds.time, ds.nondimensional_time / rate, rtol=1e-12)
+    np.testing.assert_allclose(ds.time, ds.dimensionless_time / rate, rtol=1e-12)
 
 
 def test_steps_of_wear_are_controlled():

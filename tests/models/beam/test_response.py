@@ -19,7 +19,7 @@ def nominal(**values):
 
 
 def settled(p, propagator=lanes, **settings):
-    """Return the response and its work-rate per w0 tau, the paper's nondimensional unit."""
+    """Return the response and its work-rate per w0 tau, the paper's dimensionless unit."""
     s = Settings(**settings)
     b = beams(p, s)
     ((_, system),) = propagator.groups(b, s)

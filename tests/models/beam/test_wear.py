@@ -27,7 +27,7 @@ def compute(x, **settings):
     return outputs, status
 
 
-def nondimensional(outputs, x):
+def dimensionless(outputs, x):
     """Return the paper's T of the first time to depth."""
     p = Params(*x.T)
     w0 = 2 * np.pi * outputs["fundamental_frequency"]
@@ -43,7 +43,7 @@ def test_known_lives_are_met_within_half_a_percent(frequency, known, ratio):
     x = rows(forcing_frequency=frequency)
     outputs, status = compute(x, accuracy=0.02)
     assert status[0] == Status.OK
-    assert nondimensional(outputs, x)[0, 0] == pytest.approx(known, rel=5e-3)
+    assert dimensionless(outputs, x)[0, 0] == pytest.approx(known, rel=5e-3)
     assert outputs["lifetime_ratio"][0, 0] == pytest.approx(ratio, rel=5e-3)
     error = outputs["first_time_to_depth_error"] / outputs["first_time_to_depth"]
     assert 0 < error[0, 0] <= 0.02
@@ -58,7 +58,7 @@ def test_the_gap_ratio_of_the_second_case_falls_as_published():
 def test_the_life_through_changes_of_branch_is_met_within_two_percent():
     x = rows(forcing_frequency=32.3591)
     outputs, _ = compute(x, depths=Settings.depths, accuracy=Settings.accuracy)
-    assert nondimensional(outputs, x)[0, 1] == pytest.approx(0.380, rel=0.02)
+    assert dimensionless(outputs, x)[0, 1] == pytest.approx(0.380, rel=0.02)
     assert outputs["lifetime_ratio"][0, 1] == pytest.approx(1 / 1.49, rel=0.02)
 
 
