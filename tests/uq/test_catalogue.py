@@ -1,4 +1,4 @@
-"""``uq models``: the list of models, and all that one of them declares, on wide and narrow terminals."""
+"""``uq models``: the list of models, and what one of them declares, on any terminal."""
 
 import pytest
 from command_line import strict_json
