@@ -94,7 +94,25 @@ def percent(share: float) -> str:
     """Return a share in per cent: to a tenth, or more exactly where it is close to none or all."""
     if 0 < share < 0.01:
         return f"{100 * share:.2g} %"
-    return f"{100 * share:.{2 if 0.999 <= share < 1 else 1}f} %"
+    rest = round(1 - share, 12)
+    return f"{100 * share:.{-floor(log10(100 * rest)) if 0 < rest < 0.001 else 1}f} %"
+
+
+def percent_with_interval(entry: Entry) -> str:
+    """Return a share in per cent, with its interval where it has one."""
+    ends = [entry[end] for end in ("low", "high")]
+    told = percent(entry["value"])
+    return told if None in ends else f"{told} ({percent_interval(*ends)})"
+
+
+def percent_interval(low: float, high: float) -> str:
+    """Return the ends of the interval of a share in per cent."""
+    return f"{percent(low).removesuffix(' %')} to {percent(high)}"
+
+
+def variance_between(split: Entry) -> str:
+    """Return the share of variance between regimes, less what chance makes of it."""
+    return number(split["value"]) if split["value"] > 0 else "none seen"
 
 
 def index(entry: Entry, key: str, kind: str) -> str:

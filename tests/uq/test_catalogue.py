@@ -1,4 +1,4 @@
-"""``uq models``: the list of models, and what one of them declares, on any terminal."""
+"""``uq models``: the list of models, and all that one of them declares."""
 
 import pytest
 from command_line import strict_json

@@ -10,13 +10,14 @@ from uq.analysis.statistics import summarise
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
 from uq.report.outcomes import outcomes
+from uq.rows.elements import analysis_of
 
 DAY = 86400.0
 
 
 def told(ds, methods=(), failed=0):
     summary = summarise(ds)
-    return headlines(summary, failed, outcomes(ds, summary), methods)
+    return headlines(summary, failed, outcomes(ds, summary), methods, analysis_of(ds).tolerance)
 
 
 def subjects(ds, method, outputs):
@@ -50,6 +51,27 @@ def test_a_median_is_told_in_the_unit_of_its_table_with_its_interval():
     assert never == "Meaning of never: median never."
     alone = told(linear("sobol", samples=64))[1]  # no replicates, no interval
     assert re.fullmatch(r"Value of the function: median \d\S*\.", alone)
+
+
+def test_what_the_study_asks_of_an_output_stands_behind_its_median():
+    ds = with_output(linear(samples=200), "life", np.linspace(1, 10, 200) * DAY, "lifetime")
+    ds = with_output(ds, "turn", np.linspace(-0.5, 0.5, 200), "angle")
+    ds = asking(
+        ds,
+        outputs=["life", "turn", "y"],
+        tolerance={"coverage": 0.9, "confidence": 0.95},
+        thresholds={"life": 2 * DAY, "turn": 0.4, "y": 5.0},
+    )
+    life, turn, y = (one.partition("). ")[2] for one in told(ds)[1:])
+    found = summarise(ds)["outputs"]
+    bound = f"{found['life']['tolerance']['lower'] / DAY:.5g}"
+    assert life == (
+        f"With 95 % confidence, 90 % of all take longer than {bound} days."
+        " 11.5 % (7.8 to 16.7 %) end within 2 days."
+    )
+    assert turn == "20.0 % (15.0 to 26.1 %) lie beyond 0.4 m on either side."
+    share = found["y"]["thresholds"]["5.0"]["above"]["value"]
+    assert y.startswith(f"{100 * share:.1f} % (") and y.endswith(" lie above 5.")
 
 
 def test_an_input_matters_most_only_where_the_others_are_known_to_matter_less():

@@ -373,6 +373,18 @@ def test_long_numbers_have_room():
     assert 1 <= len(shown) <= 2
 
 
+@pytest.mark.parametrize(
+    ("ends", "numbers"),
+    [((-0.445, -0.356), ["−0.425", "−0.375"]), ((1.3e6, 2.8e6), ["1.5e6", "2e6", "2.5e6"])],
+)
+def test_numbers_have_room_where_no_round_step_leaves_two(ends, numbers):
+    axes = Figure().subplots()
+    axes.set_xlim(ends)
+    roomy(axes, ticks=3)
+    shown = [tick for tick in axes.get_xticks() if ends[0] <= tick <= ends[1]]
+    assert axes.xaxis.get_major_formatter().format_ticks(shown) == numbers
+
+
 def test_colours_of_points_are_seen_in_the_legend():
     (shown,) = plots.pairs(kinds(samples=200)).legends
     assert len(shown.legend_handles) == 2

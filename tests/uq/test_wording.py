@@ -3,7 +3,7 @@
 import pytest
 
 from uq.study.file import LAW
-from uq.wording import brief, duration, index, interval, known, law, percent
+from uq.wording import brief, duration, index, interval, known, law, percent, variance_between
 
 
 @pytest.mark.parametrize(
@@ -26,11 +26,12 @@ def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, 
 def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
     assert index({"value": -0.0002}, "value", "S1") == "0.000"
     assert index({"value": -0.0002}, "value", "mu") == "-0.0002"
-    assert [percent(share) for share in (0.0, 1 / 6000, 0.769, 0.9999, 1.0)] == [
+    assert [percent(share) for share in (0.0, 1 / 6000, 0.769, 0.9999, 0.999962, 1.0)] == [
         "0.0 %",
         "0.017 %",
         "76.9 %",
         "99.99 %",
+        "99.996 %",
         "100.0 %",
     ]
 
@@ -84,3 +85,8 @@ def test_a_law_is_told_by_its_arguments_alone():
     assert law(LAW.validate_python(given)) == "normal(mean = 1.0, sd = 0.1)"
     drawn = {"distribution": "empirical", "values": [1.0, 2.0]}
     assert law(LAW.validate_python(drawn)) == "empirical(values = [1.0, 2.0])"
+
+
+def test_less_variance_between_regimes_than_by_chance_is_none():
+    assert variance_between({"value": -0.00028}) == "none seen"
+    assert variance_between({"value": 0.038428}) == "0.038428"

@@ -7,7 +7,16 @@ import xarray as xr
 
 from uq.analysis.b_lives import B_LIVES
 from uq.cli.printing import console, grid, heading, paragraph
-from uq.wording import Entry, duration, index, index_interval, interval, known, number
+from uq.wording import (
+    Entry,
+    duration,
+    index,
+    index_interval,
+    interval,
+    known,
+    number,
+    variance_between,
+)
 
 
 def show_summary(ds: xr.Dataset, summary: Entry) -> None:
@@ -72,7 +81,7 @@ def _lines(output: Entry) -> Iterator[Line]:
             yield line(f"P(< {number(float(threshold))}), if", guess["below"], time=False)
             yield "", _ASSUMES, "", ""
     if split := output.get("between_regimes"):
-        yield line("variance between regimes", split, time=False)
+        yield "variance between regimes", variance_between(split), interval(split), ""
     for count in ("never", "censored", "undefined", "failed"):
         if output[count]:
             yield count, str(output[count]), "", "rows"

@@ -95,12 +95,18 @@ def roomy(axes: Axes, ticks: int = 6) -> None:
         gaps = np.diff(shown) / (high - low) * _CHARACTERS * ticks
         if all(gap >= (a + b) / 2 + 1 for gap, (a, b) in zip(gaps, pairwise(widths), strict=True)):
             return
+    axes.set_xticks([shown[0], shown[-1]])  # no step of round numbers leaves less than three
 
 
 def whole_numbers(axis: Axis) -> None:
     """Write each number in full: a common factor at the end of an axis covers its label."""
-    # With the minus sign that matplotlib writes on other axes.
-    axis.set_major_formatter(lambda value, _: f"{value:.6g}".replace("-", "\N{MINUS SIGN}"))
+    axis.set_major_formatter(lambda value, _: _short(value))
+
+
+def _short(value: float) -> str:
+    """Return a number with the minus sign of other axes, and no more exponent than it needs."""
+    text = re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.6g}")
+    return text.replace("-", "\N{MINUS SIGN}")
 
 
 class _PlainLog(LogFormatter):

@@ -5,14 +5,18 @@ from typing import Any
 
 from uq.report.indices import Method
 from uq.report.outcomes import Outcome
-from uq.wording import brief, known, percent
+from uq.wording import brief, known, percent, percent_with_interval
 
 _MOST = 6
 """Outputs, and targets, of which there is a sentence."""
 
 
 def headlines(
-    summary: Mapping[str, Any], failed: int, found: Sequence[Outcome], methods: Sequence[Method]
+    summary: Mapping[str, Any],
+    failed: int,
+    found: Sequence[Outcome],
+    methods: Sequence[Method],
+    tolerance: tuple[float, float] | None,
 ) -> list[str]:
     """Return the sentences.
 
@@ -24,13 +28,15 @@ def headlines(
         Rows.
     found : sequence of Outcome
     methods : sequence of Method
+    tolerance : tuple of float, optional
+        Coverage and confidence of the bounds.
 
     Returns
     -------
     list of str
     """
     ended = f"{failed} of {summary['samples']} rows failed." if failed else "No row failed."
-    return [ended, *_regimes(summary), *_outputs(found), *_leading(methods)]
+    return [ended, *_regimes(summary), *_outputs(found, tolerance), *_leading(methods)]
 
 
 def _regimes(summary: Mapping[str, Any]) -> Iterator[str]:
@@ -41,8 +47,8 @@ def _regimes(summary: Mapping[str, Any]) -> Iterator[str]:
         yield f"Regimes: {', '.join(shares)}."
 
 
-def _outputs(found: Sequence[Outcome]) -> Iterator[str]:
-    """Yield the median of each output, where the study asks for it."""
+def _outputs(found: Sequence[Outcome], tolerance: tuple[float, float] | None) -> Iterator[str]:
+    """Yield the median of each output, where the study asks for it, and what else it asks for."""
     for one in found[:_MOST]:
         median = one.entry["quantiles"].get("0.5")
         if median is None or known(median) == "-":
@@ -51,7 +57,27 @@ def _outputs(found: Sequence[Outcome]) -> Iterator[str]:
         words = f"{one.words[:1].upper()}{one.words[1:]}: median"
         value, ends = brief(median, one.unit.seconds)
         told = value if value in ("never", "beyond the horizon") else f"{value} {unit}".strip()
-        yield f"{words} {told}{f' (95 % interval {ends})' if ends else ''}."
+        middle = f"{words} {told}{f' (95 % interval {ends})' if ends else ''}."
+        yield " ".join([middle, *_bound(one, tolerance), *_probabilities(one)])
+
+
+def _bound(one: Outcome, tolerance: tuple[float, float] | None) -> Iterator[str]:
+    """Yield what most lives surely reach."""
+    lower = (one.entry["tolerance"] or {}).get("lower")
+    if tolerance is not None and one.kind == "lifetime" and lower is not None:
+        coverage, confidence = (f"{100 * share:g} %" for share in tolerance)
+        least = one.in_its_unit(lower)
+        yield f"With {confidence} confidence, {coverage} of all take longer than {least}."
+
+
+def _probabilities(one: Outcome) -> Iterator[str]:
+    """Yield the share on the far side of each threshold: of lives, those that have ended."""
+    side = "below" if one.kind == "lifetime" else "above"
+    words = {"lifetime": "end within {}", "angle": "lie beyond {} on either side"}
+    for threshold, entry in one.entry["thresholds"].items():
+        if entry[side]["value"] is not None:
+            where = words.get(one.kind, "lie above {}").format(one.in_its_unit(float(threshold)))
+            yield f"{percent_with_interval(entry[side])} {where}."
 
 
 def _leading(methods: Sequence[Method]) -> Iterator[str]:

@@ -10,7 +10,7 @@ from uq.drawing.figure import place_in_words, powers
 from uq.report.table import Cell, Table, count, estimate, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
 from uq.time_units import TimeUnit, time_unit
-from uq.wording import number, percent
+from uq.wording import number, percent, percent_interval, variance_between
 
 Summary = Mapping[str, Any]
 """What `uq.analysis.statistics.summarise` returns."""
@@ -44,8 +44,8 @@ def _share(entry: Mapping[str, Any]) -> Cell:
     if entry["share"] is None:
         return Cell("-")
     ends = [entry[end] for end in ("low", "high")]
-    interval = "" if None in ends else " to ".join(map(percent, ends))
-    return Cell(percent(entry["share"]), interval.replace(" % to", " to"), entry["share"])
+    below = "" if None in ends else percent_interval(*ends)
+    return Cell(percent(entry["share"]), below, entry["share"])
 
 
 class Outcome:
@@ -56,12 +56,14 @@ class Outcome:
     name : str
     words : str
         Which element it is: ``time to wear depth, left, 250 µm``.
+    kind : str
+        As in `uq.contract.Output`.
     entry : dict
         Of ``outputs`` in what `uq.analysis.statistics.summarise` returns.
     """
 
-    def __init__(self, name: str, words: str, entry: Mapping[str, Any]):
-        self.name, self.words, self.entry = name, words, entry
+    def __init__(self, name: str, words: str, kind: str, entry: Mapping[str, Any]):
+        self.name, self.words, self.kind, self.entry = name, words, kind, entry
         found = [one["value"] for one in entry["quantiles"].values() if one["value"] is not None]
         typical = abs(found[len(found) // 2]) if found else 0.0
         is_time = entry["units"] == "s"
@@ -81,6 +83,10 @@ class Outcome:
         """The unit of the other cells; nothing for a pure number."""
         return Cell("" if self.unit.name == "1" else self.unit.name)
 
+    def in_its_unit(self, value: float) -> str:
+        """Return a number of this element, and its unit."""
+        return f"{number(value / self.unit.seconds)} {self.unit_cell.text}".strip()
+
     def cell(self, entry: Mapping[str, Any], key: str = "value") -> Cell:
         """Return the cell of an estimate in the unit of this element."""
         return estimate(entry, self.unit.seconds, key)
@@ -93,7 +99,8 @@ def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     for element in elements_of(independent_rows(ds), list(names)):
         place = place_in_words(element, ds[element.output])
         words = f"{element.meaning}{', ' if place else ''}{place}"
-        found.append(Outcome(element.name, words, summary["outputs"][element.name]))
+        entry = summary["outputs"][element.name]
+        found.append(Outcome(element.name, words, element.kind, entry))
     return found
 
 
@@ -143,15 +150,14 @@ def _statistics(one: Outcome) -> Iterator[Cell]:
     yield one.cell(entry, "sd")
     yield from (one.cell(quantile) for quantile in entry["quantiles"].values())
     split = entry.get("between_regimes")
-    yield estimate(split) if split else Cell("")
+    yield estimate(split)._replace(text=variance_between(split)) if split else Cell("")
     yield from (count(entry[name]) for name in _COUNTS)
 
 
 def _thresholds(one: Outcome) -> Iterator[tuple[Cell, ...]]:
     for threshold, entry in one.entry["thresholds"].items():
         value = float(threshold)
-        unit = "" if one.unit.name == "1" else f" {one.unit.name}"
-        told = Cell(f"{number(value / one.unit.seconds)}{unit}", key=value)
+        told = Cell(one.in_its_unit(value), key=value)
         sides, note = entry, entry.get("reason", "")
         if note:
             sides = entry["kaplan_meier"]

@@ -114,7 +114,7 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
         "title": str(ds.attrs["title"]),
         "study": study.study,
         "facts": _facts(ds, summary),
-        "headlines": headlines(summary, lost, found, methods),
+        "headlines": headlines(summary, lost, found, methods, study.analysis.tolerance),
         "inputs": list(input_tables(ds)),
         "input_picture": _inputs_picture(ds),
         "status": status_table(ds, summary),
