@@ -8,6 +8,7 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
+from computed import linear
 
 from uq import store
 from uq.contract import Status
@@ -15,7 +16,7 @@ from uq.errors import InputError
 from uq.rows import results
 from uq.running import runner
 from uq.running.simulation import simulate
-from uq.study.definition import load_study
+from uq.study.definition import load_study, study_from_text
 
 
 @pytest.fixture
@@ -212,3 +213,11 @@ def test_a_file_holds_what_memory_holds(kinds):
     store.write_result(ds, Path("again.nc"))
     with netCDF4.Dataset(path) as merged, netCDF4.Dataset("again.nc") as again:
         assert merged.getncattr(results.CHECKSUM) == again.getncattr(results.CHECKSUM)
+
+
+def test_a_new_text_of_a_study_does_not_say_that_rows_were_computed_here():
+    ds = linear(samples=4).assign_attrs(cpu="another processor", numpy="0.9")
+    study = study_from_text(ds.attrs["study"] + "\n# a comment\n")
+    told = results.relabel(ds, study).attrs
+    assert told["study"].endswith("# a comment\n")
+    assert (told["cpu"], told["numpy"]) == ("another processor", "0.9")
