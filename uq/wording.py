@@ -59,7 +59,14 @@ def known(entry: Entry, key: str = "value", per: float = 1.0) -> str:
 def interval(entry: Entry, per: float = 1.0) -> str:
     """Return the ends of the interval of an entry; nothing where it has none, or both never."""
     ends = [known(entry, end, per) if end in entry else "-" for end in ("low", "high")]
-    return "" if ends in (["-", "-"], ["never", "never"]) else " to ".join(ends)
+    return "" if ends == ["-", "-"] or ends[0] == "never" else " to ".join(ends)
+
+
+def estimated(label: str, per: float = 1.0) -> str:
+    """Return what is estimated: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours."""
+    if not label.startswith("P("):
+        return label
+    return f"{label[:3]} {number(float(label[3:-1]) / per)})"
 
 
 def brief(entry: Entry, per: float = 1.0) -> tuple[str, str]:

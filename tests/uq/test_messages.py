@@ -46,6 +46,10 @@ ONE_FAULT = [
         "[uncertain.x3] uper = 4.0: no such argument of x3's law; did you mean 'upper'?",
     ),
     (
+        {"uncertain": {"x3": {"distrbution": "uniform", "lower": 0.0, "upper": 4.0}}},
+        "[uncertain.x3] distrbution = \"uniform\": no such key; did you mean 'distribution'?",
+    ),
+    (
         {"analysis": {"tolerance": {"coverage": 0.95, "confidenc": 0.95}}},
         "[analysis] tolerance.confidenc = 0.95: no such key; did you mean 'confidence'?",
     ),

@@ -275,5 +275,5 @@ def test_an_input_leads_only_where_it_is_told_from_one_without_effect():
 def test_of_an_output_without_any_value_nothing_is_drawn():
     ds = linear(samples=32, settings={"fail_above": -1.0})
     found = read(ds)
-    assert "32 rows failed" in found.plain_words
+    assert "Rows that failed: 32" in found.plain_words
     assert found.tags.count("figure") == 1  # of the inputs

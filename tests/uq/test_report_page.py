@@ -35,7 +35,7 @@ def told():
     [
         "384, statistics from 128 independent ones",
         "2 replicates",
-        "2 rows failed : they lack",
+        "Rows that failed: 2 . They lack",
         "Up to 5 % may fail",
         "3 rows were computed again with changed settings",
         "Cut here; the result carries all of it",

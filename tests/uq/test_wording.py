@@ -3,7 +3,17 @@
 import pytest
 
 from uq.study.file import LAW
-from uq.wording import brief, duration, index, interval, known, law, percent, variance_between
+from uq.wording import (
+    brief,
+    duration,
+    estimated,
+    index,
+    interval,
+    known,
+    law,
+    percent,
+    variance_between,
+)
 
 
 @pytest.mark.parametrize(
@@ -90,3 +100,14 @@ def test_a_law_is_told_by_its_arguments_alone():
 def test_less_variance_between_regimes_than_by_chance_is_none():
     assert variance_between({"value": -0.00028}) == "none seen"
     assert variance_between({"value": 0.038428}) == "0.038428"
+
+
+def test_what_is_estimated_has_no_idle_digits():
+    assert estimated("P(>0.20943951023931953)") == "P(> 0.20944)"
+    assert estimated("P(<86400.0)", 3600.0) == "P(< 24)"
+    assert estimated("quantile 0.5", 3600.0) == "quantile 0.5"
+
+
+def test_a_life_that_never_ends_at_the_low_end_has_no_interval():
+    assert interval({"low": None, "low_never": True, "high": None}) == ""
+    assert interval({"low": 2.0, "high": None, "high_never": True}) == "2 to never"

@@ -187,7 +187,7 @@ def _threshold(element: Element, threshold: float, replicate: Replicates) -> dic
     if sides is None:
         unknown = int((element.censored & (element.values < threshold)).sum())
         nothing = dict.fromkeys(("value", "low", "high"))
-        reason = f"{unknown} rows were censored before {threshold!r} {element.units}"
+        reason = f"{unknown} of {len(kept)} rows were censored before then"
         guess = {"kaplan_meier": ended_by(element, threshold, replicate)}
         return {"above": nothing, "below": nothing} | undefined | {"reason": reason} | guess
     within = _of(replicate, kept)

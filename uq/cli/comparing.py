@@ -7,7 +7,7 @@ from uq.analysis.comparison import comparison, estimates_of
 from uq.cli.printing import console, grid, heading, paragraph, print_json
 from uq.rows.results import open_result
 from uq.time_units import time_unit
-from uq.wording import Entry, interval, known, number
+from uq.wording import Entry, estimated, interval, known, number
 
 _TOLD = 6
 """Outputs of which it is said what a change of one input did."""
@@ -39,7 +39,7 @@ def _show(found: dict[str, Any]) -> None:
         lines = []
         for label, one in estimates_of(output):
             if label.startswith("P("):
-                lines.append((_probability(label, per), *_cells(one)))
+                lines.append((estimated(label, per), *_cells(one)))
                 continue
             lines.append((label, *_cells(one, per)))
             if label == "sd" and one["ratio"]["value"] is not None:
@@ -72,11 +72,6 @@ def _unit(output: Entry) -> tuple[str, float]:
         return output["units"], 1.0
     unit = time_unit(abs(typical))
     return unit.name, unit.seconds
-
-
-def _probability(label: str, per: float) -> str:
-    """Return ``P(>86400.0)`` with its threshold in the unit of the table: ``P(> 24)``."""
-    return f"{label[:3]} {number(float(label[3:-1]) / per)})"
 
 
 def _cells(one: Entry, per: float = 1.0) -> tuple[str, ...]:

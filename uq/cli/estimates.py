@@ -11,6 +11,7 @@ from uq.cli import say_when_interrupted
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.errors import InputError
 from uq.study.definition import load_study
+from uq.wording import estimated
 
 _SHOWN = 6  # sizes of each estimate on a terminal
 
@@ -118,7 +119,13 @@ def twin(result: Path, model: str | None, json: bool) -> None:
         heading(f"\n{name}")
         grid(
             [
-                (label, number(entry["value"]), _interval(entry), _interval(entry["plain"]), times)
+                (
+                    estimated(label),
+                    number(entry["value"]),
+                    _interval(entry),
+                    _interval(entry["plain"]),
+                    times,
+                )
                 for label, entry in estimates.items()
                 for times in [f"{entry['reduction']:.3g}"]
             ],
@@ -170,7 +177,7 @@ def _show_convergence(found: dict[str, Any]) -> None:
                     (str(line["samples"]), number(line["value"]), _interval(line))
                     for line in lines[-_SHOWN:]
                 ],
-                header=("samples", label, "95 % interval"),
+                header=("samples", estimated(label), "95 % interval"),
             )
         if entry.get("own_error") is not None:
             paragraph(

@@ -105,14 +105,17 @@ def _rate(element: Element) -> Target:
     with np.errstate(divide="ignore"):
         rate = 1 / element.values
     if np.isinf(rate).any():
-        refused = refused or f"{int(np.isinf(rate).sum())} rows have lifetime zero: no rate"
+        refused = (
+            refused
+            or f"{int(np.isinf(rate).sum())} of {rate.size} rows have lifetime zero: no rate"
+        )
     return Target(f"rate({element.name})", element, rate, refused)
 
 
 def _event(element: Element, threshold: float) -> Target:
     ended = element.values < threshold
     unknown = int((ended & element.censored).sum())
-    refused = f"{unknown} rows were censored before {threshold!r} {element.units}" * (unknown > 0)
+    refused = f"{unknown} of {ended.size} rows were censored before then" * (unknown > 0)
     event = np.where(element.present, ended, np.nan)
     return Target(f"P({element.name}<{threshold!r})", element, event, refused, event=True)
 

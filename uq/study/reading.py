@@ -116,6 +116,9 @@ def _fault(error: dict[str, Any]) -> Fault:
         case "missing":
             return Fault(tuple(path), _MISSING)
         case "union_tag_not_found":
+            for key, given in value.items():
+                if meant := nearest(key, ["distribution"]):
+                    return Fault((*path, key), f"no such key{meant}", given)
             return Fault((*path, "distribution"), f"{_MISSING} (one of {', '.join(LAWS)})")
         case "union_tag_invalid":
             name = error["ctx"]["tag"]
