@@ -133,7 +133,7 @@ def described(outputs: dict[str, NDArray[Any]], i: int, common: int, curves: int
     if period and regime in (PERIODIC, NO_IMPACT):
         name = f"period-{period}" if regime == PERIODIC else f"no impact, period-{period}"
         name += f" of {common}" if common > 1 else ""
-    return f"{name}, {exponent} 1/s"
+    return f"{name}, exponent {exponent} 1/s"
 
 
 def main() -> None:
@@ -153,7 +153,7 @@ def main() -> None:
                 curves = closed_curves(Params._make(x[i]), Settings(formulation=name))
             rate, range_ = outputs["progression_rate"][i], outputs["displacement_range"][i]
             print(
-                f"  {name:10s}  {described(outputs, i, common[i], curves):44s}"
+                f"  {name:10s}  {described(outputs, i, common[i], curves):53s}"
                 f" {rate * 1e3:7.2f} mm/s {range_ * 1e3:6.1f} mm"
             )
     print(NOTE)
