@@ -72,6 +72,8 @@ def test_what_the_study_asks_of_an_output_stands_behind_its_median():
     assert turn == "20.0 % (15.0 to 26.1 %) lie beyond 0.4 m on either side."
     share = found["y"]["thresholds"]["5.0"]["above"]["value"]
     assert y.startswith(f"{100 * share:.1f} % (") and y.endswith(" lie above 5.")
+    _, alone = told(asking(ds, outputs=["life"], quantiles=[0.9], thresholds={"life": 2 * DAY}))
+    assert alone == "Meaning of life: 11.5 % (7.8 to 16.7 %) end within 2 days."
 
 
 def test_an_input_matters_most_only_where_the_others_are_known_to_matter_less():

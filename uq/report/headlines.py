@@ -48,17 +48,19 @@ def _regimes(summary: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _outputs(found: Sequence[Outcome], tolerance: tuple[float, float] | None) -> Iterator[str]:
-    """Yield the median of each output, where the study asks for it, and what else it asks for."""
+    """Yield what the study asks of each output."""
     for one in found[:_MOST]:
-        median = one.entry["quantiles"].get("0.5")
-        if median is None or known(median) == "-":
-            continue
-        unit = one.unit_cell.text
-        words = f"{one.words[:1].upper()}{one.words[1:]}: median"
+        if text := " ".join([*_median(one), *_bound(one, tolerance), *_probabilities(one)]):
+            yield f"{one.words[:1].upper()}{one.words[1:]}: {text[:1].lower()}{text[1:]}"
+
+
+def _median(one: Outcome) -> Iterator[str]:
+    median = one.entry["quantiles"].get("0.5")
+    if median is not None and known(median) != "-":
         value, ends = brief(median, one.unit.seconds)
-        told = value if value in ("never", "beyond the horizon") else f"{value} {unit}".strip()
-        middle = f"{words} {told}{f' (95 % interval {ends})' if ends else ''}."
-        yield " ".join([middle, *_bound(one, tolerance), *_probabilities(one)])
+        if value not in ("never", "beyond the horizon"):
+            value = f"{value} {one.unit_cell.text}".strip()
+        yield f"Median {value}{f' (95 % interval {ends})' if ends else ''}."
 
 
 def _bound(one: Outcome, tolerance: tuple[float, float] | None) -> Iterator[str]:
