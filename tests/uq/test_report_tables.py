@@ -156,7 +156,7 @@ def test_indices_are_ranked_beside_an_input_without_effect():
     (method,) = sensitivity_of(ds)
     lost = int(ds["y"].isnull().sum())
     assert lost > 0
-    assert method.used.startswith(f"{200 - lost} rows used, {lost} groups dropped")
+    assert method.used.startswith(f"Of {200 - lost} rows, {lost} groups dropped")
     (table,) = method.subjects[0].tables
     names = [row[0].text for row in table.rows]
     assert names == ["x4", "x3", "x2", "x1", "(an input without effect)"]
@@ -164,7 +164,7 @@ def test_indices_are_ranked_beside_an_input_without_effect():
 
 def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
     (method,) = sensitivity_of(linear("saltelli", samples=32, replicates=4))
-    assert method.used == "768 rows used"
+    assert method.used == "Of 768 rows"
     first, *_ = method.subjects[0].tables[0].rows
     low, high = map(float, first[1].more.split(" to "))
     assert low < float(first[1].text) < high

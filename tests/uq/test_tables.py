@@ -56,8 +56,8 @@ def test_indices_are_ranked_and_dropped_groups_counted(told):
     lost = int(np.isnan(ds["y"].values.reshape(-1, 6)).any(axis=1).sum())
     assert lost > 0
     lines = told("sensitivity", ds)
-    rows = f"{1536 - 6 * lost} rows used, {lost} groups dropped"
+    rows = f"of {1536 - 6 * lost} rows, {lost} groups dropped"
     assert cells(lines, "Sensitivity by sobol") == [rows]
     assert [line[0] for line in lines if line[0][:1] == "x"] == ["x4", "x3", "x2", "x1"]
     whole = told("sensitivity", linear("saltelli", samples=16, replicates=4))
-    assert cells(whole, "Sensitivity by sobol") == ["384 rows used"]
+    assert cells(whole, "Sensitivity by sobol") == ["of 384 rows"]

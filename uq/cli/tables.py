@@ -108,7 +108,7 @@ def _example(ds: xr.Dataset, status: str) -> str:
 def show_sensitivity(found: Entry) -> None:
     """Print what `uq.indices.sensitivities` found."""
     dropped = found["groups_dropped"]
-    more = f"{found['rows_used']} rows used" + (f", {dropped} groups dropped" if dropped else "")
+    more = f"of {found['rows_used']} rows" + (f", {dropped} groups dropped" if dropped else "")
     heading(f"Sensitivity by {found['method']}", more)
     for name, output in found["outputs"].items():
         heading(f"\n{name}")

@@ -72,7 +72,7 @@ def _method(ds: xr.Dataset, name: str) -> Method:
         found = sensitivities(ds, name)
     except InputError as error:
         return Method(name, refused=str(error))
-    used = f"{found['rows_used']} rows used"
+    used = f"Of {found['rows_used']} rows"
     if found["groups_dropped"]:
         used += (
             f", {found['groups_dropped']} groups dropped for lack of a value in some of their rows"
