@@ -242,6 +242,17 @@ def test_pairs_show_the_inputs_that_decide_the_regime():
         plots.pairs(linear())
 
 
+def test_a_regime_of_one_row_does_not_choose_the_inputs_of_pairs():
+    ds = kinds(samples=200)
+    ds["regime"].attrs |= {"flag_values": [-1, 0, 1, 2], "flag_meanings": "none slow fast odd"}
+    chance = np.random.default_rng(0).random(200)
+    ds["regime"].values[:] = ds["x1"].values + chance > 1
+    ds["regime"].values[int(ds["x2"].values.argmax())] = 2
+    (axes,) = plots.pairs(ds).axes
+    assert axes.get_xlabel() == "First input (x_1) [m]"
+    assert len(axes.lines) == 3
+
+
 def test_convergence_ends_with_all_rows_and_narrows():
     ds = linear(samples=512)
     figure = plots.convergence(ds, "y")

@@ -1,6 +1,7 @@
 """Rows as points: an output against the inputs that move it most, and inputs by regime."""
 
 import textwrap
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,8 @@ from uq.drawing.figure import (
 )
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
+from uq.indices.regional import ks_distances
+from uq.indices.targets import RefusedError
 from uq.rows.elements import Element, Floats, independent_rows, named_elements, replicates_of
 
 _MOST_INPUTS = 3
@@ -185,7 +188,7 @@ def pairs(ds: xr.Dataset) -> Figure:
     if not regimes or len(inputs) < 2:
         raise InputError("pairs by regime need a model with regimes and two uncertain inputs")
     codes = rows["regime"].values
-    leading = sorted(inputs, key=lambda name: -_told_apart(inputs[name], codes))[:_MOST_INPUTS]
+    leading = _deciding(inputs, codes)[:_MOST_INPUTS]
     size = len(leading) - 1
     alone = size == 1
     height = 0.5 + (2.1 if alone else 1.45 * size) + 0.15 * len(regimes)
@@ -223,16 +226,11 @@ def pairs(ds: xr.Dataset) -> Figure:
     return figure
 
 
-def _told_apart(x: Floats, codes: NDArray[Any]) -> float:
-    """Return the largest distance between an input's values in one regime and in the others."""
-    ascending = np.sort(x)
-    far = 0.0
+def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
+    """Return the inputs, first the one whose values differ most between a regime and the others."""
+    columns = np.column_stack(list(inputs.values()))
+    far = np.zeros(len(inputs))
     for code in np.unique(codes[codes >= 0]):
-        inside = codes == code
-        if min(inside.sum(), (~inside).sum()) > 0:
-            one, other = (
-                np.searchsorted(np.sort(x[mask]), ascending, side="right") / mask.sum()
-                for mask in (inside, ~inside)
-            )
-            far = max(far, float(np.abs(one - other).max()))
-    return far
+        with suppress(RefusedError):  # of a few rows any input seems far from the others
+            far = np.maximum(far, ks_distances(columns, (codes == code).astype(float)))
+    return [list(inputs)[i] for i in np.argsort(-far, kind="stable")]
