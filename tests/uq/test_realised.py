@@ -51,4 +51,7 @@ def test_a_figure_shows_each_input_as_stated_and_as_the_rows_have_it():
         found, stated = (patch.get_data().values for patch in axes.patches)
         np.testing.assert_allclose(found, stated, atol=2e-3)
         assert stated.sum() == pytest.approx(1, abs=1e-3)
+    bell = figure.axes[0].patches[1].get_data()
+    law = np.diff(stats.norm(0.5, 0.05).cdf(bell.edges))
+    np.testing.assert_allclose(bell.values, law, rtol=1e-6)
     assert inputs(computed(study_of(tables({"x1": BELL}, "morris", 4)))) is None
