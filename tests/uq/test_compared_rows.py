@@ -5,6 +5,7 @@ import pytest
 from computed import asking, kinds, linear, with_output, with_status
 
 from uq.analysis.comparison import comparison
+from uq.analysis.pairing import Kinship, kinship
 from uq.contract import Status
 from uq.intervals import wilson_interval
 
@@ -82,3 +83,9 @@ def test_elements_of_one_result_alone_are_named():
         assert note.startswith(f"only {which} has work[side=right], life[side=right,depth=0.5]")
         assert "work[side=left]" in found["outputs"]
         assert "work[side=right]" not in found["outputs"]
+
+
+def test_replicates_are_pairs_only_where_both_results_have_as_many():
+    four, eight = (linear("sobol", samples=16, replicates=count) for count in (4, 8))
+    assert kinship(four, linear("halton", samples=32, replicates=4)) is Kinship.REPLICATES
+    assert kinship(four, eight) is Kinship.UNKNOWN

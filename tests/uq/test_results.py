@@ -8,7 +8,7 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
-from computed import linear
+from computed import computed, linear, study_of
 
 from uq import store
 from uq.contract import Status
@@ -221,3 +221,13 @@ def test_a_new_text_of_a_study_does_not_say_that_rows_were_computed_here():
     told = results.relabel(ds, study).attrs
     assert told["study"].endswith("# a comment\n")
     assert (told["cpu"], told["numpy"]) == ("another processor", "0.9")
+
+
+@pytest.mark.parametrize("described", [{}, {"description": "What lasts"}])
+def test_a_result_is_titled_by_what_its_study_says_it_is(described):
+    tables = {
+        "study": {"name": "plain", "model": "linear"} | described,
+        "design": {"method": "monte-carlo", "samples": 8},
+        "uncertain": {"x1": {"distribution": "uniform", "lower": 0.0, "upper": 1.0}},
+    }
+    assert computed(study_of(tables)).attrs["title"] == described.get("description", "plain")

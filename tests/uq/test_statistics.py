@@ -302,3 +302,9 @@ def test_describing_does_not_change_the_result():
     before = ds.copy(deep=True)
     summarise(ds)
     assert ds.identical(before)
+
+
+def test_mixed_rows_of_either_kind_are_not_independent():
+    ds = linear("saltelli", samples=64, second_order=True)
+    assert summarise(ds)["samples"] == 64 * (2 + 2 * 4)
+    assert summarise(ds)["rows_used"] == 128
