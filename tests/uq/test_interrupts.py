@@ -1,6 +1,8 @@
 """Ctrl-C ends a run at once, whatever it is doing, and leaves nothing behind but finished rows."""
 
+import asyncio
 import contextlib
+import gc
 import os
 import pty
 import shutil
@@ -12,6 +14,8 @@ from pathlib import Path
 
 import psutil
 import pytest
+
+from uq.running import cluster
 
 PATIENCE = 30.0
 """How long a busy machine may take for what should take a moment [s]."""
@@ -200,3 +204,20 @@ def test_a_terminal_shows_progress_and_gets_its_cursor_back(started):
     assert shown.rindex(visible) > shown.rindex(hidden)
     assert b"interrupted after " in shown.rpartition(visible)[2]
     assert b" of 10000 rows, " in shown and b" left, 0 failed" in shown
+
+
+def test_what_a_cluster_leaves_unawaited_says_nothing(caplog):
+    loop = asyncio.new_event_loop()
+
+    def leave():
+        future = loop.create_future()
+        future.set_exception(TimeoutError("Timeout"))
+        future.itself = [future]  # collected late
+
+    with cluster._quiet():
+        leave()
+    assert caplog.records == []
+    leave()
+    gc.collect()
+    assert [record.name for record in caplog.records] == ["asyncio"]
+    loop.close()

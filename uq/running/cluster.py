@@ -4,6 +4,7 @@ The local workers are plain child processes that import ``uq.running.worker``, s
 script needs no ``__main__`` guard; dask's scheduler runs in a thread of this process.
 """
 
+import gc
 import logging
 import shutil
 import subprocess
@@ -291,7 +292,14 @@ def _environment() -> dict[str, str]:
 @contextmanager
 def _quiet() -> Iterator[None]:
     """Keep dask's log off the terminal: workers that come and go are no news to the user."""
-    with ExitStack() as stack:
-        for logger in ("distributed", "distributed.client", "distributed.gc"):
-            stack.enter_context(silence_logging_cmgr(logging.CRITICAL, logger))
-        yield
+    log = logging.getLogger("asyncio")
+    level = log.level
+    log.setLevel(logging.CRITICAL)
+    try:
+        with ExitStack() as stack:
+            for logger in ("distributed", "distributed.client", "distributed.gc"):
+                stack.enter_context(silence_logging_cmgr(logging.CRITICAL, logger))
+            yield
+    finally:
+        gc.collect()  # what nobody waited for, after an interruption, says so when it is collected
+        log.setLevel(level)
