@@ -77,11 +77,11 @@ def wait_until(condition):
 
 
 def workers_of(process):
-    return [
-        child
-        for child in psutil.Process(process.pid).children()
-        if "uq.running.worker" in " ".join(child.cmdline())
-    ]
+    found = []
+    for child in psutil.Process(process.pid).children():
+        with contextlib.suppress(psutil.NoSuchProcess):  # it may end meanwhile
+            found += [child] * ("uq.running.worker" in " ".join(child.cmdline()))
+    return found
 
 
 def to_process(process):
