@@ -5,7 +5,7 @@ from typing import Any
 
 from uq.analysis.widths import expected_widths
 from uq.cli.catalogue import finite
-from uq.cli.printing import console, grid, heading, paragraph, print_json
+from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.cli.progress import say_compiling
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
@@ -63,7 +63,10 @@ def _show_widths(widths: dict[str, Any]) -> None:
         (label, _short(width))
         for name, entry in widths.items()
         for label, width in (
-            *((f"P({name} > {t})", width) for t, width in entry["thresholds"].items()),
+            *(
+                (f"P({name} > {number(float(t))})", width)
+                for t, width in entry["thresholds"].items()
+            ),
             *((f"{kind} of {name}, the widest", entry[kind]) for kind in _INDICES if kind in entry),
         )
     ]
