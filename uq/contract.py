@@ -84,6 +84,10 @@ class Output:
         For lifetimes only.
     categories : tuple of str
         For categories only.
+    accuracy : str
+        Name of the setting that asks for a relative accuracy of this output, if one does. The
+        output ``<name>_error``, with the same dims, then states the absolute error of each value,
+        within which nine in ten lie.
     """
 
     unit: str
@@ -93,6 +97,7 @@ class Output:
     may_be_undefined: bool = False
     may_be_censored: bool = True
     categories: tuple[str, ...] = ()
+    accuracy: str = ""
 
     @property
     def has_censored_flag(self) -> bool:
