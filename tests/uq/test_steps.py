@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from computed import computed, study_of
 
+from uq.analysis.realised import compare, stated_and_realised
 from uq.errors import InputError
+from uq.indices.independent_inputs import independent_inputs
 from uq.indices.sensitivities import sensitivities
 
 A = {"distribution": "normal", "mean": 10.0, "sd": 1.0}
@@ -62,3 +64,20 @@ def test_rows_that_are_not_those_of_the_design_are_refused(method):
     a[5] += 1e-3
     with pytest.raises(InputError, match="the rows are not those of its design"):
         sensitivities(ds.assign(a=("sample", a, ds["a"].attrs)))
+
+
+@pytest.mark.parametrize(
+    "factor",
+    [
+        {"distribution": "discrete-choice", "values": [0.1, 0.7, 1.3]},
+        {"distribution": "integer-range", "lower": 1, "upper": 3},
+        {"distribution": "empirical", "values": [0.1, 0.7, 1.3]},
+    ],
+    ids=["choice", "integer", "empirical"],
+)
+def test_a_factor_of_listed_values_has_these_and_no_others(factor):
+    ds = result("monte-carlo", 300, factor=factor)
+    expected = factor.get("values", [1.0, 2.0, 3.0])
+    assert np.unique(independent_inputs(ds)["b"]).tolist() == expected
+    law, values = stated_and_realised(ds)["b"]
+    assert compare(law, values).distance < 0.1
