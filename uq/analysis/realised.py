@@ -63,9 +63,7 @@ def drawn_inputs(study: Study) -> dict[str, Floats]:
     x = row_block(study, 0, min(rows(study), MAX_ROWS)).x
     column = {name: x[:, i] for i, name in enumerate(study.model.parameter_names)}
     return {
-        name: column[name]
-        if law.times is None
-        else factor_of(law, column[name], column[law.times])
+        name: column[name] if law.times is None else factor_of(law, column[name], column[law.times])
         for name, law in study.uncertain.items()
     }
 
