@@ -84,6 +84,9 @@ class Output:
         For lifetimes only.
     categories : tuple of str
         For categories only.
+    never_known_at_once : bool
+        For lifetimes only: whether a life that never ends is known as such before any row is
+        censored, so that every censored row is one that ends.
     """
 
     unit: str
@@ -93,6 +96,7 @@ class Output:
     may_be_undefined: bool = False
     may_be_censored: bool = True
     categories: tuple[str, ...] = ()
+    never_known_at_once: bool = True
 
     @property
     def has_censored_flag(self) -> bool:

@@ -52,6 +52,8 @@ def output_variables(
             "long_name": output.meaning,
             "may_be_undefined": int(output.may_be_undefined),
         }
+        if output.kind == "lifetime":
+            attrs["never_known_at_once"] = int(output.never_known_at_once)
         if output.kind == "category":
             attrs |= _flags(("none", *output.categories), np.int8, first=-1)
         variables[name] = (dims, columns[name], attrs)
