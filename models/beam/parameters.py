@@ -269,6 +269,7 @@ OUTPUTS: Mapping[str, Output] = {
         "time until the site's gap has grown by the depth",
         "lifetime",
         ("site", "depth"),
+        accuracy="accuracy",
         never_known_at_once=False,  # wear may stop after the horizon
     ),
     "time_to_depth_error": Output(
@@ -282,6 +283,7 @@ OUTPUTS: Mapping[str, Output] = {
         "time until either site's gap has grown by the depth",
         "lifetime",
         ("depth",),
+        accuracy="accuracy",
         never_known_at_once=False,
     ),
     "first_time_to_depth_error": Output(

@@ -84,7 +84,7 @@ def build(
             value = study.fixed.get(name, model.nominal[name])
             inputs[name] = parameter_variable(model, name, value)
     ds = xr.Dataset(
-        inputs | output_variables(model, columns, status, failures),
+        inputs | output_variables(model, study.settings, columns, status, failures),
         places(study, rows, numbers) | coordinates(model, study.settings),
         study_attributes(study),
     )
@@ -118,7 +118,7 @@ def build_rows(
     """
     inputs = {name: parameter_variable(model, name, value) for name, value in values.items()}
     attrs = {"title": model.title} | model_attributes(model) | provenance()
-    outputs = output_variables(model, columns, status, failures)
+    outputs = output_variables(model, settings, columns, status, failures)
     return xr.Dataset(inputs | outputs, coordinates(model, settings), attrs)
 
 
