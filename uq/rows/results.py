@@ -84,7 +84,7 @@ def build(
             value = study.fixed.get(name, model.nominal[name])
             inputs[name] = parameter_variable(model, name, value)
     ds = xr.Dataset(
-        inputs | output_variables(model, columns, status, failures),
+        inputs | output_variables(model, study.settings, columns, status, failures),
         places(study, rows, numbers) | coordinates(model, study.settings),
         study_attributes(study),
     )
@@ -118,7 +118,7 @@ def build_rows(
     """
     inputs = {name: parameter_variable(model, name, value) for name, value in values.items()}
     attrs = {"title": model.title} | model_attributes(model) | provenance()
-    outputs = output_variables(model, columns, status, failures)
+    outputs = output_variables(model, settings, columns, status, failures)
     return xr.Dataset(inputs | outputs, coordinates(model, settings), attrs)
 
 
@@ -180,6 +180,10 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     except InputError as error:
         raise InputError(f"{error}; {remedy}") from None
     ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
+    for variable in ds.variables.values():
+        if variable.attrs.get("kind") == "lifetime":
+            # What was assumed of every life when files did not say.
+            variable.attrs.setdefault("never_known_at_once", 0)
     return ds
 
 
