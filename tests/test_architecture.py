@@ -18,6 +18,7 @@ GROUND = {
     "interrupts",
     "intervals",
     "literals",
+    "places",
     "provenance",
     "tails",
     "threads",
