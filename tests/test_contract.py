@@ -116,6 +116,10 @@ def test_outputs_are_documented(model, settings):
         for dim in output.dims:
             values = list(coordinates[dim])
             assert values and len(set(values)) == len(values), dim
+        if output.accuracy:
+            assert output.accuracy in model.setting_names, name
+            assert model.outputs[f"{name}_error"].dims == output.dims, name
+            assert model.outputs[f"{name}_error"].unit == output.unit, name
 
 
 def test_the_nominal_row_is_sound(model, settings):

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from uq.analysis.accuracy import error_name, stated_error
 from uq.analysis.statistics import summarise
 from uq.designs.table import DESIGNS
 from uq.errors import InputError
@@ -112,19 +113,16 @@ def _warning(element: Element, sampling: float, own: float) -> str:
 def _own(ds: xr.Dataset) -> Iterator[str]:
     """Yield the outputs that are not themselves the error of another."""
     names = output_names(ds)
-    errors = {f"{name}_error" for name in names}
+    errors = {error_name(name) for name in names}
     return (name for name in names if name not in errors)
 
 
 def _own_error(ds: xr.Dataset, element: Element) -> float:
-    name = f"{element.output}_error"
-    if name not in output_names(ds):
+    error = stated_error(ds, element)
+    if error is None:
         return np.nan
-    for error in elements_of(ds, [name]):
-        if error.place == element.place:
-            sizes = np.abs(error.values[np.isfinite(error.values)])
-            return float(sizes.mean()) if len(sizes) else np.nan
-    return np.nan
+    sizes = np.abs(error.values[np.isfinite(error.values)])
+    return float(sizes.mean()) if len(sizes) else np.nan
 
 
 def _sizes(ds: xr.Dataset) -> list[int]:

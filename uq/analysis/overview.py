@@ -23,7 +23,8 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     pandas.DataFrame
         Index: name of the element. Columns: units, mean, sd and each quantile, with ``_low`` and
         ``_high`` for the 95 % interval; tolerance bounds, where the study asks for them, with the
-        rows they need; counts of rows never, censored, undefined and failed; ``B1``, ``B10`` and
+        rows they need; counts of rows never, censored, undefined and failed, and, where an accuracy
+        was asked for, of those whose error is larger (``accuracy_missed``); ``B1``, ``B10`` and
         ``B50`` of lifetimes; and for each threshold ``P(>t)`` and ``P(<t)`` with their intervals,
         where it is one of the output's.
         Infinity stands for never, NaN for what could not be given.
@@ -49,6 +50,8 @@ def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
     if bounds := entry["tolerance"]:
         line |= _cells("tolerance", bounds)
     line |= {count: entry[count] for count in COUNTS}
+    if "accuracy" in entry:
+        line["accuracy_missed"] = entry["accuracy"]["missed"]
     for name, life in entry["b_lives"].items():
         line |= _cells(name, life)
     for threshold, shares in entry["thresholds"].items():

@@ -7,6 +7,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq import intervals
+from uq.analysis.accuracy import accuracy_missed
 from uq.analysis.b_lives import b_lives, ended_by, entry, quantile_entry
 from uq.analysis.life_fit import fits_of
 from uq.analysis.regime_split import between_share
@@ -67,6 +68,7 @@ def summarise(
         independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
         element -> mean, sd, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
         ``between_regimes``: the share of its variance, or of its rate's, that lies between them,
+        ``accuracy``: how many rows state an error beyond the accuracy asked for, if one was,
         counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
         not be given. A number that does not exist or is not finite is None; beside it ``never``,
         ``low_censored`` and the like say why.
@@ -87,6 +89,7 @@ def summarise(
         "outputs": {
             element.name: _describe(element, replicate, analysis)
             | _between(element, codes, replicate)
+            | accuracy_missed(rows, element)
             | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
             for element in elements_of(rows, outputs)
         },

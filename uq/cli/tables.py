@@ -9,6 +9,7 @@ from uq.analysis.b_lives import B_LIVES
 from uq.cli.printing import console, grid, heading, paragraph
 from uq.wording import (
     Entry,
+    accuracy_not_reached,
     duration,
     index,
     index_interval,
@@ -85,6 +86,8 @@ def _lines(output: Entry) -> Iterator[Line]:
     for count in ("never", "censored", "undefined", "failed"):
         if output[count]:
             yield count, str(output[count]), "", "rows"
+    if (accuracy := output.get("accuracy")) and accuracy["missed"]:
+        yield "", accuracy_not_reached(accuracy), "", ""
 
 
 _ASSUMES = "censoring says nothing of the life left"

@@ -117,7 +117,16 @@ def result_tables(found: list[Outcome], tolerance: tuple[float, float] | None) -
         return
     probabilities = list(found[0].entry["quantiles"])
     quantiles = (f"{100 * float(p):g} % quantile" for p in probabilities)
-    header = ("output", "unit", "mean", "sd", *quantiles, "variance between regimes", *_COUNTS)
+    header = (
+        "output",
+        "unit",
+        "mean",
+        "sd",
+        *quantiles,
+        "variance between regimes",
+        *_COUNTS,
+        _MISSED,
+    )
     rows = [tuple(_statistics(one)) for one in found]
     yield without_empty_columns(Table("Statistics, with 95 % intervals", header, rows))
     bounded = [one for one in found if one.entry["tolerance"]]
@@ -140,6 +149,7 @@ def result_tables(found: list[Outcome], tolerance: tuple[float, float] | None) -
 
 
 _ENDS = ("lower", "upper")
+_MISSED = "rows short of the accuracy"
 
 
 def _statistics(one: Outcome) -> Iterator[Cell]:
@@ -152,6 +162,13 @@ def _statistics(one: Outcome) -> Iterator[Cell]:
     split = entry.get("between_regimes")
     yield estimate(split)._replace(text=variance_between(split)) if split else Cell("")
     yield from (count(entry[name]) for name in _COUNTS)
+    yield _missed(entry.get("accuracy"))
+
+
+def _missed(accuracy: Mapping[str, Any] | None) -> Cell:
+    if not accuracy or not accuracy["missed"]:
+        return Cell("")
+    return count(accuracy["missed"])._replace(more=percent(accuracy["share"]))
 
 
 def _thresholds(one: Outcome) -> Iterator[tuple[Cell, ...]]:

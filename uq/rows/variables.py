@@ -39,7 +39,11 @@ def parameter_variable(
 
 
 def output_variables(
-    model: Model, columns: Columns, status: NDArray[np.int8], failures: Mapping[str, str]
+    model: Model,
+    settings: Any,
+    columns: Columns,
+    status: NDArray[np.int8],
+    failures: Mapping[str, str],
 ) -> dict[str, Any]:
     """Return the variables of the outputs, flags of censored lives and the status among them."""
     variables: dict[str, Any] = {}
@@ -52,6 +56,10 @@ def output_variables(
             "long_name": output.meaning,
             "may_be_undefined": int(output.may_be_undefined),
         }
+        if output.accuracy:
+            attrs["accuracy"] = float(getattr(settings, output.accuracy))
+        if output.kind == "lifetime":
+            attrs["never_known_at_once"] = int(output.never_known_at_once)
         if output.kind == "category":
             attrs |= _flags(("none", *output.categories), np.int8, first=-1)
         variables[name] = (dims, columns[name], attrs)
