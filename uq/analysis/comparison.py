@@ -291,6 +291,8 @@ def _notes(
     yield pair.kinship.value
     for which, one in zip("AB", found, strict=True):
         yield from (f"{which}: {note}" for note in one["notes"])
+    if any(output["failed"] for one in found for output in one["outputs"].values()):
+        yield "differences are of the rows that did not fail"
     of_a, of_b = elements
     for which, mine, other in (("A", of_a, of_b), ("B", of_b, of_a)):
         if alone := [name for name in mine if name not in other]:

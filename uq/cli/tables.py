@@ -11,6 +11,7 @@ from uq.wording import (
     Entry,
     accuracy_not_reached,
     duration,
+    failed_interval,
     index,
     index_interval,
     interval,
@@ -33,10 +34,16 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
         shares = summary["regime"].items()
         grid(
             [
-                (label, number(one["share"]), interval(one), str(one["count"]))
+                (
+                    label,
+                    number(one["share"]),
+                    interval(one),
+                    str(one["count"]),
+                    failed_interval(one),
+                )
                 for label, one in shares
             ],
-            header=("", "share", "95 % interval", "rows"),
+            header=("", "share", "95 % interval", "rows", "with failed rows"),
         )
     for name, output in summary["outputs"].items():
         meaning = ds[name.partition("[")[0]].attrs["long_name"]
@@ -62,10 +69,17 @@ def _lines(output: Entry) -> Iterator[Line]:
 
     yield line("mean", {"value": output["mean"], **output["mean_interval"]})
     yield line("sd", output, "sd")
+
+    def failed(entry: Entry) -> Iterator[Line]:
+        if worst := failed_interval(entry):
+            yield "  with failed rows", "", worst, ""
+
     for probability, entry in output["quantiles"].items():
         yield line(f"quantile {probability}", entry)
+        yield from failed(entry)
     for name, entry in output["b_lives"].items():
         yield line(name, entry)
+        yield from failed(entry)
     if any("assumes" in entry for entry in output["b_lives"].values()):
         yield "", "B-lives suppose", _ASSUMES, ""
     if bounds := output["tolerance"]:
@@ -74,12 +88,14 @@ def _lines(output: Entry) -> Iterator[Line]:
         if bounds["lower"] is None and bounds["upper"] is None:
             yield "", f"needs {bounds['rows_needed']} rows", "", ""
     for threshold, entry in output["thresholds"].items():
-        yield line(f"P(> {number(float(threshold))})", entry["above"], time=False)
-        yield line(f"P(< {number(float(threshold))})", entry["below"], time=False)
+        for sign, side in ((">", "above"), ("<", "below")):
+            yield line(f"P({sign} {number(float(threshold))})", entry[side], time=False)
+            yield from failed(entry[side])
         if reason := entry.get("reason"):
             yield "", reason, "", ""
             guess = entry["kaplan_meier"]
             yield line(f"P(< {number(float(threshold))}), if", guess["below"], time=False)
+            yield from failed(guess["below"])
             yield "", _ASSUMES, "", ""
     if split := output.get("between_regimes"):
         yield "variance between regimes", variance_between(split), interval(split), ""
