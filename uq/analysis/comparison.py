@@ -88,8 +88,9 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> dict[str, Any]:
         ``replicates``, ``strangers`` or ``unknown``. ``regime``: label -> estimate; ``outputs``:
         element -> ``mean``, ``sd``, ``quantiles``, ``b_lives``, ``thresholds``, where an estimate
         is ``a`` and ``b``, as `uq.analysis.statistics.summarise` has them, and ``difference``:
-        ``value``, ``low``, ``high`` of b less a; that of sd also has ``ratio``. ``notes``:
-        sentences.
+        ``value``, ``low``, ``high`` of b less a, and ``identical`` where the rows are pairs and
+        both of each say the same: then there is no interval; that of sd also has ``ratio``.
+        ``notes``: sentences.
     """
     _refuse(first, second)
     results = (first, second)
@@ -237,8 +238,12 @@ def _sds(pair: Pair, samples: list[Sample], entries: list[Entry]) -> Entry:
         }
         return {**sides, "difference": nothing, "ratio": nothing}
     known = [pair.sd(i, sample) for i, sample in enumerate(samples)]
+    sides = dict(zip("ab", map(_plain, known), strict=True))
+    if pair.identical(samples):
+        same = {"low": None, "high": None, "identical": True}
+        return {**sides, "difference": {"value": 0.0} | same, "ratio": {"value": 1.0} | same}
     return {
-        **dict(zip("ab", map(_plain, known), strict=True)),
+        **sides,
         "difference": _plain(pair.difference(SD, samples, known)),
         "ratio": _plain(pair.ratio(samples, known)),
     }
@@ -269,6 +274,9 @@ def _estimate(
         Estimate(*(np.nan if entry[end] is None else entry[end] for end in _ENDS))
         for entry in entries
     ]
+    if pair.identical(samples) and not np.isnan(known[0].value):
+        difference = {"value": 0.0, "low": None, "high": None, "identical": True}
+        return {**dict(zip("ab", entries, strict=True)), "difference": difference}
     if any(np.isnan(one.value) for one in known):
         apart = NOTHING
     elif any("assumes" in entry for entry in entries):  # not a plain quantile of the rows

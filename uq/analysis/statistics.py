@@ -37,6 +37,11 @@ NO_INTERVALS = (
     " nothing shows how far its estimates scatter; set replicates = 8"
 )
 
+OF_IMPORTED = (
+    "no intervals: how imported rows came about is not known, and so not how far estimates from"
+    " them scatter"
+)
+
 NO_STATISTICS = (
     "no statistics: the rows of a '{design}' design do not follow the laws of the inputs; see"
     " 'uq sensitivity'"
@@ -258,5 +263,6 @@ def _notes(ds: xr.Dataset) -> list[str]:
     if design.until is not None:
         notes.append(stopping.sentence(design, ds))
     if ds.attrs["design"] != "monte-carlo" and ds.attrs["replicates"] == 1:
-        notes.append(NO_INTERVALS.format(design=ds.attrs["design"]))
+        told = OF_IMPORTED if ds.attrs["design"] == "imported" else NO_INTERVALS
+        notes.append(told.format(design=ds.attrs["design"]))
     return notes

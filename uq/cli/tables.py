@@ -163,3 +163,7 @@ def _ranked(table: Mapping[str, Any], dummy: Mapping[str, float]) -> Iterator[li
     if dummy:
         cells = ((index(dummy, kind, kind), "") for kind in table)
         yield ["(an input without effect)", *(text for pair in cells for text in pair)]
+    if many := {kind: dummy.get(f"{kind}_any") for kind in table if f"{kind}_any" in dummy}:
+        cells = ((index(many, kind, kind) if kind in many else "", "") for kind in table)
+        label = f"(largest of {len(last)} such inputs)"
+        yield [label, *(text for pair in cells for text in pair)]
