@@ -83,7 +83,7 @@ def test_a_report_says_all_there_is_to_say():
         "rows never ending",
         "rbd-fast",
         "pawn",
-        "lifetimes are censored",
+        "share the highest rank",
         "uq run kinds.toml",
         "uq verify OUT.nc",
         ds.attrs["study_sha256"],

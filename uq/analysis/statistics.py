@@ -13,7 +13,7 @@ from uq.analysis.life_fit import fits_of
 from uq.analysis.regime_split import between_share
 from uq.contract import Status
 from uq.designs.table import DESIGNS
-from uq.indices.targets import targets
+from uq.indices.targets import number_of
 from uq.intervals import Replicates
 from uq.rows import stopping
 from uq.rows.elements import (
@@ -67,7 +67,8 @@ def summarise(
         ``samples`` and ``status`` count all rows. Everything else is about the ``rows_used``, the
         independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
         element -> mean, sd, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
-        ``between_regimes``: the share of its variance, or of its rate's, that lies between them,
+        ``between_regimes``: the share of the variance of the number named ``of``, itself or the
+        logarithm or rank of a lifetime, that lies between them,
         ``accuracy``: how many rows state an error beyond the accuracy asked for, if one was,
         counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
         not be given. A number that does not exist or is not finite is None; beside it ``never``,
@@ -175,12 +176,14 @@ def _fitted(element: Element, fits: bool) -> bool:
 def _between(
     element: Element, codes: NDArray[np.integer] | None, replicate: Replicates
 ) -> dict[str, Any]:
-    target = next(targets([element], {}))
+    target = number_of(element)
     if codes is None or target.refused:
         return {}
     value, interval = between_share(target.values, codes, replicate)
+    if not np.isfinite(value):
+        return {}
     ends = {"low": _plain(interval.low), "high": _plain(interval.high)}
-    return {"between_regimes": {"value": _plain(value)} | ends} if np.isfinite(value) else {}
+    return {"between_regimes": {"value": _plain(value)} | ends | {"of": target.name}}
 
 
 def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:

@@ -11,6 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import stats
 
+from uq.indices.targets import targets
 from uq.rows.elements import (
     Element,
     Floats,
@@ -117,13 +118,10 @@ def _indices(
     element: Element, groups: NDArray[np.intp], labels: list[str], n: int, factor: float | None
 ) -> dict[str, float | None]:
     """Return the widest interval of first-order and of total indices, as of independent groups."""
-    values = element.values
-    if element.kind == "lifetime":  # whose indices are those of its rate
-        with np.errstate(divide="ignore"):
-            values = 1.0 / values
-    y = values[groups]
+    target = next(targets([element], {}))
+    y = target.values[groups]
     y = y[np.isfinite(y).all(axis=1)]
-    if factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
+    if target.refused or factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
         return {"S1": None, "ST": None}
     block = dict(zip(labels, ((y - y.mean()) / y.std()).T, strict=True))
     mixed = [value for label, value in block.items() if label.startswith("AB_")]

@@ -7,6 +7,7 @@ import xarray as xr
 
 from uq.analysis.b_lives import B_LIVES
 from uq.cli.printing import console, grid, heading, paragraph
+from uq.indices.targets import split_name
 from uq.wording import (
     Entry,
     accuracy_not_reached,
@@ -82,7 +83,9 @@ def _lines(output: Entry) -> Iterator[Line]:
             yield line(f"P(< {number(float(threshold))}), if", guess["below"], time=False)
             yield "", _ASSUMES, "", ""
     if split := output.get("between_regimes"):
-        yield "variance between regimes", variance_between(split), interval(split), ""
+        form, *_ = split_name(split["of"])
+        of = f"of its {form}" if form else ""
+        yield "variance between regimes", variance_between(split), interval(split), of
     for count in ("never", "censored", "undefined", "failed"):
         if output[count]:
             yield count, str(output[count]), "", "rows"
