@@ -19,6 +19,7 @@ GROUND = {
     "intervals",
     "literals",
     "provenance",
+    "tails",
     "threads",
     "time_units",
     "two_samples",

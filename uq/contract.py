@@ -88,6 +88,9 @@ class Output:
         Name of the setting that asks for a relative accuracy of this output, if one does. The
         output ``<name>_error``, with the same dims, then states the absolute error of each value,
         within which nine in ten lie.
+    never_known_at_once : bool
+        For lifetimes only: whether a life that never ends is known as such before any row is
+        censored, so that every censored row is one that ends.
     """
 
     unit: str
@@ -98,6 +101,7 @@ class Output:
     may_be_censored: bool = True
     categories: tuple[str, ...] = ()
     accuracy: str = ""
+    never_known_at_once: bool = True
 
     @property
     def has_censored_flag(self) -> bool:

@@ -31,6 +31,9 @@ PARTS = {
     **{f"plain-{name}": Part(partial(plain.plain, name)) for name in plain.DESIGNS},
     "lives": Part(partial(lives.lives, "monte-carlo")),
     "lives-replicates": Part(partial(lives.lives, "latin-hypercube")),
+    "lives-mixed": Part(partial(lives.mixed, "monte-carlo", 500)),
+    "lives-mixed-few": Part(partial(lives.mixed, "monte-carlo", 100)),
+    "lives-mixed-replicates": Part(partial(lives.mixed, "latin-hypercube", 128)),
     **{
         f"fit-{law}{'-censored' * censored}": Part(partial(lives.fits, law, censored))
         for law in lives.FITTED

@@ -270,6 +270,7 @@ OUTPUTS: Mapping[str, Output] = {
         "lifetime",
         ("site", "depth"),
         accuracy="accuracy",
+        never_known_at_once=False,  # wear may stop after the horizon
     ),
     "time_to_depth_error": Output(
         "s",
@@ -283,6 +284,7 @@ OUTPUTS: Mapping[str, Output] = {
         "lifetime",
         ("depth",),
         accuracy="accuracy",
+        never_known_at_once=False,
     ),
     "first_time_to_depth_error": Output(
         "s",

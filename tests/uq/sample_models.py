@@ -274,3 +274,17 @@ def _series(x, seed, settings):
 
 SERIES = _simple("series", _series, settings=Terms)
 """y = exp(x1) + 0.3 x2, or less than that with few terms."""
+
+
+class Summands(NamedTuple):
+    a: Annotated[float, Parameter("a", "1", "first term", (-1e3, 1e3), "made up")] = 10.0
+    b: Annotated[float, Parameter("b", "1", "second term", (-1e3, 1e3), "made up")] = 10.0
+    c: Annotated[float, Parameter("c", "1", "third term", (-1e3, 1e3), "made up")] = 0.0
+
+
+def _added(x, seed, settings):
+    return {"y": x.sum(axis=1)}, ok(len(x))
+
+
+ADDED = _simple("added", _added, parameters=Summands)
+"""y = a + b + c."""

@@ -22,7 +22,6 @@ from uq.rows.sampling import group_size, rows
 from uq.running import runner
 from uq.running.job import Progress
 from uq.store import folder_of
-from uq.study.code import is_other_code
 from uq.study.definition import Study, load_study
 from uq.wording import law
 
@@ -105,13 +104,12 @@ def run(
         study = study.with_samples(samples)
     target = runner.output_path(study, output)
     if not fresh and (ds := runner.finished(study, target)) is not None:
-        by = ", by other code of the model" * is_other_code(ds.attrs, study.model_reference)
-        note = f"{target} is complete already{by}; nothing was computed (--fresh computes it again)"
+        note = f"{target} is complete already; nothing was computed (--fresh computes it again)"
     else:
         ds, note = carried_out(
             target, quiet, partial(runner.run, study, target, fresh=fresh, **options)
         )
-    return end(study, ds, target, quiet, note)
+    return end(study, ds, target, quiet, note, options["mixed"])
 
 
 def carried_out(
@@ -141,9 +139,17 @@ def carried_out(
     return ds, f"{target}: {computed} rows in {time.monotonic() - began:.1f} s"
 
 
-def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str) -> int:
-    """Show the summary of a result; return the exit code."""
+def end(
+    study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixed: bool = False
+) -> int:
+    """Show the summary of a result; return the exit code.
+
+    Rows that other code computed are named, also where all else is to be quiet, unless they are
+    wanted.
+    """
     say_when_interrupted(f"interrupted; the result is complete in {target}")
+    if not mixed and (line := runner.made_elsewhere(study, target, ds)):
+        print(plain_line(line), file=sys.stderr)
     if not quiet:
         from uq.analysis.statistics import summarise
 

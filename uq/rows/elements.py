@@ -43,6 +43,8 @@ class Element:
         Where the value is only a lower bound.
     failed : ndarray of bool, shape (n,)
         Where the value is lacking because the row failed.
+    never_known_at_once : bool
+        As `uq.contract.Output` has it: whether every censored row of a lifetime is one that ends.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Element:
     values: Floats
     censored: Mask
     failed: Mask
+    never_known_at_once: bool = True
 
     @property
     def undefined(self) -> Mask:
@@ -206,6 +209,7 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
                 np.where(absent, np.nan, values),
                 censored,
                 absent & unsound,
+                bool(variable.attrs.get("never_known_at_once", True)),
             )
 
 

@@ -180,6 +180,10 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     except InputError as error:
         raise InputError(f"{error}; {remedy}") from None
     ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
+    for variable in ds.variables.values():
+        if variable.attrs.get("kind") == "lifetime":
+            # What was assumed of every life when files did not say.
+            variable.attrs.setdefault("never_known_at_once", 0)
     return ds
 
 

@@ -58,6 +58,8 @@ def output_variables(
         }
         if output.accuracy:
             attrs["accuracy"] = float(getattr(settings, output.accuracy))
+        if output.kind == "lifetime":
+            attrs["never_known_at_once"] = int(output.never_known_at_once)
         if output.kind == "category":
             attrs |= _flags(("none", *output.categories), np.int8, first=-1)
         variables[name] = (dims, columns[name], attrs)
