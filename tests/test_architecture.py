@@ -15,6 +15,7 @@ GROUND = {
     "compilation",
     "environment",
     "errors",
+    "exact_shares",
     "interrupts",
     "intervals",
     "literals",

@@ -54,6 +54,7 @@ PARTS = {
     "twin": Part(further.twin),
     "stopped": Part(further.stopped),
     "subset": Part(further.subset),
+    "subset-plateau": Part(further.plateau, 1000),
     "subset-others": Part(further.subset_of_openturns, 200),
     "importance": Part(further.importance),
 }

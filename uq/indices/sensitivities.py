@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS
 from uq.errors import InputError, nearest
 from uq.indices.fast import curves, fast_indices
+from uq.indices.few_rows import few_hits
 from uq.indices.given_data import given_data_indices
 from uq.indices.groups import whole_groups
 from uq.indices.independent_inputs import are_dependent, independent_inputs, notes_on_inputs
@@ -214,12 +215,13 @@ def _estimate(
         try:
             if target.refused:
                 raise RefusedError(target.refused)
+            few = few_hits(ds, target)
             if estimate is None:
                 quantiles = _quantiles(target, asked)
                 indices = given_data_indices(method, inputs, target.values, quantiles)
             else:
                 indices = estimate(design, target.values)
-            indices = indices._replace(notes=indices.notes + notes)
+            indices = indices._replace(notes=few + indices.notes + notes)
         except RefusedError as refusal:
             indices = str(refusal)
         alone = np.arange(target.values.size)[:, None]

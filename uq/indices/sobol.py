@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from SALib.analyze.sobol import first_order, second_order, total_order
 
 from uq.designs.table import NOISE
+from uq.indices.few_rows import effective_rows, one_more_row, widened
 from uq.indices.groups import grouped_rows, whole_groups
 from uq.indices.targets import Index, Indices, RefusedError
 from uq.intervals import is_constant, scatter_interval
@@ -76,7 +77,8 @@ def sobol_indices(design: Crossed, values: Floats) -> Indices:
     Returns
     -------
     Indices
-        From all groups together; the interval from the same estimate by replicates. Of a random
+        From all groups together; the interval from the same estimate by replicates. Where the
+        variance rests on few rows, it is widened by what one more such row might do. Of a random
         model `noise` is the total index of the seed.
 
     Raises
@@ -115,9 +117,18 @@ def sobol_indices(design: Crossed, values: Floats) -> Indices:
         notes.append("no intervals: in some replicates too few rows differ")
     else:
         scatter = [_estimates(design, replicate) for replicate in replicates]
+    independent = y[whole][:, design.ends].ravel()
+    more = one_more_row(independent, kept, len(replicates))
+    if scatter and more:
+        rows = effective_rows(independent) / len(replicates)
+        notes.append(
+            f"the variance rests on some {rows:.2g} rows of each replicate: intervals are widened"
+            " by what one more such row might do, and are conservative"
+        )
     indices: dict[str, dict[str, Index]] = {}
     for (kind, label), value in values_of.items():
         interval = scatter_interval(value, np.array([found[kind, label] for found in scatter]))
+        interval = widened(value, interval, more)
         indices.setdefault(kind, {})[label] = Index(value, *interval)
     noise = indices.pop(NOISE, {}).get("")
     inert = [name for name in design.parameters if indices["ST"][name].value == 0]
