@@ -9,7 +9,7 @@ from scipy import stats
 import uq
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
-from uq.indices.transforms import HEAVY, is_heavy, tail_share
+from uq.indices.transforms import HEAVY, heaviness, tail_share
 
 
 def heavy(sign=1, shift=0.0, samples=64):
@@ -32,11 +32,17 @@ def test_the_share_of_the_variance_in_a_hundredth_of_the_rows(law, share):
     x = law.ppf((np.arange(400_000) + 0.5) / 400_000)
     assert tail_share(x) == pytest.approx(share, abs=0.01)
     assert tail_share(1e-200 * x) == pytest.approx(tail_share(1e200 * x)) == tail_share(x)
-    assert is_heavy(x) == (share > HEAVY)
+    assert bool(heaviness(x)) == (share > HEAVY)
+
+
+def test_so_few_rows_are_judged_by_the_shape_of_their_tail_alone():
+    few = stats.pareto(0.8).ppf((np.arange(90) + 0.5) / 90)
+    assert tail_share(few) == 0.0 and "finite variance" in heaviness(few)
+    assert "1 % of the rows" in heaviness(stats.pareto(0.8).ppf((np.arange(900) + 0.5) / 900))
 
 
 def test_few_rows_and_constants_have_no_heavy_tail():
-    assert not is_heavy(np.r_[np.zeros(98), 1e9]) and is_heavy(np.r_[np.zeros(99), 1e9])
+    assert not heaviness(np.r_[np.zeros(98), 1e9]) and heaviness(np.r_[np.zeros(99), 1e9])
     assert tail_share(np.full(500, 3.0)) == tail_share(np.array([])) == 0.0
     assert tail_share(np.r_[np.full(300, np.nan), np.arange(50.0)]) == 0.0
 
@@ -47,7 +53,7 @@ def test_a_positive_output_with_a_heavy_tail_stands_as_its_logarithm():
     assert name == "log(work)"
     _, of_y = only(ds, output="y")
     assert values(entry, "ST") == pytest.approx(values(of_y, "ST"))
-    assert "of the variance of work" in entry["notes"][0] and "logarithm" in entry["notes"][0]
+    assert "of the variance: " in entry["notes"][0] and "logarithm" in entry["notes"][0]
     name, entry = only(ds, output="work")
     assert name == "work" and "log(work)" in entry["notes"][0]
     assert values(entry, "ST")[:2] != pytest.approx(values(of_y, "ST")[:2], abs=0.02)

@@ -9,17 +9,14 @@ import numpy as np
 import xarray as xr
 
 from uq.indices.transforms import (
-    LARGEST,
     Transformed,
-    is_heavy,
+    heaviness,
     logarithm,
     rank,
     rate,
-    tail_share,
 )
 from uq.rows.elements import Element, Floats, flags
 from uq.rows.results import failed
-from uq.wording import percent
 
 
 @dataclass(frozen=True)
@@ -70,11 +67,14 @@ class Indices(NamedTuple):
         Sentences on what could not be given.
     dummy : dict of str to float
         Name of the index -> its largest value over inputs that play no part.
+    noise : Index or None
+        Share of the variance that remains once all inputs are known, where rows tell it.
     """
 
     values: dict[str, dict[str, Index]]
     notes: tuple[str, ...] = ()
     dummy: Mapping[str, float] = MappingProxyType({})
+    noise: Index | None = None
 
 
 class RefusedError(Exception):
@@ -95,13 +95,14 @@ def targets(
     Yields
     ------
     Target
-        What `number_of` gives; of a value whose tail is heavy by `is_heavy` the logarithm, where
+        What `number_of` gives; of a value whose tail is heavy by `heaviness` the logarithm, where
         all rows are positive and the tail of the logarithm is not heavy, else the rank. Beside a
         lifetime T, the events T < t.
     """
     for element in elements:
         number = number_of(element)
-        yield _lighter(element) if element.kind == "value" and is_heavy(number.values) else number
+        why = heaviness(number.values) if element.kind == "value" else ""
+        yield _lighter(element, why) if why else number
         yield from _events(element, thresholds)
 
 
@@ -178,29 +179,23 @@ def _transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Ta
     return Target(f"{form}({element.name})", element, values, refused, notes=notes)
 
 
-def _lighter(element: Element) -> Target:
+def _lighter(element: Element, why: str) -> Target:
     """Return the logarithm or the rank of a value whose tail is heavy."""
     found = _transformed(element, "log")
-    light = not found.refused and not is_heavy(found.values)
-    form, words = ("log", "its logarithm") if light else ("rank", "its rank")
+    light = not found.refused and not heaviness(found.values)
+    form = "log" if light else "rank"
     note = (
-        f"{_heaviness(element)}: these are indices of {words}; name {element.name} for those of"
-        " the output itself"
+        f"{why}: these are indices of its {FORMS[form]}; name {element.name} for"
+        " those of the output itself"
     )
     return _transformed(element, form, (note,))
 
 
 def _plain(element: Element) -> Target:
     notes: tuple[str, ...] = ()
-    if element.kind == "value" and is_heavy(element.values):
-        other = _lighter(element).name
-        notes = (f"{_heaviness(element)}, and decide these indices; {other} says more",)
+    if element.kind == "value" and (why := heaviness(element.values)):
+        notes = (f"{why}: {_lighter(element, why).name} says more",)
     return Target(element.name, element, element.values, notes=notes)
-
-
-def _heaviness(element: Element) -> str:
-    share = percent(tail_share(element.values))
-    return f"{100 * LARGEST:g} % of the rows hold {share} of the variance of {element.name}"
 
 
 def _events(element: Element, thresholds: Mapping[str, tuple[float, ...]]) -> Iterator[Target]:

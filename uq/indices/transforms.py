@@ -10,6 +10,8 @@ import numpy as np
 from scipy import stats
 
 from uq.rows.elements import Element, Floats
+from uq.tails import heavier_tail
+from uq.wording import percent
 
 LARGEST = 0.01
 """Share of the rows that a heavy tail is judged by: those farthest from the mean."""
@@ -50,9 +52,27 @@ def tail_share(values: Floats) -> float:
     return float(squares[-int(np.ceil(LARGEST * len(known))) :].sum() / squares.sum())
 
 
-def is_heavy(values: Floats) -> bool:
-    """Whether so few rows hold so much of the variance that its indices are about these rows."""
-    return tail_share(values) > HEAVY
+def heaviness(values: Floats) -> str:
+    """Say why indices of the variance of these values are about a few of them.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where there is none.
+
+    Returns
+    -------
+    str
+        A clause; "" where the largest 1 % hold less than `HEAVY` of the variance, and the tail's
+        shape does not speak against a finite one (`uq.tails`).
+    """
+    share = tail_share(values)
+    if share > HEAVY:
+        return f"{100 * LARGEST:g} % of the rows hold {percent(share)} of the variance"
+    tail = heavier_tail(values[np.isfinite(values)])
+    if tail is not None and tail.no_variance:
+        return f"the {tail.side} tail speaks against a finite variance (k = {tail.k:.2g})"
+    return ""
 
 
 def logarithm(element: Element) -> Transformed:
