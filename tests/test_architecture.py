@@ -18,6 +18,7 @@ GROUND = {
     "interrupts",
     "intervals",
     "literals",
+    "moments",
     "provenance",
     "tails",
     "threads",
