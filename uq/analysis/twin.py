@@ -13,9 +13,10 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.analysis.control_variate import Controlled, controlled_mean, controlled_share
+from uq.analysis.control_variate import FEWEST, Controlled, controlled_mean, controlled_share
 from uq.analysis.statistics import event
 from uq.errors import InputError
+from uq.exact_shares import FEW
 from uq.inputs.values import read_settings
 from uq.intervals import Interval, share_interval
 from uq.literals import toml
@@ -87,8 +88,8 @@ def with_twin(ds: xr.Dataset, model: str | None = None) -> dict[str, Any]:
     -------
     dict
         ``twin``, ``rows``, ``cheap_rows``, and ``outputs``: element -> estimate -> ``value``,
-        ``low``, ``high``, ``plain`` (the same three) and ``reduction``. An element whose tail has
-        no variance has no mean here.
+        ``low``, ``high``, ``plain`` (the same three), ``reduction``, and ``note`` where few rows
+        tell. An element whose tail has no variance has no mean here.
     """
     study = study_from_text(ds.attrs["study"], "study of this result", model)
     if not study.analysis.twin:
@@ -134,7 +135,20 @@ def _estimates(
         for sign, hits in zip("><", sides, strict=True):
             found = controlled_share(hits, kept, _sized(control), _sized(many))
             plain = share_interval(hits[kept])
-            yield f"P({sign}{threshold!r})", _entry(found, hits[kept].mean(), plain)
+            few = few_hits(int(hits[kept].sum()), int(kept.sum()))
+            yield f"P({sign}{threshold!r})", _entry(found, hits[kept].mean(), plain) | few
+
+
+def few_hits(hits: int, rows: int) -> dict[str, str]:
+    """Return a ``note`` on a probability that few rows tell, or nothing."""
+    if min(hits, rows - hits) >= FEW:
+        return {}
+    seen = f"{hits} of {rows} rows" if hits <= rows - hits else f"all but {rows - hits} rows"
+    if min(hits, rows - hits) < FEWEST:
+        told = f"the twin is not used below {FEWEST}; these are the plain rows"
+    else:
+        told = f"below {FEW} the interval is exact, and conservative"
+    return {"note": f"{seen} lie there: {told}"}
 
 
 def _entry(found: Controlled, plain: float, interval: Interval) -> dict[str, Any]:

@@ -11,6 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import stats
 
+from uq.designs.table import DESIGNS
 from uq.rows.elements import (
     Element,
     Floats,
@@ -64,7 +65,7 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
                 for t in analysis.thresholds.get(element.output, ())
             },
         }
-        if "A" in labels:
+        if DESIGNS[pilot.attrs["design"]].crossed:
             found[element.name] |= _indices(whole, groups, labels, samples * replicates, factor)
     return found
 

@@ -125,6 +125,9 @@ def show_sensitivity(found: Entry) -> None:
         for table in (kinds, pairs):
             if table:
                 grid(_ranked(table, output.get("dummy", {})), header=_header(table))
+        if noise := output.get("noise"):
+            share = (index(noise, "value", "ST"), index_interval(noise, "ST"))
+            grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
         for note in output["notes"]:
             paragraph(note, indent=2)
 

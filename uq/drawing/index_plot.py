@@ -36,7 +36,7 @@ MEANING = {
 
 
 def _is_bar(kind: str, value: Any) -> bool:
-    return isinstance(value, dict) and kind not in ("S2", "dummy")
+    return isinstance(value, dict) and kind not in ("S2", "dummy", "noise")
 
 
 def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from uq.columns import failed_rows
 from uq.contract import Model
 from uq.errors import InputError, choices, nearest
+from uq.places import node
 from uq.provenance import provenance
 from uq.rows.soundness import unsound
 from uq.rows.variables import (
@@ -170,10 +171,11 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     True
     """
     path = Path(path)
+    if what := node(path):
+        inside = _others(path / "_") if path.is_dir() else ""
+        raise InputError(f"{path}: is {what}, not a result{inside}; {remedy}")
     if not path.exists():
         raise InputError(f"{path}: no such file{_others(path)}; {remedy}")
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder, not a result{_others(path / '_')}; {remedy}")
     try:
         ds = _opened(path)
         check(ds, path)
