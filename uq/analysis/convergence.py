@@ -77,10 +77,11 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
     -------
     pandas.DataFrame
         Index: element of an output. ``estimate``, its mean or, where rows never end or are
-        censored, its median; ``sampling``, the half-width of its interval; ``own``, the mean
-        magnitude of ``<output>_error``, the error of solver and time averages that the model gives
-        for each row (NaN where it gives none): what the estimate would be off by if they all lay on
-        one side; ``warning``, not empty where `own` is the larger: then more rows do not help.
+        censored or the tail is heavy, its median; ``sampling``, the half-width of its interval;
+        ``own``, the mean magnitude of ``<output>_error``, the error of solver and time averages
+        that the model gives for each row (NaN where it gives none): what the estimate would be off
+        by if they all lay on one side; ``warning``, not empty where `own` is the larger: then more
+        rows do not help.
     """
     found = summarise(ds)["outputs"]
     lines = {}
@@ -89,7 +90,7 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
             continue
         entry = found[element.name]
         label, interval = "mean", entry["mean_interval"]
-        if entry["mean"] is None:
+        if entry["mean"] is None or "mean_interval" in entry["reasons"]:
             label, interval = "median", entry["quantiles"].get("0.5", {"low": None, "high": None})
         known = None not in (interval["low"], interval["high"])
         sampling = (interval["high"] - interval["low"]) / 2 if known else np.nan

@@ -22,6 +22,7 @@ from uq.rows.elements import (
     independent_rows,
     shown_outputs,
 )
+from uq.tails import lacks_variance
 
 _ENOUGH_ROWS = 8
 _LEVEL = 0.975
@@ -80,7 +81,7 @@ def _factor(design: str, replicates: int) -> float | None:
 def _mean(element: Element, rows: int, factor: float | None) -> float | None:
     values = element.at_least
     unbounded = element.never.any() or element.censored.any()
-    if factor is None or unbounded or len(values) < _ENOUGH_ROWS:
+    if factor is None or unbounded or len(values) < _ENOUGH_ROWS or lacks_variance(values):
         return None
     return float(2 * factor * values.std(ddof=1) / np.sqrt(rows))
 

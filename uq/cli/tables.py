@@ -44,6 +44,8 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
         unit = "" if output["units"] == "1" else f" [{output['units']}]"
         heading(f"\n{name}{unit}", meaning)
         grid(_lines(output), header=("", "value", "95 % interval", ""))
+        for reason in dict.fromkeys(output["reasons"].values()):
+            paragraph(reason, indent=2)
         if fits := output.get("fits"):
             _show_fits(fits)
     for note in summary["notes"]:
@@ -62,7 +64,7 @@ def _lines(output: Entry) -> Iterator[Line]:
         return label, known(entry, key), interval(entry), in_words
 
     yield line("mean", {"value": output["mean"], **output["mean_interval"]})
-    yield line("sd", output, "sd")
+    yield line("sd", {"value": output["sd"], **output["sd_interval"]})
     for probability, entry in output["quantiles"].items():
         yield line(f"quantile {probability}", entry)
     for name, entry in output["b_lives"].items():

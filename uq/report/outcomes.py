@@ -92,6 +92,12 @@ class Outcome:
         """Return the cell of an estimate in the unit of this element."""
         return estimate(entry, self.unit.seconds, key)
 
+    def moment(self, name: str) -> Cell:
+        """Return the cell of mean or sd, with the reason where its tail forbids one."""
+        found = {"value": self.entry[name], **self.entry[f"{name}_interval"]}
+        reason = self.entry["reasons"].get(name)
+        return self.cell(found) if reason is None else Cell("none", reason)
+
 
 def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     """Return the elements that a summary describes, in its order."""
@@ -157,8 +163,8 @@ def _statistics(one: Outcome) -> Iterator[Cell]:
     entry = one.entry
     yield one.label
     yield one.unit_cell
-    yield one.cell({"value": entry["mean"], **entry["mean_interval"]})
-    yield one.cell(entry, "sd")
+    for moment in ("mean", "sd"):
+        yield one.moment(moment)
     yield from (one.cell(quantile) for quantile in entry["quantiles"].values())
     split = entry.get("between_regimes")
     yield _between(split) if split else Cell("")
