@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from uq.designs.table import DESIGNS
+from uq.intervals import is_within
 from uq.rows.elements import (
     Element,
     Floats,
@@ -86,7 +87,7 @@ def _mean(element: Element, rows: int, factor: float | None) -> float | None:
 
 
 def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> float | None:
-    if factor is None or len(values) < _ENOUGH_ROWS:
+    if factor is None or len(values) < _ENOUGH_ROWS or not is_within(p, rows):
         return None
     m = len(values)
     spread = np.sqrt(p * (1 - p))
