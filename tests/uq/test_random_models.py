@@ -123,6 +123,16 @@ def test_a_study_is_random_unless_what_is_random_is_off():
     assert not off.random and group_size(off) == 3
 
 
+@pytest.mark.parametrize("method", GROUPED)
+def test_any_chunking_gives_the_same_bits(method):
+    study = noisy(method, max(8, DESIGNS[method].least), 2)
+    whole, n = row_block(study, 0, rows(study)), rows(study)
+    edges = [0, 1, n // 3, n // 3 + 4, n - 3, n]
+    parts = [row_block(study, i, j) for i, j in zip(edges, edges[1:], strict=False)]
+    for one, pieces in zip(whole, zip(*parts, strict=True), strict=True):
+        assert one.tobytes() == np.concatenate(pieces).tobytes()
+
+
 @pytest.mark.parametrize("method", [name for name in GROUPED if DESIGNS[name].append_only])
 def test_more_samples_leave_the_first_rows_of_a_random_model_as_they_are(method):
     study = noisy(method, 16, 3)
