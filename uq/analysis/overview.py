@@ -66,7 +66,7 @@ def _cells(name: str, entry: Mapping[str, Any]) -> dict[str, float]:
     """Return the numbers of an entry of `summarise`, named after what they say."""
     cells = {}
     for key in ("value", "low", "high", "lower", "upper", "rows_needed"):
-        if key in entry:
+        if key in entry and not (key == "rows_needed" and "value" in entry):
             never = entry.get("never" if key == "value" else f"{key}_never")
             number = np.nan if entry[key] is None else entry[key]
             cells[name if key == "value" else f"{name}_{key}"] = np.inf if never else number

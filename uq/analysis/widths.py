@@ -13,6 +13,7 @@ from scipy import stats
 
 from uq.designs.table import DESIGNS
 from uq.indices.targets import targets
+from uq.intervals import is_within
 from uq.rows.elements import (
     Element,
     Floats,
@@ -87,7 +88,7 @@ def _mean(element: Element, rows: int, factor: float | None) -> float | None:
 
 
 def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> float | None:
-    if factor is None or len(values) < _ENOUGH_ROWS:
+    if factor is None or len(values) < _ENOUGH_ROWS or not is_within(p, rows):
         return None
     m = len(values)
     spread = np.sqrt(p * (1 - p))

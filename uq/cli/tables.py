@@ -99,14 +99,34 @@ _ASSUMES = "censoring says nothing of the life left"
 
 
 def _show_fits(fits: Mapping[str, Entry]) -> None:
-    """Print the laws that fit, with the lives they give, and why others do not."""
+    """Print the laws that fit side by side, with the lives they give, and why others do not."""
     for law, fit in fits.items():
         if refusal := fit.get("refused"):
             paragraph(f"{law}: {refusal}", indent=2)
-            continue
-        numbers = fit["parameters"] | {name: fit[name] for name in B_LIVES}
-        heading(f"  {law}", f"fits {fit['rows']} rows, p = {fit['p_value']:.2g}")
-        grid([(name, number(one["value"]), interval(one)) for name, one in numbers.items()])
+    accepted = {law: fit for law, fit in fits.items() if "refused" not in fit}
+    if not accepted:
+        return
+    names = dict.fromkeys(name for fit in accepted.values() for name in fit["parameters"])
+    lines = [("p of the test", *(cell for fit in accepted.values() for cell in _p_value(fit)))]
+    lines += [(name, *_side_by_side(accepted, name)) for name in names]
+    for name in B_LIVES:
+        extrapolated = any(fit[name]["extrapolated"] for fit in accepted.values())
+        label = f"{name}, extrapolated" if extrapolated else name
+        lines.append((label, *_side_by_side(accepted, name)))
+    grid(lines, header=("", *(cell for law in accepted for cell in (law, "95 % interval"))))
+    assumed = next(iter(accepted.values()))["assumes"]
+    paragraph(f"The numbers of a fitted law assume {assumed}.", indent=2)
+
+
+def _p_value(fit: Entry) -> tuple[str, str]:
+    return f"{fit['p_value']:.2g}", ""
+
+
+def _side_by_side(fits: Mapping[str, Entry], name: str) -> Iterator[str]:
+    """Yield value and interval of one number of each law; nothing of a law without it."""
+    for fit in fits.values():
+        one = (fit["parameters"] | fit).get(name)
+        yield from ("", "") if one is None else (number(one["value"]), interval(one))
 
 
 def _example(ds: xr.Dataset, status: str) -> str:
