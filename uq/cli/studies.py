@@ -41,6 +41,7 @@ def check(path: str, model: str | None) -> None:
             ("model", f"{study.model.name}, version {study.model.version}"),
             ("design", f"{design.method}: {DESIGNS[design.method].meaning}"),
             ("rows", f"{rows(study)} = {' x '.join(parts)}" if parts[1:] else str(rows(study))),
+            *_of_random(study),
             ("outputs", ", ".join(study.analysis.outputs)),
             ("sensitivity", f"{feeds} can be had from this design"),
             ("result", str(runner.output_path(study))),
@@ -51,6 +52,14 @@ def check(path: str, model: str | None) -> None:
     ties = [(name, f"equals {tied.equals}", "") for name, tied in study.tied.items()]
     grid(laws + ties, header=("parameter", "distribution", "unit"))
     _show_realised(study)
+
+
+def _of_random(study: Study) -> list[tuple[str, str]]:
+    design = DESIGNS[study.design.method]
+    if not study.random or not design.shares_seeds:
+        return []
+    more = "; one more row of each tells the share of noise" if design.crossed else ""
+    return [("seeds", f"the model is random: rows that are compared share a seed{more}")]
 
 
 def _unit(study: Study, name: str) -> str:
