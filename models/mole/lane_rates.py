@@ -24,6 +24,7 @@ from models.mole.lane_block import (
     FORCE,
     GAP,
     IMPACT,
+    IMPULSE,
     INTEGRAL,
     JACOBIAN,
     MEASURED,
@@ -106,6 +107,7 @@ def slopes(columns: int) -> Callable[..., None]:
             m[(INTEGRAL + IMPACT) * LANES + lane] += part * contact * x
             electric = m[RESISTANCE * LANES + lane] * i * i + magnetic * v
             m[(INTEGRAL + ELECTRIC) * LANES + lane] += part * electric
+            m[(INTEGRAL + IMPULSE) * LANES + lane] += part * contact
             if columns > 0:
                 # Derivatives of F with respect to u and i, of i' with respect to u, v, i, p.
                 bend = m[SLOPE * LANES + lane] * added * (1 + m[SLOPE * LANES + lane] * u * u)

@@ -217,8 +217,8 @@ def _compared(pair: Pair, elements: list[Element], entries: list[Entry]) -> Entr
 
     return {
         "units": elements[0].units,
-        "mean": _estimate(pair, MEAN, present, means),
-        "sd": _sds(pair, present, entries),
+        "mean": _without_refused(_estimate(pair, MEAN, present, means), "mean", entries),
+        "sd": _without_refused(_sds(pair, present, entries), "sd", entries),
         "quantiles": each("quantiles", lambda probability: quantile(float(probability))),
         "b_lives": each("b_lives", lambda name: quantile(B_LIVES[name])),
         "thresholds": {
@@ -230,15 +230,21 @@ def _compared(pair: Pair, elements: list[Element], entries: list[Entry]) -> Entr
     }
 
 
+def _without_refused(found: Entry, moment: str, entries: list[Entry]) -> Entry:
+    """Take out the intervals of what the tail of one of the two forbids."""
+    if any(f"{moment}_interval" in entry["reasons"] for entry in entries):
+        for key in found.keys() - {"a", "b"}:
+            found[key] = found[key] | {"low": None, "high": None}
+    return found
+
+
 def _sds(pair: Pair, samples: list[Sample], entries: list[Entry]) -> Entry:
+    sds = [{"value": entry["sd"], **entry["sd_interval"]} for entry in entries]
+    sides = dict(zip("ab", sds, strict=True))
     if any(entry["sd"] is None for entry in entries):
         nothing = dict.fromkeys(_ENDS)
-        sides = {
-            key: nothing | {"value": entry["sd"]} for key, entry in zip("ab", entries, strict=True)
-        }
         return {**sides, "difference": nothing, "ratio": nothing}
-    known = [pair.sd(i, sample) for i, sample in enumerate(samples)]
-    sides = dict(zip("ab", map(_plain, known), strict=True))
+    known = [_known(entry) for entry in sds]
     if pair.identical(samples):
         same = {"low": None, "high": None, "identical": True}
         return {**sides, "difference": {"value": 0.0} | same, "ratio": {"value": 1.0} | same}
@@ -270,10 +276,7 @@ def _sides(pair: Pair, elements: list[Element], threshold: float, entries: list[
 def _estimate(
     pair: Pair, estimator: Estimator, samples: list[Sample], entries: list[Entry]
 ) -> Entry:
-    known = [
-        Estimate(*(np.nan if entry[end] is None else entry[end] for end in _ENDS))
-        for entry in entries
-    ]
+    known = [_known(entry) for entry in entries]
     if pair.identical(samples) and not np.isnan(known[0].value):
         difference = {"value": 0.0, "low": None, "high": None, "identical": True}
         return {**dict(zip("ab", entries, strict=True)), "difference": difference}
@@ -284,6 +287,10 @@ def _estimate(
     else:
         apart = pair.difference(estimator, samples, known)
     return {**dict(zip("ab", entries, strict=True)), "difference": _plain(apart)}
+
+
+def _known(entry: Entry) -> Estimate:
+    return Estimate(*(np.nan if entry[end] is None else entry[end] for end in _ENDS))
 
 
 def _plain(estimate: Estimate) -> Entry:
