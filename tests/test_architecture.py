@@ -19,6 +19,7 @@ GROUND = {
     "interrupts",
     "intervals",
     "literals",
+    "moments",
     "places",
     "provenance",
     "tails",

@@ -188,6 +188,21 @@ def scattered_share_interval(
     return Interval(*(np.where(few, *ends) for ends in zip(exact, found, strict=True)))
 
 
+def is_within(probability: float, rows: int) -> bool:
+    """Whether so many values reach a quantile: their ranks, on average, lie at i/(n + 1).
+
+    Rows of replicates count together: their designs spread as evenly, or more so.
+    """
+    return bool(1 - _ROUNDING <= probability * (rows + 1) <= rows + _ROUNDING * rows)
+
+
+def rows_to_reach(probability: float) -> int:
+    """Return the least number of values that reach a quantile."""
+    rarer = min(probability, 1 - probability)
+    rows = int(np.ceil(1 / rarer - 1))
+    return next(n for n in (rows - 1, rows, rows + 1) if n > 0 and is_within(probability, n))
+
+
 def quantile(values: Floats, probability: float) -> float:
     """Return the median-unbiased estimate of a quantile (type 8 of [1]_).
 
@@ -200,16 +215,19 @@ def quantile(values: Floats, probability: float) -> float:
     Returns
     -------
     float
-        +inf as soon as an infinite value takes part; NaN without values.
+        +inf as soon as an infinite value takes part; NaN beyond what the values reach, see
+        `is_within`.
 
     References
     ----------
     .. [1] R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", Am. Stat. 50,
        361-365 (1996).
     """
+    if not is_within(probability, len(values)):
+        return np.nan
     finite = values[np.isfinite(values)]
     if len(finite) == 0:
-        return np.inf if len(values) else np.nan
+        return np.inf
     # Infinity times zero is no number: numpy interpolates towards a huge number instead.
     huge = np.finfo(float).max / 4
     found = np.quantile(np.minimum(values, huge), probability, method="median_unbiased")
@@ -251,6 +269,8 @@ def quantile_interval(
             order_statistic(values, int(stats.binom.isf(tail, n, probability)) + 1),
         )
     value = quantile(values, probability)
+    if np.isnan(value):
+        return UNKNOWN
     below = values <= value if np.isfinite(value) else values < value
     low, high = scattered_share_interval(
         probability, _means(below, replicate), below.mean(), confidence

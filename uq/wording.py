@@ -50,6 +50,8 @@ def known(entry: Entry, key: str = "value", per: float = 1.0) -> str:
     """
     if entry[key] is not None:
         return number(entry[key] / per)
+    if key == "value" and "rows_needed" in entry:
+        return f"needs {entry['rows_needed']} rows"
     prefix = "" if key == "value" else f"{key}_"
     if entry.get(f"{prefix}never"):
         return "never"

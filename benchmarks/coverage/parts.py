@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
-from benchmarks.coverage import differences, further, indices, known_indices, lives, plain
+from benchmarks.coverage import differences, further, indices, known_indices, lives, noise, plain
 from benchmarks.coverage.tally import Line
 
 REPETITIONS = 2000
@@ -46,6 +46,7 @@ PARTS = {
     "sobol-g-function": Part(known_indices.g_function),
     "sobol-life": Part(known_indices.of_a_life),
     "shapley": Part(known_indices.shapley),
+    "noise": Part(noise.noise),
     "morris": Part(indices.morris),
     **{f"null-{name}": Part(partial(indices.nulls, name)) for name in NULLS},
     "bootstraps": Part(indices.bootstraps, 200),

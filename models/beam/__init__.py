@@ -33,6 +33,8 @@ MODEL = Model(
     simulate=_simulate,
     coordinates=coordinates,
     dimensions={"depth": ("m", "growth of the gap by wear")},
+    random=True,
+    random_unless={"random_force_level": 0.0},
     block=1024,
     references=(
         "J. Knudsen, A. R. Massih, Impact work-rate and wear of a loosely supported beam subject "

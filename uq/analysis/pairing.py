@@ -196,15 +196,6 @@ class Pair:
             return _factor(known[1].value / known[0].value, found[1], found[0])
         return two_samples.ratio(known[0], known[1], self._correlation(SD, samples))
 
-    def sd(self, i: int, sample: Sample) -> Estimate:
-        """Return the standard deviation of one of the two."""
-        values = sample.numbers[sample.kept]
-        value = _sd(values)
-        if self._replicate[i] is None:
-            return Estimate(value, *two_samples.sd_interval(values))
-        found = self._by_replicate(SD, i, sample)
-        return _factor(value, found, np.ones(len(found)))
-
     @property
     def unpaired(self) -> float:
         """The correlation to reckon with where no rows can be held against each other."""

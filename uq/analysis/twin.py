@@ -18,8 +18,9 @@ from uq.analysis.statistics import event
 from uq.errors import InputError
 from uq.exact_shares import FEW
 from uq.inputs.values import read_settings
-from uq.intervals import Interval, mean_interval, share_interval
+from uq.intervals import Interval, share_interval
 from uq.literals import toml
+from uq.moments import moments
 from uq.rows.elements import Element, elements_of, shown_outputs
 from uq.rows.evaluate import evaluate
 from uq.rows.results import build_rows
@@ -88,7 +89,7 @@ def with_twin(ds: xr.Dataset, model: str | None = None) -> dict[str, Any]:
     dict
         ``twin``, ``rows``, ``cheap_rows``, and ``outputs``: element -> estimate -> ``value``,
         ``low``, ``high``, ``plain`` (the same three), ``reduction``, and ``note`` where few rows
-        tell.
+        tell. An element whose tail has no variance has no mean here.
     """
     study = study_from_text(ds.attrs["study"], "study of this result", model)
     if not study.analysis.twin:
@@ -122,9 +123,10 @@ def _estimates(
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     present = element.present
     if present.any() and not (element.never | element.censored).any():
-        values, plain = element.values, mean_interval(element.values[present])
-        found = controlled_mean(values, present, *map(_filled, (control, many)))
-        yield "mean", _entry(found, values[present].mean(), plain)
+        alone = moments(element.values[present])
+        if "mean_interval" not in alone.reasons:
+            found = controlled_mean(element.values, present, *map(_filled, (control, many)))
+            yield "mean", _entry(found, alone.mean, alone.mean_interval)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         sides = event(element, threshold)
         kept = ~element.failed

@@ -11,6 +11,9 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import stats
 
+from uq.designs.table import DESIGNS
+from uq.indices.targets import targets
+from uq.intervals import is_within
 from uq.rows.elements import (
     Element,
     Floats,
@@ -20,6 +23,7 @@ from uq.rows.elements import (
     independent_rows,
     shown_outputs,
 )
+from uq.tails import lacks_variance
 
 _ENOUGH_ROWS = 8
 _LEVEL = 0.975
@@ -63,7 +67,7 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
                 for t in analysis.thresholds.get(element.output, ())
             },
         }
-        if "A" in labels:
+        if DESIGNS[pilot.attrs["design"]].crossed:
             found[element.name] |= _indices(whole, groups, labels, samples * replicates, factor)
     return found
 
@@ -78,13 +82,13 @@ def _factor(design: str, replicates: int) -> float | None:
 def _mean(element: Element, rows: int, factor: float | None) -> float | None:
     values = element.at_least
     unbounded = element.never.any() or element.censored.any()
-    if factor is None or unbounded or len(values) < _ENOUGH_ROWS:
+    if factor is None or unbounded or len(values) < _ENOUGH_ROWS or lacks_variance(values):
         return None
     return float(2 * factor * values.std(ddof=1) / np.sqrt(rows))
 
 
 def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> float | None:
-    if factor is None or len(values) < _ENOUGH_ROWS:
+    if factor is None or len(values) < _ENOUGH_ROWS or not is_within(p, rows):
         return None
     m = len(values)
     spread = np.sqrt(p * (1 - p))
@@ -117,13 +121,10 @@ def _indices(
     element: Element, groups: NDArray[np.intp], labels: list[str], n: int, factor: float | None
 ) -> dict[str, float | None]:
     """Return the widest interval of first-order and of total indices, as of independent groups."""
-    values = element.values
-    if element.kind == "lifetime":  # whose indices are those of its rate
-        with np.errstate(divide="ignore"):
-            values = 1.0 / values
-    y = values[groups]
+    target = next(targets([element], {}))
+    y = target.values[groups]
     y = y[np.isfinite(y).all(axis=1)]
-    if factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
+    if target.refused or factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
         return {"S1": None, "ST": None}
     block = dict(zip(labels, ((y - y.mean()) / y.std()).T, strict=True))
     mixed = [value for label, value in block.items() if label.startswith("AB_")]

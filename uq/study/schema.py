@@ -117,7 +117,8 @@ def _design_schema(design: Design) -> dict[str, Schema]:
     if not design.independent:
         analysis["tolerance"] = {"not": {}}
         analysis["twin"] = {"const": ""}
-    return {"design": {"properties": table}, "analysis": {"properties": analysis}}
+    needed: Schema = {"required": ["samples"]} if design.draw else {}
+    return {"design": {"properties": table} | needed, "analysis": {"properties": analysis}}
 
 
 def _table(properties: dict[str, Schema]) -> Schema:
