@@ -52,6 +52,19 @@ def test_imported_rows_are_those_of_the_file_to_the_bit(table, file):
         study.with_samples(101)
 
 
+def test_without_a_number_of_samples_all_rows_are_imported(table):
+    given = imported()
+    del given["design"]["samples"]
+    study = study_from_text(as_text(given), folder=table[0])
+    assert study.design.samples == 100
+    assert study.identity == study_from_text(as_text(imported()), folder=table[0]).identity
+    again = study_from_text(computed(study).attrs["study"])
+    assert (again.design.samples, again.identity) == (100, study.identity)
+    assert study.with_samples(30).design.samples == 30
+    del (other := tables({"x1": UNIFORM}))["design"]["samples"]
+    assert "[design] samples: is missing" in refusal(other, table[0])
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [

@@ -130,7 +130,10 @@ class DesignTable(_Table):
         description="how rows are chosen", json_schema_extra={"enum": list(DESIGNS)}
     )
     samples: int = Field(
-        ge=1, le=MAX_SAMPLES, description="base size of each replicate; see 'uq check' for rows"
+        default_factory=lambda: 0,  # all rows of an imported file; other designs must say
+        ge=1,
+        le=MAX_SAMPLES,
+        description="base size of each replicate; see 'uq check' for rows",
     )
     replicates: int = Field(
         1,

@@ -119,7 +119,8 @@ def _design_schema(design: Design) -> dict[str, Schema]:
         analysis["twin"] = {"const": ""}
         if design.draw:  # that imported rows are independent may be stated
             analysis["tolerance"] = {"not": {}}
-    return {"design": {"properties": table}, "analysis": {"properties": analysis}}
+    needed: Schema = {"required": ["samples"]} if design.draw else {}
+    return {"design": {"properties": table} | needed, "analysis": {"properties": analysis}}
 
 
 def _table(properties: dict[str, Schema]) -> Schema:
