@@ -21,6 +21,7 @@ from uq.rows.elements import (
     Element,
     Mask,
     analysis_of,
+    are_independent,
     elements_of,
     flags,
     independent_rows,
@@ -35,6 +36,11 @@ from uq.study.file import AnalysisTable
 NO_INTERVALS = (
     "no intervals: the rows of a '{design}' design are not independent, and with replicates = 1"
     " nothing shows how far its estimates scatter; set replicates = 8"
+)
+
+NOT_STATED = (
+    "no intervals: nothing is known of how imported rows came about; if they are independent draws"
+    " of the laws, set independent = true in [design]"
 )
 
 NO_STATISTICS = (
@@ -264,6 +270,7 @@ def _notes(ds: xr.Dataset) -> list[str]:
     notes = []
     if design.until is not None:
         notes.append(stopping.sentence(design, ds))
-    if ds.attrs["design"] != "monte-carlo" and ds.attrs["replicates"] == 1:
-        notes.append(NO_INTERVALS.format(design=ds.attrs["design"]))
+    if not are_independent(ds) and ds.attrs["replicates"] == 1:
+        reason = NO_INTERVALS if DESIGNS[ds.attrs["design"]].draw else NOT_STATED
+        notes.append(reason.format(design=ds.attrs["design"]))
     return notes
