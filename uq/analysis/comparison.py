@@ -115,7 +115,7 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> dict[str, Any]:
             {"kind": one.kind, "name": one.name, "a": one.first, "b": one.second} for one in changed
         ],
         "only": None if name is None else _only(results, name),
-        "pairing": pair.kinship.name.lower(),
+        "pairing": pair.kinship.name.lower().removesuffix("_imported"),
         "regime": dict(_regimes(pair, [one["regime"] for one in found])),
         "outputs": {
             name: _compared(

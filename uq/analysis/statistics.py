@@ -22,6 +22,7 @@ from uq.rows.elements import (
     Element,
     Mask,
     analysis_of,
+    are_independent,
     elements_of,
     flags,
     independent_rows,
@@ -38,9 +39,9 @@ NO_INTERVALS = (
     " nothing shows how far its estimates scatter; set replicates = 8"
 )
 
-OF_IMPORTED = (
-    "no intervals: how imported rows came about is not known, and so not how far estimates from"
-    " them scatter"
+NOT_STATED = (
+    "no intervals: nothing is known of how imported rows came about; if they are independent draws"
+    " of the laws, set independent = true in [design]"
 )
 
 NO_STATISTICS = (
@@ -284,7 +285,7 @@ def _notes(ds: xr.Dataset) -> list[str]:
     notes = []
     if design.until is not None:
         notes.append(stopping.sentence(design, ds))
-    if ds.attrs["design"] != "monte-carlo" and ds.attrs["replicates"] == 1:
-        told = OF_IMPORTED if ds.attrs["design"] == "imported" else NO_INTERVALS
-        notes.append(told.format(design=ds.attrs["design"]))
+    if not are_independent(ds) and ds.attrs["replicates"] == 1:
+        reason = NO_INTERVALS if DESIGNS[ds.attrs["design"]].draw else NOT_STATED
+        notes.append(reason.format(design=ds.attrs["design"]))
     return notes

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 
 from uq import intervals
-from uq.designs.table import DESIGNS
 from uq.intervals import Interval
 from uq.moments import moments
 from uq.rows.elements import Element, independent_rows, named_elements
@@ -71,7 +70,7 @@ def look(design: "DesignTable", ds: xr.Dataset) -> Look:
     until = design.until
     assert until is not None
     rows = independent_rows(ds)
-    replicate = None if DESIGNS[design.method].independent else rows["replicate"].values
+    replicate = None if design.has_independent_rows else rows["replicate"].values
     seen = [
         _estimate(element, until, replicate, confidence(design))
         for element in named_elements(rows, until.output)
