@@ -116,6 +116,10 @@ def test_outputs_are_documented(model, settings):
         for dim in output.dims:
             values = list(coordinates[dim])
             assert values and len(set(values)) == len(values), dim
+        if output.accuracy:
+            assert output.accuracy in model.setting_names, name
+            assert model.outputs[f"{name}_error"].dims == output.dims, name
+            assert model.outputs[f"{name}_error"].unit == output.unit, name
 
 
 def test_the_nominal_row_is_sound(model, settings):
@@ -142,6 +146,15 @@ def test_permuted_rows_permute_the_results(model, settings):
 def test_the_same_rows_give_the_same_bits_again(model, settings):
     x, seed = near_nominal(model, 3)
     assert bits(run(model, settings, x, seed)) == bits(run(model, settings, x, seed))
+
+
+def test_only_models_that_say_so_depend_on_the_seed(model, settings):
+    x, seed = near_nominal(model, 3)
+    for name, value in model.random_unless.items():
+        assert model.random
+        x[:, model.parameter_names.index(name)] = value
+    if model.random_unless or not model.random:
+        assert bits(run(model, settings, x, seed)) == bits(run(model, settings, x, seed[::-1]))
 
 
 def test_every_corner_of_the_bounds_ends_with_a_status(model, settings):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.coverage import further, known_indices, problems
+from benchmarks.coverage import further, known_indices, noise, problems
 from benchmarks.coverage.page import page
 from benchmarks.coverage.parts import PARTS
 from benchmarks.coverage.tally import Tally
@@ -97,3 +97,14 @@ def test_parts_count_what_is_printed(name):
     lines = PARTS[name].count(2)
     assert all(line.repetitions == 2 for line in lines if line.by == "uq")
     assert any(line.by == "uq" and line.given == 2 for line in lines)
+
+
+def test_truths_of_the_random_model_are_those_of_many_rows():
+    law = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
+    study = problems.study_of("saltelli", 2**14, 1, noise.NAME, dict.fromkeys(("x1", "x2"), law))
+    y = problems.computed(study)["y"].values.reshape(-1, 5)
+    a, ab_1, ab_2, b, again = ((y - y.mean()) / y[:, [0, 3]].std()).T
+    for one, name in ((ab_1, "x1"), (ab_2, "x2")):
+        assert np.mean(b * (one - a)) == pytest.approx(noise.TRUTH["S1"][name], abs=0.03)
+        assert np.mean((a - one) ** 2) / 2 == pytest.approx(noise.TRUTH["ST"][name], abs=0.03)
+    assert np.mean((a - again) ** 2) / 2 == pytest.approx(noise.SHARE, abs=0.03)

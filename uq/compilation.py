@@ -44,13 +44,12 @@ def compilation(
         if "numba" in sys.modules:
             listen()
         else:  # a model may load it when it computes its first rows
-            stack.enter_context(_when_imported("numba", listen))
+            stack.callback(when_imported("numba", listen))
         yield
 
 
-@contextmanager
-def _when_imported(name: str, action: Callable[[], object]) -> Iterator[None]:
-    """Call `action` once a module has been imported, if that happens within the block."""
+def when_imported(name: str, action: Callable[[], object]) -> Callable[[], None]:
+    """Call `action` once a module has been imported; what is returned takes the wish back."""
 
     class Finder(MetaPathFinder):
         def find_spec(
@@ -70,10 +69,10 @@ def _when_imported(name: str, action: Callable[[], object]) -> Iterator[None]:
                 spec.loader.exec_module = execute_then_act  # type: ignore[method-assign]
             return spec
 
-    finder = Finder()
-    sys.meta_path.insert(0, finder)
-    try:
-        yield
-    finally:
+    def forget() -> None:
         if finder in sys.meta_path:
             sys.meta_path.remove(finder)
+
+    finder = Finder()
+    sys.meta_path.insert(0, finder)
+    return forget

@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from uq.exact_shares import are_few, exact_interval
+
 CONFIDENCE = 0.95
 _ROUNDING = 64 * np.finfo(float).eps
 
@@ -96,7 +98,9 @@ def share_interval(
     -------
     Interval
         Wilson's score interval [1]_. For replicates with the number of independent rows that
-        would scatter as much, and Student's t for the normal quantile [2]_.
+        would scatter as much, and Student's t for the normal quantile [2]_. Where hits or misses
+        are few that of Clopper and Pearson (`uq.exact_shares`), which is conservative; replicates
+        then count for no more than their rows, since few hits show little of their scatter.
 
     References
     ----------
@@ -108,10 +112,31 @@ def share_interval(
     if len(hits) == 0:
         return UNKNOWN
     if replicate is None:
-        return wilson_interval(hits.mean(), len(hits), confidence)
+        return binomial_interval(hits.mean(), len(hits), confidence)
     return _floats(
-        scattered_share_interval(hits.mean(), _means(hits, replicate), confidence=confidence)
+        scattered_share_interval(
+            hits.mean(), _means(hits, replicate), confidence=confidence, rows=len(hits)
+        )
     )
+
+
+def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Interval:
+    """Return the interval of a share known as well as from so many rows: exact where hits are few.
+
+    Parameters
+    ----------
+    share : float
+    rows : float
+        Independent rows that tell as much.
+    confidence : float, optional
+
+    Returns
+    -------
+    Interval
+    """
+    if are_few(share, rows):
+        return _floats(Interval(*exact_interval(share, rows, confidence)))
+    return wilson_interval(share, rows, confidence)
 
 
 def wilson_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Interval:
@@ -124,6 +149,7 @@ def scattered_share_interval(
     estimates: Floats,
     scatter_at: Floats | float | None = None,
     confidence: float = CONFIDENCE,
+    rows: int | None = None,
 ) -> Interval:
     """Return the interval of a share, or of several, from estimates by replicates.
 
@@ -136,6 +162,8 @@ def scattered_share_interval(
     scatter_at : float or ndarray, optional
         The share whose scatter `estimates` show, if it is not exactly `share`.
     confidence : float, optional
+    rows : int, optional
+        Of all replicates together: where hits are few, they count for no more than these.
 
     Returns
     -------
@@ -149,8 +177,15 @@ def scattered_share_interval(
     variance = estimates.var(axis=0, ddof=1) / count
     # A curve of survival may reach 0 as a whole while a replicate's, censored, does not.
     known = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
-    variance = np.where(known, variance, np.nan)
-    return _wilson(share, at * (1 - at) / variance, stats.t.ppf(_upper_tail(confidence), count - 1))
+    worth = at * (1 - at) / np.where(known, variance, np.nan)
+    wide = stats.t.ppf(_upper_tail(confidence), count - 1)
+    found = _wilson(share, worth, wide)
+    if rows is None:
+        return found
+    normal = stats.norm.ppf(_upper_tail(confidence))
+    worth = np.fmin(worth * (normal / wide) ** 2, rows)
+    few, exact = are_few(share, rows), exact_interval(share, worth, confidence)
+    return Interval(*(np.where(few, *ends) for ends in zip(exact, found, strict=True)))
 
 
 def quantile(values: Floats, probability: float) -> float:

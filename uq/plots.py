@@ -1,5 +1,6 @@
 """All the figures that a study asks for, each of which can be had alone for a notebook."""
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from uq.drawing.scatter_plot import pairs, scatter
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.sensitivities import methods, sensitivities
+from uq.places import refuse_standard_output
 from uq.rows.elements import analysis_of, independent_rows, shown_outputs
 
 __all__ = [
@@ -58,8 +60,9 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
         When the folder cannot be made or written to.
     """
     folder = Path(folder)
+    refuse_standard_output(folder)
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        Path(os.path.realpath(folder)).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
             f"{folder}: cannot make this folder: {error.strerror}; choose another with -o"

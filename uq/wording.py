@@ -117,6 +117,13 @@ def percent_interval(low: float, high: float) -> str:
     return f"{percent(low).removesuffix(' %')} to {percent(high)}"
 
 
+def accuracy_not_reached(accuracy: Entry) -> str:
+    """Return in how many rows the stated error exceeds the accuracy asked for."""
+    missed, share = accuracy["missed"], percent(accuracy["share"])
+    rows = f"{missed} row{'s' if missed > 1 else ''} ({share})"
+    return f"accuracy {accuracy['asked']:g} not reached in {rows}"
+
+
 def variance_between(split: Entry) -> str:
     """Return the share of variance between regimes, less what chance makes of it."""
     return number(split["value"]) if split["value"] > 0 else "none seen"

@@ -6,7 +6,7 @@ import numpy as np
 import openturns as ot
 from scipy import stats
 
-from benchmarks.coverage.problems import LIFE, never_cdf, repeated, study_of
+from benchmarks.coverage.problems import ENDS, LIFE, MIXED, never_cdf, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.analysis.life_fit import life_fits
 from uq.analysis.lifetime import survival
@@ -65,6 +65,40 @@ def lives(design, repetitions):
         if replicates == 1:
             _rivals(tallies["left"], ds)
     return [line for tally in tallies.values() for line in tally.lines()]
+
+
+LIMITS = (0.5, 1.0, 1.5)
+LEAVING = {"distribution": "exponential", "mean": 1.0}
+
+
+def mixed(design, samples, repetitions):
+    """Count what is said of lives of which most never end and the others may be censored.
+
+    Parameters
+    ----------
+    design : {"monte-carlo", "latin-hypercube"}
+    samples : int
+        In each of one replicate, or of eight.
+    repetitions : int
+
+    Returns
+    -------
+    list of Line
+    """
+    replicates = 1 if design == "monte-carlo" else 8
+    uniform = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
+    analysis = {"outputs": ["mixed"], "quantiles": [0.5], "thresholds": {"mixed": list(LIMITS)}}
+    laws = {"x1": uniform, "x2": uniform, "leaving": LEAVING}
+    study = study_of(design, samples, replicates, laws=laws, analysis=analysis)
+    rows = f"{design}, {replicates} replicates of " * (replicates > 1) + f"{samples} rows"
+    tally = Tally(f"60 % never end, known at once, the others may be censored; {rows}")
+    for ds in repeated(study, repetitions):
+        found = summarise(ds)["outputs"]["mixed"]
+        tally.entry("B10", MIXED.ppf(0.1 / ENDS), found["b_lives"]["B10"])
+        for time in LIMITS:
+            below = found["thresholds"][repr(time)]["kaplan_meier"]["below"]
+            tally.entry(f"P(< {time})", ENDS * MIXED.cdf(time), below)
+    return tally.lines()
 
 
 def _rivals(tally, ds):

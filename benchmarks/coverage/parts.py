@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
-from benchmarks.coverage import differences, further, indices, known_indices, lives, plain
+from benchmarks.coverage import differences, further, indices, known_indices, lives, noise, plain
 from benchmarks.coverage.tally import Line
 
 REPETITIONS = 2000
@@ -31,6 +31,9 @@ PARTS = {
     **{f"plain-{name}": Part(partial(plain.plain, name)) for name in plain.DESIGNS},
     "lives": Part(partial(lives.lives, "monte-carlo")),
     "lives-replicates": Part(partial(lives.lives, "latin-hypercube")),
+    "lives-mixed": Part(partial(lives.mixed, "monte-carlo", 500)),
+    "lives-mixed-few": Part(partial(lives.mixed, "monte-carlo", 100)),
+    "lives-mixed-replicates": Part(partial(lives.mixed, "latin-hypercube", 128)),
     **{
         f"fit-{law}{'-censored' * censored}": Part(partial(lives.fits, law, censored))
         for law in lives.FITTED
@@ -43,6 +46,7 @@ PARTS = {
     "sobol-g-function": Part(known_indices.g_function),
     "sobol-life": Part(known_indices.of_a_life),
     "shapley": Part(known_indices.shapley),
+    "noise": Part(noise.noise),
     "morris": Part(indices.morris),
     **{f"null-{name}": Part(partial(indices.nulls, name)) for name in NULLS},
     "bootstraps": Part(indices.bootstraps, 200),
@@ -50,6 +54,7 @@ PARTS = {
     "twin": Part(further.twin),
     "stopped": Part(further.stopped),
     "subset": Part(further.subset),
+    "subset-plateau": Part(further.plateau, 1000),
     "subset-others": Part(further.subset_of_openturns, 200),
     "importance": Part(further.importance),
 }

@@ -25,6 +25,9 @@ SLOWEST = 0.4
 HORIZON = 1.0
 """Where every life is censored that has not ended."""
 
+ENDS = 0.4
+"""Share of rows of ``mixed`` that end; which these are is known at once."""
+
 EDGE = 1.2
 """The upper regime is where x1 + x2 is larger; there the output jumps by `JUMP`."""
 
@@ -70,6 +73,7 @@ def _batch(x, seed, settings):
         "cut_censored": life > HORIZON,
         "left": np.minimum(life, leaving),
         "left_censored": life > leaving,
+        **_mixed(x1, x2, leaving),
     }, np.zeros(len(x), np.int8)
 
 
@@ -78,6 +82,16 @@ def _near(x, seed, settings):
     a, b, c = (2 * np.pi * u - np.pi for u in np.ascontiguousarray(x.T)[:3])
     near = np.sin(a) + 7 * np.sin(b) ** 2
     return {"near": near}, np.zeros(len(x), np.int8)
+
+
+def _mixed(x1, x2, leaving):
+    """Lives of which most never end; the others may be censored."""
+    with np.errstate(divide="ignore"):
+        life = np.where(x1 < ENDS, np.sqrt(-np.log(x2)), np.inf)
+    return {
+        "mixed": np.where(np.isinf(life), life, np.minimum(life, leaving)),
+        "mixed_censored": np.isfinite(life) & (life > leaving),
+    }
 
 
 def _life(meaning, censored):
@@ -99,6 +113,7 @@ PROBLEMS = Model(
         "never": _life("the same life, never where the rate is low", False),
         "cut": _life("the same life, censored at a horizon", True),
         "left": _life("the same life, censored when a row leaves for reasons of its own", True),
+        "mixed": _life("a life that may never end, else censored when a row leaves", True),
     },
     _batch,
     block=1024,
@@ -121,6 +136,10 @@ LIFE = stats.invgamma(TAIL_INDEX)
 def never_cdf(time):
     """Return P(T < t) where rows with a low rate never end."""
     return min(LIFE.cdf(time), stats.gamma(TAIL_INDEX).sf(SLOWEST))
+
+
+MIXED = stats.weibull_min(2)
+"""The law of those lives of ``mixed`` that end."""
 
 
 # Ishigami's function ------------------------------------------------------------------------------

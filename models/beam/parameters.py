@@ -265,7 +265,12 @@ OUTPUTS: Mapping[str, Output] = {
         "N", "largest contact force of each site at the initial gaps", dims=("site",)
     ),
     "time_to_depth": Output(
-        "s", "time until the site's gap has grown by the depth", "lifetime", ("site", "depth")
+        "s",
+        "time until the site's gap has grown by the depth",
+        "lifetime",
+        ("site", "depth"),
+        accuracy="accuracy",
+        never_known_at_once=False,  # wear may stop after the horizon
     ),
     "time_to_depth_error": Output(
         "s",
@@ -274,7 +279,12 @@ OUTPUTS: Mapping[str, Output] = {
         may_be_undefined=True,
     ),
     "first_time_to_depth": Output(
-        "s", "time until either site's gap has grown by the depth", "lifetime", ("depth",)
+        "s",
+        "time until either site's gap has grown by the depth",
+        "lifetime",
+        ("depth",),
+        accuracy="accuracy",
+        never_known_at_once=False,
     ),
     "first_time_to_depth_error": Output(
         "s",

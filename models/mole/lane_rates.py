@@ -24,6 +24,7 @@ from models.mole.lane_block import (
     FORCE,
     GAP,
     IMPACT,
+    IMPULSE,
     INTEGRAL,
     JACOBIAN,
     MEASURED,
@@ -108,6 +109,7 @@ def slopes(columns: int) -> Callable[..., None]:
             m[j + IMPACT * LANES] = fma(part * contact, x, m[j + IMPACT * LANES])
             electric = fma(m[RESISTANCE * LANES + lane] * i, i, magnetic * v)
             m[j + ELECTRIC * LANES] = fma(part, electric, m[j + ELECTRIC * LANES])
+            m[j + IMPULSE * LANES] = fma(part, contact, m[j + IMPULSE * LANES])
             if columns > 0:
                 # Derivatives of F with respect to u and i, of i' with respect to u, v, i, p.
                 bend = m[SLOPE * LANES + lane] * added * fma(m[SLOPE * LANES + lane] * u, u, 1.0)

@@ -2,19 +2,21 @@
 
 numba keys its cache on the file of the function alone, so an edit to a file that a kernel calls
 into would leave stale code. Here the cache folder is named by a hash of every source file under
-``models``: any edit takes effect at once, and an unedited package never compiles twice.
+``models`` and, for a kernel defined elsewhere, of its own package: any edit takes effect at once,
+and an unedited package never compiles twice.
 
 What is compiled gives bits that are a function of source and inputs: they depend neither on what
 was compiled before, nor on the width of the vectors, nor on who calls.
 """
 
 import hashlib
+import inspect
 import itertools
 import os
 import secrets
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from shutil import rmtree
@@ -63,44 +65,67 @@ def _name_functions_apart() -> None:
 _name_functions_apart()
 
 
-def _source_hash() -> str:
-    root = Path(__file__).resolve().parent.parent
+_MODELS = Path(__file__).resolve().parent.parent
+
+
+def _source_hash(roots: Iterable[Path]) -> str:
+    """Return a hash of some source files, and of all that lie in some folders."""
     digest = hashlib.sha256()
-    for path in sorted(root.rglob("*.py")):
-        digest.update(path.relative_to(root).as_posix().encode())
-        digest.update(path.read_bytes())
+    for root in roots:
+        for path in sorted(root.rglob("*.py")) if root.is_dir() else [root]:
+            digest.update(os.fsencode(path.relative_to(root.parent)))
+            digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def _cache_folder() -> Path:
-    """Return this source's cache folder, made if need be; forget those of long-gone sources."""
+def _cache_folder(*roots: Path) -> Path:
+    """Return the cache folder of some sources, made if need be; remove those of old sources."""
     base = user_cache_path("vibrolife", appauthor=False) / "numba"
     try:
-        folder = base / _source_hash()
+        folder = base / _source_hash(roots)
         folder.mkdir(parents=True, exist_ok=True)
         os.utime(folder)
     except OSError:
         base = Path(gettempdir()) / f"vibrolife-numba-{os.getuid()}"
-        folder = base / _source_hash()
+        folder = base / _source_hash(roots)
         folder.mkdir(parents=True, exist_ok=True)
     oldest = time.time() - _KEEP_SECONDS
     for other in base.iterdir():
-        with suppress(FileNotFoundError):  # another process may be forgetting it too
+        with suppress(FileNotFoundError):  # another process may be removing it too
             if other.stat().st_mtime < oldest:
                 rmtree(other, ignore_errors=True)
     return folder
 
 
-CACHE_FOLDER = _cache_folder()
+CACHE_FOLDER = _cache_folder(_MODELS)
+
+
+def _folder_of(function: Callable[..., Any]) -> Path:
+    """Return the cache folder of a function, wherever it is defined."""
+    file = Path(inspect.getfile(function)).resolve()
+    if file.is_relative_to(_MODELS) or not file.is_file():
+        return CACHE_FOLDER
+    return _cache_folder(_MODELS, *_importable_sources(file))
+
+
+def _importable_sources(file: Path) -> list[Path]:
+    """Return the package of a source file; if it has none, what it can import beside it."""
+    package, folder = file, file.parent
+    while (folder / "__init__.py").is_file():
+        package, folder = folder, folder.parent
+    if package != file or folder.name in ("site-packages", "dist-packages"):
+        return [package]
+    return sorted({*folder.glob("*.py"), *(one.parent for one in folder.glob("*/__init__.py"))})
+
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 @contextmanager
-def _our_cache_folder():
+def _our_cache_folder(function: Callable[..., Any]) -> Iterator[None]:
     """Point numba at our folder while a function is decorated, and leave the user's be."""
     config: Any = numba.config
-    before, config.CACHE_DIR = config.CACHE_DIR, str(CACHE_FOLDER)
+    before, config.CACHE_DIR = config.CACHE_DIR, str(_folder_of(function))
     try:
         yield
     finally:
@@ -134,7 +159,7 @@ def inlined(function: Function) -> Function:
 
 def _compiled(function: Function, inline: Literal["never", "always"], **more: bool) -> Function:
     njit: Any = numba.njit
-    with _our_cache_folder():
+    with _our_cache_folder(function):
         compiled: Any = njit(
             cache=True,
             nogil=True,

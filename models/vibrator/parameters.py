@@ -402,7 +402,10 @@ OUTPUTS: Mapping[str, Output] = {
         may_be_undefined=True,
     ),
     "synchronisation_time": Output(
-        "s", "time until the disphasing angle stays within 0.05 rad of its mean", "lifetime"
+        "s",
+        "time until the disphasing angle stays within 0.05 rad of its mean",
+        "lifetime",
+        never_known_at_once=False,  # steps may be used up before motors have locked or not
     ),
     "max_excursion": Output("m", "largest displacement of C during the start"),
     "regime": Output(

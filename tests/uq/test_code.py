@@ -1,9 +1,11 @@
 """Rows of a model whose sources were edited are not mixed with those of before."""
 
 import shutil
+import sys
 
 import pytest
 
+from uq.errors import InputError
 from uq.study.code import code_of
 
 FILES = {
@@ -55,3 +57,41 @@ def test_a_module_of_one_file_is_a_model_too(folder, monkeypatch):
 def test_installed_machines_have_codes_of_their_own():
     assert len({code_of(name) for name in ("beam", "vibrator", "mole", "linear")}) == 4
     assert code_of("linear") == code_of("models.analytic:LINEAR")
+
+
+def test_files_beside_a_model_count_where_they_are_imported(folder, monkeypatch):
+    monkeypatch.syspath_prepend(folder)
+    (folder / "alone.py").write_text("from helper import a\n")
+    (folder / "helper.py").write_text("a = 1\n")
+    (folder / "bystander.py").write_text("a = 1\n")
+    before = code_of.__wrapped__("alone:MODEL")
+    (folder / "bystander.py").write_text("a = 2\n")
+    assert code_of.__wrapped__("alone:MODEL") == before
+    (folder / "helper.py").write_text("a = 2\n")
+    assert code_of.__wrapped__("alone:MODEL") != before
+
+
+def test_a_model_in_the_working_folder_has_a_code_at_once(folder, monkeypatch):
+    """As in ``uq verify``, which asks for it before the model is imported."""
+    monkeypatch.setattr(sys, "path", [entry for entry in sys.path if entry])
+    (folder / "fresh_model.py").write_text("a = 1\n")
+    first = code_of.__wrapped__("fresh_model:MODEL")
+    (folder / "fresh_model.py").write_text("a = 2\n")
+    assert code_of.__wrapped__("fresh_model:MODEL") != first
+
+
+def test_a_package_without_init_has_a_code(folder, monkeypatch):
+    monkeypatch.syspath_prepend(folder)
+    (folder / "open_package").mkdir()
+    (folder / "open_package" / "model.py").write_text("a = 1\n")
+    before = code_of.__wrapped__("open_package.model:MODEL")
+    (folder / "open_package" / "model.py").write_text("a = 2\n")
+    assert code_of.__wrapped__("open_package.model:MODEL") != before
+
+
+@pytest.mark.parametrize("reference", ["nowhere.to.be:FOUND", "..:x", ":x", "builtins:MODEL"])
+def test_no_source_is_no_code(reference):
+    with pytest.raises(InputError, match=f"model '{reference}': no source file of module"):
+        code_of(reference)
+    with pytest.raises(InputError, match="no such model 'nothing'"):
+        code_of("nothing")

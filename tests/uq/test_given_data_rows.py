@@ -55,10 +55,9 @@ def test_given_data_values_are_those_of_salib():
     problem = {"num_vars": 3, "names": list(INPUTS)}
     fast = indices(ds, "rbd-fast")["outputs"]["y"]
     assert values(fast, "S1") == pytest.approx(rbd_fast.analyze(problem, x, y, seed=1)["S1"])
-    rounded = with_output(ds.assign(x3=ds["x3"].round(0)), "rounded", y.round(0))
-    for one, name in ((ds, "y"), (rounded, "rounded")):
-        x_of = np.column_stack([one[name].values for name in INPUTS])
-        expected = pawn.analyze(problem, x_of, one[name].values)["median"]
+    for one, name in ((ds, "y"), (with_output(ds, "rounded", y.round(0)), "rounded")):
+        # Which leaves out the row with the largest value of an input.
+        expected = pawn.analyze(problem, x, one[name].values)["median"]
         assert values(indices(one, "pawn")["outputs"][name], "pawn") == pytest.approx(expected)
     scores = stats.norm.ppf((stats.rankdata(y) - 0.5) / 303)
     grid, ends = np.linspace(scores.min(), scores.max(), 100), np.linspace(0, 303, 6)

@@ -61,6 +61,7 @@ def test_a_result_opens_with_plain_xarray_and_describes_itself(kinds):
             "units": "s",
             "long_name": "time to a depth",
             "may_be_undefined": 0,
+            "never_known_at_once": 1,
         }
         assert ds["life_censored"].dtype == np.int8
         assert ds["life_censored"].attrs["role"] == "censored"

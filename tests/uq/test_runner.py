@@ -208,3 +208,13 @@ def test_a_result_keeps_no_file_open(write_study):
     Path("out.nc").unlink()
     assert isinstance(ds["y"].values.sum(), np.float64)
     assert isinstance(ds, xr.Dataset)
+
+
+def test_a_complete_result_of_other_code_comes_with_a_warning(write_study, monkeypatch):
+    study = write_study(samples=8)
+    uq.run(study, workers=0)
+    uq.run(study, workers=0)
+    monkeypatch.setattr("uq.study.code.code_of", lambda reference: "0" * 16)
+    with pytest.warns(UserWarning, match="holds rows that other code of model 'ishigami' computed"):
+        uq.run(study, workers=0)
+    uq.run(study, workers=0, mixed=True)

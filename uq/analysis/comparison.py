@@ -216,8 +216,8 @@ def _compared(pair: Pair, elements: list[Element], entries: list[Entry]) -> Entr
 
     return {
         "units": elements[0].units,
-        "mean": _estimate(pair, MEAN, present, means),
-        "sd": _sds(pair, present, entries),
+        "mean": _without_refused(_estimate(pair, MEAN, present, means), "mean", entries),
+        "sd": _without_refused(_sds(pair, present, entries), "sd", entries),
         "quantiles": each("quantiles", lambda probability: quantile(float(probability))),
         "b_lives": each("b_lives", lambda name: quantile(B_LIVES[name])),
         "thresholds": {
@@ -229,16 +229,23 @@ def _compared(pair: Pair, elements: list[Element], entries: list[Entry]) -> Entr
     }
 
 
+def _without_refused(found: Entry, moment: str, entries: list[Entry]) -> Entry:
+    """Take out the intervals of what the tail of one of the two forbids."""
+    if any(f"{moment}_interval" in entry["reasons"] for entry in entries):
+        for key in found.keys() - {"a", "b"}:
+            found[key] = found[key] | {"low": None, "high": None}
+    return found
+
+
 def _sds(pair: Pair, samples: list[Sample], entries: list[Entry]) -> Entry:
+    sds = [{"value": entry["sd"], **entry["sd_interval"]} for entry in entries]
+    sides = dict(zip("ab", sds, strict=True))
     if any(entry["sd"] is None for entry in entries):
         nothing = dict.fromkeys(_ENDS)
-        sides = {
-            key: nothing | {"value": entry["sd"]} for key, entry in zip("ab", entries, strict=True)
-        }
         return {**sides, "difference": nothing, "ratio": nothing}
-    known = [pair.sd(i, sample) for i, sample in enumerate(samples)]
+    known = [_known(entry) for entry in sds]
     return {
-        **dict(zip("ab", map(_plain, known), strict=True)),
+        **sides,
         "difference": _plain(pair.difference(SD, samples, known)),
         "ratio": _plain(pair.ratio(samples, known)),
     }
@@ -265,10 +272,7 @@ def _sides(pair: Pair, elements: list[Element], threshold: float, entries: list[
 def _estimate(
     pair: Pair, estimator: Estimator, samples: list[Sample], entries: list[Entry]
 ) -> Entry:
-    known = [
-        Estimate(*(np.nan if entry[end] is None else entry[end] for end in _ENDS))
-        for entry in entries
-    ]
+    known = [_known(entry) for entry in entries]
     if any(np.isnan(one.value) for one in known):
         apart = NOTHING
     elif any("assumes" in entry for entry in entries):  # not a plain quantile of the rows
@@ -276,6 +280,10 @@ def _estimate(
     else:
         apart = pair.difference(estimator, samples, known)
     return {**dict(zip("ab", entries, strict=True)), "difference": _plain(apart)}
+
+
+def _known(entry: Entry) -> Estimate:
+    return Estimate(*(np.nan if entry[end] is None else entry[end] for end in _ENDS))
 
 
 def _plain(estimate: Estimate) -> Entry:

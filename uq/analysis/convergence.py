@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from uq.analysis.accuracy import error_name, stated_error
 from uq.analysis.statistics import summarise
 from uq.designs.table import DESIGNS
 from uq.errors import InputError
@@ -72,10 +73,11 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
     -------
     pandas.DataFrame
         Index: element of an output. ``estimate``, its mean or, where rows never end or are
-        censored, its median; ``sampling``, the half-width of its interval; ``own``, the mean
-        magnitude of ``<output>_error``, the error of solver and time averages that the model gives
-        for each row (NaN where it gives none): what the estimate would be off by if they all lay on
-        one side; ``warning``, not empty where `own` is the larger: then more rows do not help.
+        censored or the tail is heavy, its median; ``sampling``, the half-width of its interval;
+        ``own``, the mean magnitude of ``<output>_error``, the error of solver and time averages
+        that the model gives for each row (NaN where it gives none): what the estimate would be off
+        by if they all lay on one side; ``warning``, not empty where `own` is the larger: then more
+        rows do not help.
     """
     found = summarise(ds)["outputs"]
     lines = {}
@@ -84,7 +86,7 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
             continue
         entry = found[element.name]
         label, interval = "mean", entry["mean_interval"]
-        if entry["mean"] is None:
+        if entry["mean"] is None or "mean_interval" in entry["reasons"]:
             label, interval = "median", entry["quantiles"].get("0.5", {"low": None, "high": None})
         known = None not in (interval["low"], interval["high"])
         sampling = (interval["high"] - interval["low"]) / 2 if known else np.nan
@@ -112,19 +114,16 @@ def _warning(element: Element, sampling: float, own: float) -> str:
 def _own(ds: xr.Dataset) -> Iterator[str]:
     """Yield the outputs that are not themselves the error of another."""
     names = output_names(ds)
-    errors = {f"{name}_error" for name in names}
+    errors = {error_name(name) for name in names}
     return (name for name in names if name not in errors)
 
 
 def _own_error(ds: xr.Dataset, element: Element) -> float:
-    name = f"{element.output}_error"
-    if name not in output_names(ds):
+    error = stated_error(ds, element)
+    if error is None:
         return np.nan
-    for error in elements_of(ds, [name]):
-        if error.place == element.place:
-            sizes = np.abs(error.values[np.isfinite(error.values)])
-            return float(sizes.mean()) if len(sizes) else np.nan
-    return np.nan
+    sizes = np.abs(error.values[np.isfinite(error.values)])
+    return float(sizes.mean()) if len(sizes) else np.nan
 
 
 def _sizes(ds: xr.Dataset) -> list[int]:

@@ -1,7 +1,6 @@
 """Lifetimes: the share of rows that outlives each time."""
 
-import warnings
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -26,10 +25,12 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     -------
     xarray.Dataset
         Dimensions: those of the output, and ``time`` [s], every time at which a row ended or was
-        last seen. ``survival``: the estimate of Kaplan and Meier. ``low``, ``high``: its pointwise
-        95 % interval, for independent rows by the exponential Greenwood formula [1]_, else from
-        the replicates; NaN where nothing can be said. ``never``: the share of rows known never to
-        end. Counts: ``rows``, ``censored``, and ``undefined`` and ``failed``, which take no part.
+        last seen. ``survival``: the estimate of Kaplan and Meier. Where the output declares that a
+        life that never ends is known at once, it is that of the rows that end, times their share,
+        plus the share that never does. ``low``, ``high``: its pointwise 95 % interval, for
+        independent rows by the exponential Greenwood formula [1]_, else from the replicates; NaN
+        where nothing can be said. ``never``: the share of rows known never to end. Counts:
+        ``rows``, ``censored``, and ``undefined`` and ``failed``, which take no part.
 
     Raises
     ------
@@ -91,34 +92,90 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, An
     if len(values) == 0:
         unknown = np.full(len(time), np.nan)
         return counts | {"never": np.nan} | dict.fromkeys(("survival", "low", "high"), unknown)
-    estimate = _kaplan_meier(values, censored, time)
-    share = estimate.evaluate(time)
+    known_at_once = element.never_known_at_once
+    found = _estimate(values, censored, time, known_at_once)
     if replicate is None:
-        interval = _greenwood(estimate, time)
+        interval = _greenwood(found)
     else:
         of = replicate[element.present]
         estimates = [
-            _kaplan_meier(values[of == r], censored[of == r], time).evaluate(time)
+            _estimate(values[of == r], censored[of == r], time, known_at_once).share
             for r in np.unique(of)
         ]
-        interval = scattered_share_interval(share, np.array(estimates))
+        interval = scattered_share_interval(found.share, np.array(estimates))
     never = element.never.sum() / len(values)
-    return counts | {"never": never, "survival": share} | interval._asdict()
+    return counts | {"never": never, "survival": found.share} | interval._asdict()
 
 
-def _kaplan_meier(values: Floats, censored: Mask, time: Floats) -> Any:
-    """Return scipy's estimate; it takes no infinities: what never ends leaves at the end."""
+class _Estimate(NamedTuple):
+    """Share that outlives each time, and the variance of that estimate from independent rows."""
+
+    share: Floats
+    variance: Floats
+
+
+def _estimate(values: Floats, censored: Mask, time: Floats, known_at_once: bool) -> _Estimate:
+    """Estimate the share that outlives each time.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        +inf for rows that never end.
+    censored : ndarray of bool, shape (n,)
+    time : ndarray
+        [s]
+    known_at_once : bool
+        Whether every censored row is one that ends.
+
+    Returns
+    -------
+    _Estimate
+
+    Notes
+    -----
+    With p the share of the n rows that end, and S the estimate of Kaplan and Meier among these,
+    the share that outlives t is 1 - p + p S(t). Given how many rows end, S has no bias worth the
+    name, so that the errors of p and S are uncorrelated, and the variance is
+    (1 - S)^2 p (1 - p) / n + p^2 Var(S), with Greenwood's Var(S). Without censored rows that is
+    the variance of the share of all rows, F (1 - F) / n with F = p (1 - S).
+
+    Where never is learnt late, a row that never ends is at risk until the last time: p is 1.
+    """
     never = np.isposinf(values)
-    ended = ~never & ~censored
-    left = np.where(never, time.max(initial=0.0), values)[~ended]
-    return stats.ecdf(stats.CensoredData(uncensored=values[ended], right=left)).sf
+    if not known_at_once:
+        return _kaplan_meier(np.where(never, time.max(initial=0.0), values), never | censored, time)
+    p = 1 - never.mean()
+    of_ending = _kaplan_meier(values[~never], censored[~never], time)
+    share = 1 - p + p * of_ending.share
+    spread = (1 - of_ending.share) ** 2 * p * (1 - p) / len(values)
+    return _Estimate(share, spread + p**2 * of_ending.variance)
 
 
-def _greenwood(estimate: Any, time: Floats) -> Interval:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # says that some ends are not defined
-        interval = estimate.confidence_interval(CONFIDENCE, method="log-log")
-    return Interval(interval.low.evaluate(time), interval.high.evaluate(time))
+def _kaplan_meier(values: Floats, censored: Mask, time: Floats) -> _Estimate:
+    """Return Kaplan and Meier's estimate from finite values, with Greenwood's variance.
+
+    scipy's ``ecdf`` has the first, but gives the second within its own intervals alone.
+    """
+    ends, count = np.unique(values[~censored], return_counts=True)
+    at_risk = len(values) - np.searchsorted(np.sort(values), ends)
+    share = np.cumprod((at_risk - count) / at_risk)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        variance = share**2 * np.cumsum(count / (at_risk * (at_risk - count)))
+    # All have ended: certain of these rows, unless some were lost from sight before.
+    variance[share == 0] = np.nan if censored.any() else 0.0
+    place = np.searchsorted(ends, time, side="right")
+    return _Estimate(np.append(1.0, share)[place], np.append(0.0, variance)[place])
+
+
+def _greenwood(estimate: _Estimate) -> Interval:
+    """Return the interval that is symmetric about the logarithm of -log(share)."""
+    share, deviation = estimate.share, np.sqrt(estimate.variance)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        middle = np.log(-np.log(share))
+        half = stats.norm.ppf(0.5 + CONFIDENCE / 2) * deviation / (share * -np.log(share))
+        low, high = (np.exp(-np.exp(middle + side * half)) for side in (1, -1))
+    known = (share > 0) & (share < 1)
+    return Interval(*(np.where(known, end, np.nan) for end in (low, high)))
 
 
 def _finite(values: Floats) -> Floats:

@@ -22,8 +22,10 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     -------
     pandas.DataFrame
         Index: name of the element. Columns: units, mean, sd and each quantile, with ``_low`` and
-        ``_high`` for the 95 % interval; tolerance bounds, where the study asks for them, with the
-        rows they need; counts of rows never, censored, undefined and failed; ``B1``, ``B10`` and
+        ``_high`` for the 95 % interval; ``tail_k``, the shape of the heavier tail (no variance
+        from 0.5 on, no mean from 1 on); tolerance bounds, where the study asks for them, with the
+        rows they need; counts of rows never, censored, undefined and failed, and, where an accuracy
+        was asked for, of those whose error is larger (``accuracy_missed``); ``B1``, ``B10`` and
         ``B50`` of lifetimes; and for each threshold ``P(>t)`` and ``P(<t)`` with their intervals,
         where it is one of the output's.
         Infinity stands for never, NaN for what could not be given.
@@ -43,12 +45,15 @@ def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
     """Return one line of `summary`."""
     line = {"units": entry["units"]}
     line |= _cells("mean", {"value": entry["mean"], **entry["mean_interval"]})
-    line |= _cells("sd", {"value": entry["sd"]})
+    line |= _cells("sd", {"value": entry["sd"], **entry["sd_interval"]})
+    line["tail_k"] = entry["tail"]["k"] if entry["tail"] else np.nan
     for probability, estimate in entry["quantiles"].items():
         line |= _cells(f"q{probability}", estimate)
     if bounds := entry["tolerance"]:
         line |= _cells("tolerance", bounds)
     line |= {count: entry[count] for count in COUNTS}
+    if "accuracy" in entry:
+        line["accuracy_missed"] = entry["accuracy"]["missed"]
     for name, life in entry["b_lives"].items():
         line |= _cells(name, life)
     for threshold, shares in entry["thresholds"].items():

@@ -178,6 +178,8 @@ class Pair:
             if intervals.is_constant(apart + np.abs(own).max()):  # they differ by rounding alone
                 return Estimate(value, np.nan, np.nan)
             return Estimate(value, *intervals.scatter_interval(value, apart))
+        if estimator is SHARE and all(one is None for one in self._replicate):
+            known = [_newcombe(sample) for sample in samples]
         found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
         wide = sum(one.high - one.low for one in known)
         if (
@@ -193,15 +195,6 @@ class Pair:
             found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
             return _factor(known[1].value / known[0].value, found[1], found[0])
         return two_samples.ratio(known[0], known[1], self._correlation(SD, samples))
-
-    def sd(self, i: int, sample: Sample) -> Estimate:
-        """Return the standard deviation of one of the two."""
-        values = sample.numbers[sample.kept]
-        value = _sd(values)
-        if self._replicate[i] is None:
-            return Estimate(value, *two_samples.sd_interval(values))
-        found = self._by_replicate(SD, i, sample)
-        return _factor(value, found, np.ones(len(found)))
 
     @property
     def unpaired(self) -> float:
@@ -246,6 +239,16 @@ class Pair:
             if len(values):
                 found[r] = estimator.of(values)
         return found
+
+
+def _newcombe(sample: Sample) -> Estimate:
+    """Return a share with Wilson's interval, of which that of a difference is made.
+
+    The interval of a single share is exact where hits are few: two of these would make one too
+    wide.
+    """
+    hits = sample.numbers[sample.kept]
+    return Estimate(float(hits.mean()), *intervals.wilson_interval(hits.mean(), len(hits)))
 
 
 def _factor(value: float, above: Floats, below: Floats) -> Estimate:

@@ -1,6 +1,5 @@
 """What the rows of a design make of the laws and rank correlations that were stated."""
 
-from collections.abc import Mapping
 from math import inf
 from typing import NamedTuple
 
@@ -9,15 +8,12 @@ import xarray as xr
 
 from uq.designs.table import DESIGNS
 from uq.indices.independent_inputs import independent_inputs
-from uq.inputs.conditioning import cdf_within, ppf_within
-from uq.inputs.data_files import columns_of_files
+from uq.inputs.conditioning import cdf_within, factor_of, ppf_within
 from uq.inputs.distributions import Law
 from uq.rows.elements import Floats, independent_rows
 from uq.rows.sampling import row_block, rows
 from uq.study.definition import Study
-from uq.study.file import Tied
-from uq.study.input_checks import read_entries
-from uq.study.reading import parse, shape_faults, sound_entries
+from uq.study.input_checks import laws_of
 
 PROBABILITIES = (0.05, 0.5, 0.95)
 
@@ -67,7 +63,7 @@ def drawn_inputs(study: Study) -> dict[str, Floats]:
     x = row_block(study, 0, min(rows(study), MAX_ROWS)).x
     column = {name: x[:, i] for i, name in enumerate(study.model.parameter_names)}
     return {
-        name: column[name] if law.times is None else column[name] / column[law.times]
+        name: column[name] if law.times is None else factor_of(law, column[name], column[law.times])
         for name, law in study.uncertain.items()
     }
 
@@ -132,12 +128,4 @@ def stated_and_realised(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
     if plain.sizes["sample"] == 0:
         return {}
     values = independent_inputs(plain)
-    return {name: (law, values[name]) for name, law in _laws(ds.attrs["study"]).items()}
-
-
-def _laws(text: str) -> Mapping[str, Law]:
-    """Return the laws in the text of a study that a result carries."""
-    data = parse(text, "study of this result")
-    tables = sound_entries(data, shape_faults(data))
-    entries, _ = read_entries(tables, columns_of_files(tables, None)[0])
-    return {name: entry for name, entry in entries.items() if not isinstance(entry, Tied)}
+    return {name: (law, values[name]) for name, law in laws_of(ds.attrs["study"]).items()}

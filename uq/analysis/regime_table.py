@@ -11,6 +11,7 @@ from uq.analysis.statistics import regime_shares
 from uq.errors import InputError
 from uq.indices.given_data import given_data_indices
 from uq.indices.targets import RefusedError, Target, category_targets, targets
+from uq.moments import moments
 from uq.rows.elements import (
     Floats,
     analysis_of,
@@ -40,7 +41,8 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
         ``probability``, of the inputs of the rows in it; ``distance``, of Kolmogorov and Smirnov,
         between these and the inputs of all other rows, and ``distance_dummy``, the largest for
         inputs that play no part; NaN where one side has too few rows. Over ``output`` and
-        ``regime``: ``rows``, ``mean``, ``sd``. Over ``output``: ``between``, the share of its
+        ``regime``: ``rows``, ``mean``, ``sd`` (NaN where too heavy a tail has
+        none). Over ``output``: ``between``, the share of its
         variance that lies between regimes, with ``between_low`` and ``between_high``. Lifetimes
         stand as their rates.
 
@@ -108,5 +110,7 @@ def _distances(inputs: dict[str, Floats], target: Target) -> list[float]:
 
 def _moments(values: Floats) -> tuple[float, float, float]:
     kept = values[np.isfinite(values)]
-    mean = kept.mean() if len(kept) else np.nan
-    return len(kept), mean, kept.std(ddof=1) if len(kept) > 1 else np.nan
+    if not len(kept):
+        return 0, np.nan, np.nan
+    found = moments(kept)
+    return len(kept), found.mean, found.sd

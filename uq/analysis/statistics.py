@@ -7,13 +7,15 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq import intervals
+from uq.analysis.accuracy import accuracy_missed
 from uq.analysis.b_lives import b_lives, ended_by, entry, quantile_entry
 from uq.analysis.life_fit import fits_of
 from uq.analysis.regime_split import between_share
 from uq.contract import Status
 from uq.designs.table import DESIGNS
 from uq.indices.targets import targets
-from uq.intervals import Replicates
+from uq.intervals import Interval, Replicates
+from uq.moments import moments
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
@@ -65,8 +67,11 @@ def summarise(
     dict
         ``samples`` and ``status`` count all rows. Everything else is about the ``rows_used``, the
         independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
-        element -> mean, sd, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
+        element -> mean, sd, their intervals, ``tail``: the shape k of its heavier tail with its
+        interval, the number of values it was fitted to and their side, ``reasons``: why the tail
+        forbids any of these four, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
         ``between_regimes``: the share of its variance, or of its rate's, that lies between them,
+        ``accuracy``: how many rows state an error beyond the accuracy asked for, if one was,
         counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
         not be given. A number that does not exist or is not finite is None; beside it ``never``,
         ``low_censored`` and the like say why.
@@ -87,6 +92,7 @@ def summarise(
         "outputs": {
             element.name: _describe(element, replicate, analysis)
             | _between(element, codes, replicate)
+            | accuracy_missed(rows, element)
             | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
             for element in elements_of(rows, outputs)
         },
@@ -131,15 +137,10 @@ COUNTS = ("never", "censored", "undefined", "failed")
 
 
 def _describe(element: Element, replicate: Replicates, analysis: AnalysisTable) -> dict[str, Any]:
-    values = element.at_least
     within = _of(replicate, element.present)
-    moments = len(values) > 0 and not element.never.any() and not element.censored.any()
-    mean = intervals.mean_interval(values, within) if moments else intervals.UNKNOWN
     return {
         "units": element.units,
-        "mean": _plain(values.mean()) if moments else None,
-        "mean_interval": {"low": _plain(mean.low), "high": _plain(mean.high)},
-        "sd": _plain(values.std(ddof=1)) if moments and len(values) > 1 else None,
+        **_moments(element, within),
         "quantiles": {
             repr(probability): quantile_entry(element, probability, within)
             for probability in analysis.quantiles
@@ -151,6 +152,23 @@ def _describe(element: Element, replicate: Replicates, analysis: AnalysisTable) 
         },
         "b_lives": b_lives(element, replicate) if element.kind == "lifetime" else {},
     } | {count: int(getattr(element, count).sum()) for count in COUNTS}
+
+
+def _moments(element: Element, within: Replicates) -> dict[str, Any]:
+    values = element.at_least
+    if not len(values) or element.never.any() or element.censored.any():
+        nothing = _ends(intervals.UNKNOWN)
+        numbers = {"mean": None, "mean_interval": nothing, "sd": None, "sd_interval": nothing}
+        return numbers | {"tail": None, "reasons": {}}
+    found = moments(values, within)
+    return {
+        "mean": _plain(found.mean),
+        "mean_interval": _ends(found.mean_interval),
+        "sd": _plain(found.sd),
+        "sd_interval": _ends(found.sd_interval),
+        "tail": found.tail and found.tail._asdict(),
+        "reasons": found.reasons,
+    }
 
 
 def _tolerance(
@@ -222,6 +240,10 @@ def _share(hits: Mask, replicate: Replicates) -> dict[str, Any]:
     interval = intervals.share_interval(hits, replicate)
     value = hits.mean() if len(hits) else np.nan
     return {"value": _plain(value), "low": _plain(interval.low), "high": _plain(interval.high)}
+
+
+def _ends(interval: Interval) -> dict[str, float | None]:
+    return {"low": _plain(interval.low), "high": _plain(interval.high)}
 
 
 def _of(replicate: Replicates, rows: Mask) -> Replicates:

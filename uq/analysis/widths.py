@@ -11,6 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import stats
 
+from uq.designs.table import DESIGNS
 from uq.rows.elements import (
     Element,
     Floats,
@@ -20,6 +21,7 @@ from uq.rows.elements import (
     independent_rows,
     shown_outputs,
 )
+from uq.tails import lacks_variance
 
 _ENOUGH_ROWS = 8
 _LEVEL = 0.975
@@ -63,7 +65,7 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
                 for t in analysis.thresholds.get(element.output, ())
             },
         }
-        if "A" in labels:
+        if DESIGNS[pilot.attrs["design"]].crossed:
             found[element.name] |= _indices(whole, groups, labels, samples * replicates, factor)
     return found
 
@@ -78,7 +80,7 @@ def _factor(design: str, replicates: int) -> float | None:
 def _mean(element: Element, rows: int, factor: float | None) -> float | None:
     values = element.at_least
     unbounded = element.never.any() or element.censored.any()
-    if factor is None or unbounded or len(values) < _ENOUGH_ROWS:
+    if factor is None or unbounded or len(values) < _ENOUGH_ROWS or lacks_variance(values):
         return None
     return float(2 * factor * values.std(ddof=1) / np.sqrt(rows))
 

@@ -42,7 +42,7 @@ def extend(
     """Give a result more samples and show it; return the exit code."""
     action = partial(further.extend, path, samples, model, **options)
     ds, note = carried_out(path, quiet, action)
-    return end(further.study_of(path, model), ds, path, quiet, note)
+    return end(further.study_of(path, model), ds, path, quiet, note, options["mixed"])
 
 
 def rerun(
@@ -59,7 +59,7 @@ def rerun(
     changes = dict(literal(text) for text in settings)
     action = partial(further.rerun_failed, path, changes, model, **options)
     ds, note = carried_out(path, quiet, action)
-    return end(further.study_of(path, model), ds, path, quiet, note)
+    return end(further.study_of(path, model), ds, path, quiet, note, options["mixed"])
 
 
 def verify(path: Path, model: str | None) -> int:

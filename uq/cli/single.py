@@ -16,6 +16,7 @@ from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.errors import InputError
 from uq.literals import read_number
+from uq.places import file_behind
 from uq.rows import results
 from uq.rows.elements import elements_of
 from uq.running.simulation import holds_trajectory
@@ -53,7 +54,7 @@ def simulate(
         from uq.drawing.motion_plot import plot_history
 
         try:
-            plot.parent.mkdir(parents=True, exist_ok=True)
+            file_behind(plot).parent.mkdir(parents=True, exist_ok=True)
             plot_history(ds).savefig(plot, dpi=DOTS_PER_INCH)
         except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
             raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None

@@ -22,7 +22,6 @@ from uq.rows.sampling import group_size, rows
 from uq.running import runner
 from uq.running.job import Progress
 from uq.store import folder_of
-from uq.study.code import is_other_code
 from uq.study.definition import Study, load_study
 from uq.wording import law
 
@@ -42,6 +41,7 @@ def check(path: str, model: str | None) -> None:
             ("model", f"{study.model.name}, version {study.model.version}"),
             ("design", f"{design.method}: {DESIGNS[design.method].meaning}"),
             ("rows", f"{rows(study)} = {' x '.join(parts)}" if parts[1:] else str(rows(study))),
+            *_of_random(study),
             ("outputs", ", ".join(study.analysis.outputs)),
             ("sensitivity", f"{feeds} can be had from this design"),
             ("result", str(runner.output_path(study))),
@@ -52,6 +52,14 @@ def check(path: str, model: str | None) -> None:
     ties = [(name, f"equals {tied.equals}", "") for name, tied in study.tied.items()]
     grid(laws + ties, header=("parameter", "distribution", "unit"))
     _show_realised(study)
+
+
+def _of_random(study: Study) -> list[tuple[str, str]]:
+    design = DESIGNS[study.design.method]
+    if not study.random or not design.shares_seeds:
+        return []
+    more = "; one more row of each tells the share of noise" if design.crossed else ""
+    return [("seeds", f"the model is random: rows that are compared share a seed{more}")]
 
 
 def _unit(study: Study, name: str) -> str:
@@ -105,13 +113,12 @@ def run(
         study = study.with_samples(samples)
     target = runner.output_path(study, output)
     if not fresh and (ds := runner.finished(study, target)) is not None:
-        by = ", by other code of the model" * is_other_code(ds.attrs, study.model_reference)
-        note = f"{target} is complete already{by}; nothing was computed (--fresh computes it again)"
+        note = f"{target} is complete already; nothing was computed (--fresh computes it again)"
     else:
         ds, note = carried_out(
             target, quiet, partial(runner.run, study, target, fresh=fresh, **options)
         )
-    return end(study, ds, target, quiet, note)
+    return end(study, ds, target, quiet, note, options["mixed"])
 
 
 def carried_out(
@@ -141,9 +148,17 @@ def carried_out(
     return ds, f"{target}: {computed} rows in {time.monotonic() - began:.1f} s"
 
 
-def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str) -> int:
-    """Show the summary of a result; return the exit code."""
+def end(
+    study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixed: bool = False
+) -> int:
+    """Show the summary of a result; return the exit code.
+
+    Rows that other code computed are named, also where all else is to be quiet, unless they are
+    wanted.
+    """
     say_when_interrupted(f"interrupted; the result is complete in {target}")
+    if not mixed and (line := runner.made_elsewhere(study, target, ds)):
+        print(plain_line(line), file=sys.stderr)
     if not quiet:
         from uq.analysis.statistics import summarise
 

@@ -9,6 +9,7 @@ from uq.analysis.b_lives import B_LIVES
 from uq.cli.printing import console, grid, heading, paragraph
 from uq.wording import (
     Entry,
+    accuracy_not_reached,
     duration,
     index,
     index_interval,
@@ -42,6 +43,8 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
         unit = "" if output["units"] == "1" else f" [{output['units']}]"
         heading(f"\n{name}{unit}", meaning)
         grid(_lines(output), header=("", "value", "95 % interval", ""))
+        for reason in dict.fromkeys(output["reasons"].values()):
+            paragraph(reason, indent=2)
         if fits := output.get("fits"):
             _show_fits(fits)
     for note in summary["notes"]:
@@ -60,7 +63,7 @@ def _lines(output: Entry) -> Iterator[Line]:
         return label, known(entry, key), interval(entry), in_words
 
     yield line("mean", {"value": output["mean"], **output["mean_interval"]})
-    yield line("sd", output, "sd")
+    yield line("sd", {"value": output["sd"], **output["sd_interval"]})
     for probability, entry in output["quantiles"].items():
         yield line(f"quantile {probability}", entry)
     for name, entry in output["b_lives"].items():
@@ -85,6 +88,8 @@ def _lines(output: Entry) -> Iterator[Line]:
     for count in ("never", "censored", "undefined", "failed"):
         if output[count]:
             yield count, str(output[count]), "", "rows"
+    if (accuracy := output.get("accuracy")) and accuracy["missed"]:
+        yield "", accuracy_not_reached(accuracy), "", ""
 
 
 _ASSUMES = "censoring says nothing of the life left"
@@ -120,6 +125,9 @@ def show_sensitivity(found: Entry) -> None:
         for table in (kinds, pairs):
             if table:
                 grid(_ranked(table, output.get("dummy", {})), header=_header(table))
+        if noise := output.get("noise"):
+            share = (index(noise, "value", "ST"), index_interval(noise, "ST"))
+            grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
         for note in output["notes"]:
             paragraph(note, indent=2)
 

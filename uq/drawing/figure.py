@@ -21,6 +21,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import EngFormatter, LogFormatter
 
 from uq.literals import plain
+from uq.places import file_behind
 from uq.rows.elements import Element, Floats
 
 WIDTH = 3.4
@@ -165,8 +166,17 @@ def write(figure: Figure, path: Path) -> list[Path]:
     Returns
     -------
     list of Path
+
+    Raises
+    ------
+    InputError
+        When one of them is there and is no file.
     """
-    png, svg, pdf = (path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg", "pdf"))
+    png, svg, pdf = files = tuple(
+        path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg", "pdf")
+    )
+    for file in files:
+        file_behind(file)
     lay_out(figure)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": None})

@@ -36,7 +36,7 @@ MEANING = {
 
 
 def _is_bar(kind: str, value: Any) -> bool:
-    return isinstance(value, dict) and kind not in ("S2", "dummy")
+    return isinstance(value, dict) and kind not in ("S2", "dummy", "noise")
 
 
 def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:
@@ -85,7 +85,7 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
     matplotlib.figure.Figure
     """
     kinds = [kind for kind, value in entry.items() if _is_bar(kind, value)]
-    parameters = sorted(entry[kinds[-1]], key=lambda p: float(entry[kinds[-1]][p]["value"]))
+    parameters = sorted(entry[kinds[-1]], key=lambda p: entry[kinds[-1]][p]["value"] or 0.0)
     labels = [_named(ds[parameter]) for parameter in parameters]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
     figure, (axes,) = new_figure(0.8 + 0.13 * lines.sum(), entries=2)

@@ -16,7 +16,7 @@ MIN_ROWS = 300
 EXPLAINED = 0.8
 """An expansion that explains less of rows it has not seen says too little about the output."""
 
-_DEGREES = (2, 4, 6, 8)
+_DEGREES = (2, 4, 6, 8)  # 1 where an input has two values only
 _ENOUGH = 0.99
 _LEAST_VALUES = 10
 _MOST_ROWS = 2048
@@ -44,7 +44,8 @@ def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
     Raises
     ------
     RefusedError
-        Too few rows, or no degree of polynomials explains enough of the rows held out.
+        Too few rows, an input with a single value, or no degree of polynomials explains enough of
+        the rows held out.
 
     References
     ----------
@@ -69,8 +70,9 @@ def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
     columns = np.column_stack([*(column[chosen] for column in x.values()), rng.random(n)])
     y = (y[chosen] - y[chosen].mean()) / y[chosen].std()
     half = n // 2
+    degrees, least = _degrees(names, columns[:half])
     degree, explained = 0, float("-inf")
-    for candidate in _DEGREES:
+    for candidate in degrees:
         if _terms(len(names), candidate) > min(_TERMS_PER_ROW * half, _MOST_TERMS):
             break
         # SALib takes the ranges of the inputs from the rows it is given: from all of them, here.
@@ -87,7 +89,7 @@ def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
     if explained < EXPLAINED:
         raise RefusedError(
             f"functions of one and of two inputs explain {max(explained, 0):.0%} of the variance of"
-            f" rows held out; {EXPLAINED:.0%} are needed"
+            f" rows held out; {EXPLAINED:.0%} are needed{least}"
         )
     found = _expansion(columns, y, degree)
     share = np.ravel(found["S"])
@@ -110,6 +112,30 @@ def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
         " every second case"
     )
     return Indices(values, (note,), {kind: float(found_[-1]) for kind, found_ in kinds.items()})
+
+
+def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
+    """Return the degrees to try, and why they are no higher; k values allow k - 1.
+
+    Raises
+    ------
+    RefusedError
+        Of an input with a single value.
+    """
+    counts = [len(np.unique(column)) for column in x.T]
+    fewest = min(counts)
+    name = names[counts.index(fewest)]
+    if fewest == 1:
+        raise RefusedError(
+            f"{name} has the same value in all of {len(x)} rows: no polynomial can be fitted"
+        )
+    if fewest > max(_DEGREES):
+        return _DEGREES, ""
+    allowed = tuple(d for d in _DEGREES if d < fewest) or (1,)
+    return (
+        allowed,
+        f" ({name} has {fewest} values, which allow no higher degree than {allowed[-1]})",
+    )
 
 
 def _terms(inputs: int, degree: int) -> int:

@@ -2,8 +2,10 @@
 
 import xarray as xr
 
+from uq.inputs.conditioning import factor_of
 from uq.rows.elements import Floats
 from uq.study.file import Tied
+from uq.study.input_checks import laws_of
 from uq.study.reading import read_study_text
 
 
@@ -21,13 +23,12 @@ def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
         Without parameters that equal another; of one that is another times a factor, the factor.
         Inputs with rank correlations are there all the same.
     """
-    entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
-    found = {}
-    for name, entry in entries.items():
-        if not isinstance(entry, Tied):
-            values = ds[name].values
-            found[name] = values if entry.times is None else values / ds[entry.times].values
-    return found
+    return {
+        name: ds[name].values
+        if law.times is None
+        else factor_of(law, ds[name].values, ds[law.times].values)
+        for name, law in laws_of(ds.attrs["study"]).items()
+    }
 
 
 def are_dependent(ds: xr.Dataset) -> bool:

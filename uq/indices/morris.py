@@ -7,8 +7,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.designs.trajectories import STEP
-from uq.indices.groups import grouped_rows, whole_groups
-from uq.indices.independent_inputs import independent_inputs
+from uq.indices.groups import whole_groups
+from uq.indices.steps import steps
 from uq.indices.targets import Index, Indices, RefusedError
 from uq.intervals import is_constant, scatter_interval
 from uq.rows.elements import Floats
@@ -16,7 +16,6 @@ from uq.rows.elements import Floats
 MIN_TRAJECTORIES = 4
 """Fewer trajectories than this give no mean worth the name."""
 
-_ROUNDING = 1e-12
 _CORNERS = (
     "trajectories chosen far apart favour the corners of the inputs: the effects are theirs, tens"
     " of per cent off those of all trajectories, which the design 'morris' estimates"
@@ -33,7 +32,8 @@ class Trajectories(NamedTuple):
     parameters : tuple of str
         The inputs that change, d of them.
     direction : ndarray, shape (R, N, d, d)
-        Whether a step (third axis) raises an input (last axis), 1, lowers it, -1, or neither, 0.
+        Whether a step (third axis) raises an input (last axis), 1, lowers it, -1, or neither, 0,
+        in probability.
     optimised : bool
         Whether they were chosen far apart.
     """
@@ -59,15 +59,9 @@ def trajectories(ds: xr.Dataset) -> Trajectories:
     Raises
     ------
     InputError
-        When rows are missing.
+        When rows are missing or are not those of the design.
     """
-    order, _ = grouped_rows(ds)
-    inputs = independent_inputs(ds)
-    x = np.stack([values[order] for values in inputs.values()], axis=-1)
-    change = np.diff(x, axis=2)
-    change[np.abs(change) <= _ROUNDING * np.abs(x).max(axis=(0, 1, 2))] = 0.0
-    optimised = ds.attrs["design"] == "morris-optimised"
-    return Trajectories(order, tuple(inputs), np.sign(change), optimised)
+    return Trajectories(*steps(ds), optimised=ds.attrs["design"] == "morris-optimised")
 
 
 def morris_indices(design: Trajectories, values: Floats) -> Indices:
@@ -111,8 +105,7 @@ def morris_indices(design: Trajectories, values: Floats) -> Indices:
     y = values[design.order]
     if is_constant(y[whole]):
         raise RefusedError("the same value in all rows: nothing depends on the inputs")
-    # Of each step only one input changes. A step within one of several discrete values changes
-    # none, and has no effect.
+    # A step within one of several discrete values changes no input, and has no effect.
     effects = np.einsum("rns,rnsp->rnp", np.diff(y, axis=2), design.direction) / STEP
 
     replicates = [own[rows] for own, rows in zip(effects, whole, strict=True)]

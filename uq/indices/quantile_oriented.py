@@ -3,7 +3,9 @@
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
+from uq.indices.slices import even_cuts, slice_of
 from uq.indices.targets import RefusedError
 from uq.rows.elements import Floats
 
@@ -32,8 +34,9 @@ def quantile_indices(
     Returns
     -------
     indices : dict
-        Name -> raw indices, shape (d,), from slices of equally many rows. They are too large, as
-        each slice has its quantile fitted to it: those of inputs without effect show by how much.
+        Name -> raw indices, shape (d,), from slices of equally many rows, or by value where an
+        input has few. They are too large, as each slice has its quantile fitted to it: those of
+        inputs without effect show by how much.
     notes : tuple of str
         Why some quantiles have none.
 
@@ -47,7 +50,6 @@ def quantile_indices(
     .. [1] J.-C. Fort, T. Klein, N. Rachdi, "New sensitivity analysis subordinated to a contrast",
        Commun. Stat. Theory Methods 45, 4349-4364 (2016).
     """
-    orders = np.argsort(x, axis=0, kind="stable").T
     found, notes = {}, []
     for name, p in quantiles.items():
         rows = max(_ROWS_IN_SLICE, int(np.ceil(_ROWS_BEYOND / min(p, 1 - p))))
@@ -60,7 +62,9 @@ def quantile_indices(
             notes.append(f"the values on one side of {name} are all the same: it does not move")
         else:
             slices = min(len(y) // rows, MOST_SLICES)
-            found[name] = 1 - np.array([_remains(y[order], p, slices) for order in orders]) / whole
+            cuts = even_cuts(len(y), slices)
+            rest = [_remains(y, p, slice_of(column, cuts, rows)) for column in x.T]
+            found[name] = 1 - np.array(rest) / whole
     if not found:
         raise RefusedError("; ".join(notes))
     return found, tuple(notes)
@@ -80,8 +84,7 @@ def _least_contrast(y: Floats, p: float) -> float:
     return float(np.mean(rest * (p - (rest < 0))))
 
 
-def _remains(y: Floats, p: float, slices: int) -> float:
-    """Return the mean of the least contrasts in slices of y."""
-    edges = np.linspace(0, len(y), slices + 1).astype(int)
-    parts = np.split(y, edges[1:-1])
+def _remains(y: Floats, p: float, number: NDArray[np.intp]) -> float:
+    """Return the mean of the least contrasts in slices of y; `number` is each row's slice."""
+    parts = (y[number == k] for k in range(number.max() + 1))
     return sum(_least_contrast(part, p) * len(part) for part in parts) / len(y)

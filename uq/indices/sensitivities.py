@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS
 from uq.errors import InputError, nearest
 from uq.indices.fast import curves, fast_indices
+from uq.indices.few_rows import few_hits
 from uq.indices.given_data import given_data_indices
 from uq.indices.groups import whole_groups
 from uq.indices.independent_inputs import are_dependent, independent_inputs, notes_on_inputs
@@ -27,6 +28,23 @@ _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
     "fast": (curves, fast_indices),
 }
 """Methods whose rows belong together: what finds them in a result, and the estimate from them."""
+
+
+_AT_ONE_SEED = (
+    "shares of the variance at one seed, to which noise that does not depend on the inputs adds"
+    " nothing"
+)
+_WITH_NOISE = {
+    "sobol": (
+        "the model is random, and the rows of a group share a seed: S1 holds no noise, ST holds"
+        " what noise does together with the input, and 'noise' is the share of the variance that"
+        " remains once all inputs are known"
+    ),
+    "morris": "the model is random, and the rows of a trajectory share a seed: no effect is noise",
+    "shapley": f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
+    "fast": f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
+}
+"""What a method whose rows share seeds makes of noise."""
 
 
 def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
@@ -68,7 +86,8 @@ def sensitivities(
         groups) counts as dropped if any output with indices lacks it; ``outputs``: name -> ``S1``
         and the like -> parameter -> ``value``, ``low``, ``high``. Each output has its own counts
         and ``notes``, and ``dummy`` where the method has no intervals; one without indices has
-        ``refused``, a sentence.
+        ``refused``, a sentence. From a crossed design of a random model each has ``noise``, with
+        ``value``, ``low``, ``high``: the share of the variance that the inputs leave open.
 
     Raises
     ------
@@ -86,6 +105,8 @@ def sensitivities(
             continue
         for kind, values in one.indices.values.items():
             entry[kind] = {label: _plain(index) for label, index in values.items()}
+        if one.indices.noise is not None:
+            entry["noise"] = _plain(one.indices.noise)
         if one.indices.dummy:
             entry["dummy"] = dict(one.indices.dummy)
         outputs[one.target.name] = entry | {"notes": list(one.indices.notes)}
@@ -114,7 +135,8 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
     xarray.Dataset
         Each index over ``output`` and ``parameter`` (``S2`` over ``pair``), with ``_low`` and
         ``_high``; NaN where there is none. ``dummy_<index>``, ``groups_dropped`` and ``refused``
-        (why there are no indices, or "") over ``output``.
+        (why there are no indices, or "") over ``output``; so is ``noise``, with ``_low`` and
+        ``_high``, where a model is random.
 
     Raises
     ------
@@ -143,6 +165,10 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
         table = np.array([_row(one, kind, list(labels)) for one in found])
         for i, end in enumerate(("", "_low", "_high")):
             data[f"{kind}{end}"] = (("output", dim), table[:, :, i])
+    if any(one.noise for one in estimated):
+        shares = np.array([_noise(one) for one in found])
+        for i, end in enumerate(("", "_low", "_high")):
+            data[f"noise{end}"] = ("output", shares[:, i])
     for kind in estimated[0].dummy if estimated else ():
         data[f"dummy_{kind}"] = ("output", [_dummy(one, kind) for one in found])
     return xr.Dataset(data, coords, {"method": name})
@@ -181,18 +207,21 @@ def _estimate(
     find, estimate = _GROUPED.get(method, (None, None))
     design = find(ds) if find else None
     inputs, notes = independent_inputs(ds), tuple(notes_on_inputs(ds))
+    if ds.attrs.get("random") and method in _WITH_NOISE:
+        notes = (*notes, _WITH_NOISE[method])
     found = []
     for target in _chosen(ds, method, output):
         indices: Indices | str
         try:
             if target.refused:
                 raise RefusedError(target.refused)
+            few = few_hits(ds, target)
             if estimate is None:
                 quantiles = _quantiles(target, asked)
                 indices = given_data_indices(method, inputs, target.values, quantiles)
             else:
                 indices = estimate(design, target.values)
-            indices = indices._replace(notes=indices.notes + notes)
+            indices = indices._replace(notes=few + indices.notes + notes)
         except RefusedError as refusal:
             indices = str(refusal)
         alone = np.arange(target.values.size)[:, None]
@@ -278,6 +307,11 @@ def _row(one: _Found, kind: str, labels: list[str]) -> list[tuple[float, float, 
     if isinstance(one.indices, str):
         return [(np.nan, np.nan, np.nan)] * len(labels)
     return [one.indices.values[kind][label] for label in labels]
+
+
+def _noise(one: _Found) -> Index:
+    known = None if isinstance(one.indices, str) else one.indices.noise
+    return known or Index(np.nan)
 
 
 def _dummy(one: _Found, kind: str) -> float:

@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.indices.groups import grouped_rows, whole_groups
-from uq.indices.independent_inputs import independent_inputs
+from uq.indices.groups import whole_groups
+from uq.indices.steps import steps
 from uq.indices.targets import Index, Indices, RefusedError
 from uq.intervals import is_constant, scatter_interval
 from uq.rows.elements import Floats
@@ -48,13 +48,11 @@ def paths(ds: xr.Dataset) -> Paths:
     Raises
     ------
     InputError
-        When rows are missing.
+        When rows are missing or are not those of the design.
     """
-    order, _ = grouped_rows(ds)
-    order = order.reshape(-1, order.shape[2])
-    inputs = independent_inputs(ds)
-    x = np.stack([values[order] for values in inputs.values()], axis=-1)
-    return Paths(order, tuple(inputs), np.diff(x, axis=1) != 0)
+    order, parameters, direction = steps(ds)
+    d = len(parameters)
+    return Paths(order.reshape(-1, d + 1), parameters, direction.reshape(-1, d, d) != 0)
 
 
 def shapley_indices(design: Paths, values: Floats) -> Indices:

@@ -1,14 +1,64 @@
 """How much the law of an output changes from one slice of an input to the next: delta and PAWN."""
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import norm, rankdata
 
 from uq.indices.targets import RefusedError
 from uq.rows.elements import Floats
 
+LEAST_ROWS = 10
+"""A value of an input that fewer rows have makes no slice of its own."""
+
+MOST_CATEGORIES = 10
+"""An input with no more values than this is sliced by value."""
+
 _GRID = 100
 _PAWN_SLICES = 10
 _TIED = 0.01
+
+
+def slice_of(column: Floats, cuts: NDArray[np.intp], least: int = LEAST_ROWS) -> NDArray[np.intp]:
+    """Divide the rows into slices of an input; rows of the same value are never parted.
+
+    Parameters
+    ----------
+    column : ndarray, shape (n,)
+    cuts : ndarray of int, shape (k - 1,)
+        Where k slices would begin among the sorted rows, if no values were the same.
+    least : int, optional
+        Rows of a slice by value.
+
+    Returns
+    -------
+    ndarray of int, shape (n,)
+        Number of each row's slice. Few values make a slice each, whatever they are called; the
+        rare ones share one. Among many, the cuts move to where a value ends.
+    """
+    values, place, counts = np.unique(column, return_inverse=True, return_counts=True)
+    if len(values) <= max(MOST_CATEGORIES, len(cuts) + 1):
+        return np.asarray(_categories(counts, least)[place])
+    ends = np.cumsum(counts)
+    above = np.minimum(np.searchsorted(ends, cuts), len(ends) - 2)
+    below = np.maximum(above - 1, 0)
+    nearest = np.where(cuts - ends[below] < ends[above] - cuts, ends[below], ends[above])
+    return np.asarray(np.searchsorted(np.unique(nearest), ends - counts, side="right")[place])
+
+
+def _categories(counts: NDArray[np.intp], least: int) -> NDArray[np.intp]:
+    """Return the number of each value's slice: one each, and one of all rare values."""
+    order = np.argsort(counts, kind="stable")
+    rare = int((counts < least).sum())
+    if rare:  # enough of them, with the next more frequent ones, to make a slice
+        rare = max(rare, int(np.searchsorted(np.cumsum(counts[order]), least)) + 1)
+    number = np.empty(len(counts), np.intp)
+    number[order] = np.maximum(np.arange(len(counts)) - max(rare - 1, 0), 0)
+    return number
+
+
+def even_cuts(rows: int, slices: int) -> NDArray[np.intp]:
+    """Return where slices of equally many rows begin, but the first."""
+    return np.linspace(0, rows, slices + 1)[1:-1].astype(np.intp)
 
 
 def delta(x: Floats, y: Floats) -> Floats:
@@ -48,10 +98,10 @@ def delta(x: Floats, y: Floats) -> Floats:
     anywhere = _density(scores, grid)
     # As many as SALib's: section 5 of the paper.
     slices = min(int(np.ceil(n ** (2 / (7 + np.tanh((1500 - n) / 500))))), 48)
-    ends = np.linspace(0, n, slices + 1)[1:-1].astype(np.intp)
     found = []
-    for order in np.argsort(x, axis=0, kind="stable").T:
-        parts = np.split(scores[order], ends)
+    for column in x.T:
+        number = slice_of(column, even_cuts(n, slices))
+        parts = [scores[number == k] for k in range(number.max() + 1)]
         areas = [np.trapezoid(np.abs(_density(one, grid) - anywhere), grid) for one in parts]
         found.append(np.dot([len(one) for one in parts], areas) / (2 * n))
     return np.array(found)
@@ -75,7 +125,8 @@ def pawn(x: Floats, y: Floats) -> Floats:
     Returns
     -------
     ndarray, shape (d,)
-        The distance is that of Kolmogorov, the slices are ten between quantiles of the input [1]_.
+        The distance is that of Kolmogorov, the slices are ten between quantiles of the input [1]_,
+        or one for each of its values where they are few.
 
     References
     ----------
@@ -85,13 +136,11 @@ def pawn(x: Floats, y: Floats) -> Floats:
     order = np.argsort(y, kind="stable")
     last = np.append(np.diff(y[order]) > 0, True)  # where y grows: there alone its law has a value
     anywhere = np.flatnonzero(last)[:, None] / len(y) + 1 / len(y)
-    edges = np.quantile(x, np.arange(_PAWN_SLICES + 1) / _PAWN_SLICES, axis=0)
+    # The rows from one quantile up to the next.
+    cuts = -(-np.arange(1, _PAWN_SLICES) * (len(y) - 1) // _PAWN_SLICES)
     found = []
-    for column, cuts in zip(x.T, edges.T, strict=True):
-        # The row with the largest value lies in no slice.
-        slice_of = np.searchsorted(cuts, column[order], side="right") - 1
-        count = np.cumsum(slice_of[:, None] == np.arange(_PAWN_SLICES), axis=0)
-        count = count[:, count[-1] > 0]
-        distances = np.abs(count[last] / count[-1] - anywhere).max(axis=0)
-        found.append(np.median(distances) if len(distances) else np.nan)
+    for column in x.T:
+        number = slice_of(column, cuts)[order]
+        count = np.cumsum(number[:, None] == np.arange(number.max() + 1), axis=0)
+        found.append(np.median(np.abs(count[last] / count[-1] - anywhere).max(axis=0)))
     return np.array(found)

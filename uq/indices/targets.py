@@ -57,11 +57,14 @@ class Indices(NamedTuple):
         Sentences on what could not be given.
     dummy : dict of str to float
         Name of the index -> its largest value over inputs that play no part.
+    noise : Index or None
+        Share of the variance that remains once all inputs are known, where rows tell it.
     """
 
     values: dict[str, dict[str, Index]]
     notes: tuple[str, ...] = ()
     dummy: Mapping[str, float] = MappingProxyType({})
+    noise: Index | None = None
 
 
 class RefusedError(Exception):

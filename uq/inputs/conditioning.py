@@ -94,6 +94,12 @@ def factor_ends(other: Any, bounds: tuple[float, float]) -> tuple[Any, Any]:
     return np.minimum(*ends), np.maximum(*ends)
 
 
+def factor_of(law: Law, product: NDArray[np.float64], other: Any) -> NDArray[np.float64]:
+    """Return a factor from its product with another parameter, exactly where values are listed."""
+    ratio = product / other
+    return law.nearest(ratio) if isinstance(law, Listed) else ratio
+
+
 def support(law: Law, bounds: tuple[float, float]) -> tuple[float, float]:
     """Return the least and the greatest value that a row can have."""
     ends = ppf_within(law, np.array([2.0**-54, 1.0 - 2.0**-53]), bounds)

@@ -77,6 +77,12 @@ class Listed(BaseLaw):
         inside = values[(low <= values) & (values <= high)]
         return (float(inside[0]), float(inside[-1])) if len(inside) else None
 
+    def nearest(self, x: Floats) -> Floats:
+        """Return the value next to each of x: what a rounded value was."""
+        values = self.frozen().values
+        found = values[np.searchsorted((values[1:] + values[:-1]) / 2, x)]
+        return np.asarray(found)
+
 
 class DiscreteChoice(Listed):
     """One of some values, each with its weight; alike if no weights are given."""
@@ -116,6 +122,10 @@ class IntegerRange(Listed):
         """Return the first and the last whole number between two ends, or None."""
         first, last = max(np.ceil(low), self.lower), min(np.floor(high), self.upper)
         return (float(first), float(last)) if first <= last else None
+
+    def nearest(self, x: Floats) -> Floats:
+        """Return the whole number next to each of x."""
+        return np.rint(x)
 
 
 class Empirical(Listed):

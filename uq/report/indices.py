@@ -93,6 +93,9 @@ def _subject(ds: xr.Dataset, method: str, name: str, entry: Mapping[str, Any]) -
         (f"Second order, of {name}", pairs, {}),
     )
     tables = tuple(_table(*one) for one in told if one[1])
+    if noise := entry.get("noise"):
+        line = [(Cell("noise"), _cell(noise, "ST"))]
+        tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
     caption = f"Sensitivity indices of {name} by {method}"
     drawn = picture(bars(ds, name, entry), caption) if kinds else None
     leading = _leading(ds, method, f"{words[:1].lower()}{words[1:]}", kinds, dummy)

@@ -91,6 +91,12 @@ class Outcome:
         """Return the cell of an estimate in the unit of this element."""
         return estimate(entry, self.unit.seconds, key)
 
+    def moment(self, name: str) -> Cell:
+        """Return the cell of mean or sd, with the reason where its tail forbids one."""
+        found = {"value": self.entry[name], **self.entry[f"{name}_interval"]}
+        reason = self.entry["reasons"].get(name)
+        return self.cell(found) if reason is None else Cell("none", reason)
+
 
 def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     """Return the elements that a summary describes, in its order."""
@@ -117,7 +123,16 @@ def result_tables(found: list[Outcome], tolerance: tuple[float, float] | None) -
         return
     probabilities = list(found[0].entry["quantiles"])
     quantiles = (f"{100 * float(p):g} % quantile" for p in probabilities)
-    header = ("output", "unit", "mean", "sd", *quantiles, "variance between regimes", *_COUNTS)
+    header = (
+        "output",
+        "unit",
+        "mean",
+        "sd",
+        *quantiles,
+        "variance between regimes",
+        *_COUNTS,
+        _MISSED,
+    )
     rows = [tuple(_statistics(one)) for one in found]
     yield without_empty_columns(Table("Statistics, with 95 % intervals", header, rows))
     bounded = [one for one in found if one.entry["tolerance"]]
@@ -140,18 +155,26 @@ def result_tables(found: list[Outcome], tolerance: tuple[float, float] | None) -
 
 
 _ENDS = ("lower", "upper")
+_MISSED = "rows short of the accuracy"
 
 
 def _statistics(one: Outcome) -> Iterator[Cell]:
     entry = one.entry
     yield one.label
     yield one.unit_cell
-    yield one.cell({"value": entry["mean"], **entry["mean_interval"]})
-    yield one.cell(entry, "sd")
+    for moment in ("mean", "sd"):
+        yield one.moment(moment)
     yield from (one.cell(quantile) for quantile in entry["quantiles"].values())
     split = entry.get("between_regimes")
     yield estimate(split)._replace(text=variance_between(split)) if split else Cell("")
     yield from (count(entry[name]) for name in _COUNTS)
+    yield _missed(entry.get("accuracy"))
+
+
+def _missed(accuracy: Mapping[str, Any] | None) -> Cell:
+    if not accuracy or not accuracy["missed"]:
+        return Cell("")
+    return count(accuracy["missed"])._replace(more=percent(accuracy["share"]))
 
 
 def _thresholds(one: Outcome) -> Iterator[tuple[Cell, ...]]:

@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.columns import censored_name, lacking
-from uq.designs.table import DESIGNS
+from uq.designs.table import DESIGNS, NOISE
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.results import elements, failed
@@ -43,6 +43,8 @@ class Element:
         Where the value is only a lower bound.
     failed : ndarray of bool, shape (n,)
         Where the value is lacking because the row failed.
+    never_known_at_once : bool
+        As `uq.contract.Output` has it: whether every censored row of a lifetime is one that ends.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Element:
     values: Floats
     censored: Mask
     failed: Mask
+    never_known_at_once: bool = True
 
     @property
     def undefined(self) -> Mask:
@@ -94,12 +97,12 @@ def study_file_of(ds: xr.Dataset) -> StudyFile:
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
     """Return the rows for plain statistics: A and B where a design has these, all rows of others.
 
-    The mixed blocks between repeat the numbers of A and B. Where the rows do not follow
+    The other blocks repeat the numbers of A and B. Where the rows do not follow
     the laws of the inputs there are none.
     """
     design = DESIGNS[ds.attrs["design"]]
     labels = flags(ds["block"]) if design.follows_laws else []
-    plain = [code for code, label in labels if not label.startswith(("AB_", "BA_"))]
+    plain = [c for c, label in labels if label != NOISE and not label.startswith(("AB_", "BA_"))]
     chosen = np.isin(ds["block"].values, plain)
     return ds if chosen.all() else ds.isel(sample=chosen)
 
@@ -206,6 +209,7 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
                 np.where(absent, np.nan, values),
                 censored,
                 absent & unsound,
+                bool(variable.attrs.get("never_known_at_once", True)),
             )
 
 

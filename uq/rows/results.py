@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from uq.columns import failed_rows
 from uq.contract import Model
 from uq.errors import InputError, choices, nearest
+from uq.places import node
 from uq.provenance import provenance
 from uq.rows.soundness import unsound
 from uq.rows.variables import (
@@ -84,7 +85,7 @@ def build(
             value = study.fixed.get(name, model.nominal[name])
             inputs[name] = parameter_variable(model, name, value)
     ds = xr.Dataset(
-        inputs | output_variables(model, columns, status, failures),
+        inputs | output_variables(model, study.settings, columns, status, failures),
         places(study, rows, numbers) | coordinates(model, study.settings),
         study_attributes(study),
     )
@@ -118,7 +119,7 @@ def build_rows(
     """
     inputs = {name: parameter_variable(model, name, value) for name, value in values.items()}
     attrs = {"title": model.title} | model_attributes(model) | provenance()
-    outputs = output_variables(model, columns, status, failures)
+    outputs = output_variables(model, settings, columns, status, failures)
     return xr.Dataset(inputs | outputs, coordinates(model, settings), attrs)
 
 
@@ -170,16 +171,21 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     True
     """
     path = Path(path)
+    if what := node(path):
+        inside = _others(path / "_") if path.is_dir() else ""
+        raise InputError(f"{path}: is {what}, not a result{inside}; {remedy}")
     if not path.exists():
         raise InputError(f"{path}: no such file{_others(path)}; {remedy}")
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder, not a result{_others(path / '_')}; {remedy}")
     try:
         ds = _opened(path)
         check(ds, path)
     except InputError as error:
         raise InputError(f"{error}; {remedy}") from None
     ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
+    for variable in ds.variables.values():
+        if variable.attrs.get("kind") == "lifetime":
+            # What was assumed of every life when files did not say.
+            variable.attrs.setdefault("never_known_at_once", 0)
     return ds
 
 

@@ -60,6 +60,8 @@ def _output_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
         yield fault
     if not isinstance(variable.attrs.get("may_be_undefined"), int | np.integer):
         yield f"'{name}' lacks the attribute 'may_be_undefined'"
+    if not isinstance(variable.attrs.get("never_known_at_once", 0), int | np.integer):
+        yield f"attribute 'never_known_at_once' of '{name}' is no number"
     for dim in variable.dims[1:]:
         if dim not in variable.coords:
             yield f"'{name}' lacks the coordinate '{dim}'"

@@ -13,6 +13,7 @@ import xarray as xr
 from uq import intervals
 from uq.designs.table import DESIGNS
 from uq.intervals import Interval
+from uq.moments import moments
 from uq.rows.elements import Element, independent_rows, named_elements
 
 if TYPE_CHECKING:
@@ -108,6 +109,8 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     seen = look(design, _first(ds, size))
     what = f"{until.estimate} of {until.output}"
     known = f"{seen.value:.6g}, {seen.interval.low:.6g} to {seen.interval.high:.6g}"
+    if np.isnan(seen.interval).all():
+        return f"the budget of {samples} samples is spent, and {what} has no interval"
     if not seen.reached:
         return (
             f"the budget of {samples} samples is spent: {what} is {known}, and a half-width of"
@@ -143,4 +146,5 @@ def _estimate(
         return value, intervals.quantile_interval(values, until.quantile, within, level)
     if not len(values) or not np.isfinite(values).all():
         return np.nan, intervals.UNKNOWN
-    return float(values.mean()), intervals.mean_interval(values, within, level)
+    found = moments(values, within, level)
+    return found.mean, found.mean_interval

@@ -6,6 +6,7 @@ computes them, so that a row may crash it, unless the user wants all in one proc
 """
 
 import os
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,6 +22,7 @@ from uq.rows.work import Work, work_of
 from uq.running.computing import Computing
 from uq.running.job import Job, Progress, Report
 from uq.study.changes import refusal_to_extend, what_changed
+from uq.study.code import is_other_code
 from uq.study.definition import Study, load_study
 from uq.study.reading import read_study_text
 
@@ -34,7 +36,7 @@ def run(
     row_limit: float | None = None,
     fresh: bool = False,
     progress: Report | None = None,
-    say: Callable[[str], object] = lambda _: None,
+    say: Callable[[str], object] | None = None,
     mixed: bool = False,
 ) -> xr.Dataset:
     """Run a study and write its result, or return the result that is already there.
@@ -63,7 +65,8 @@ def run(
     progress : callable, optional
         Called with a `Progress` as rows arrive, and when the model begins to be compiled.
     say : callable, optional
-        Called with a line for the user: what was found on disk.
+        Called with a line for the user: what was found on disk. Without it, a complete result that
+        other code of the model computed is returned with a warning.
     mixed : bool
         Go on also with rows that other code of the model computed.
 
@@ -91,8 +94,10 @@ def run(
         study = load_study(study)
     path, until = output_path(study, output), _until(study)
     if not fresh and (found := finished(study, path)) is not None:
+        if say is None and not mixed and (line := made_elsewhere(study, path, found)):
+            warnings.warn(line, stacklevel=2)
         return found
-    with kept(study, path, fresh, say=say, mixed=mixed) as there:
+    with kept(study, path, fresh, say=say or (lambda _: None), mixed=mixed) as there:
         options = (workers, scheduler, chunk_rows, progress, row_limit)
         return carry_out(work_of(study), *options, there, until)
 
@@ -150,6 +155,16 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
         ds = results.open_result(path)
     store.drop_leftovers(path)
     return ds
+
+
+def made_elsewhere(study: Study, path: Path, ds: xr.Dataset) -> str:
+    """Say what to do where rows of a result are of other code of its model than is here."""
+    if not is_other_code(ds.attrs, study.model_reference):
+        return ""
+    return (
+        f"{path}: holds rows that other code of model '{study.model.name}' computed; 'uq verify' "
+        "compares them with the code here, 'uq run --fresh' computes all of them again"
+    )
 
 
 def compute(

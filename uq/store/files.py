@@ -11,6 +11,7 @@ import xarray as xr
 
 from uq.errors import InputError, RunError
 from uq.interrupts import undone
+from uq.places import file_behind
 from uq.store.seal import seal
 
 
@@ -27,9 +28,7 @@ def check_target(path: Path, size: int) -> None:
     ------
     InputError
     """
-    if os.path.isdir(path):
-        raise InputError(f"{path}: is a folder; give the name of a file in it")
-    folder = nearest_folder(path)
+    folder = nearest_folder(file_behind(path))
     remedy = "copy it elsewhere" if path.is_file() else "choose another place with -o"
     if not folder.is_dir():
         raise InputError(f"{path}: {folder} is a file, not a folder; {remedy}")
@@ -78,9 +77,9 @@ def whole(path: Path, folder: Path | None = None) -> Iterator[Path]:
     Parameters
     ----------
     path : Path
-        Missing folders are made.
+        Missing folders are made; a link is written through.
     folder : Path, optional
-        Where the temporary name is, on the same disk; by default beside `path`.
+        Where the temporary name is, on the same disk; by default beside the file.
 
     Yields
     ------
@@ -88,11 +87,14 @@ def whole(path: Path, folder: Path | None = None) -> Iterator[Path]:
 
     Raises
     ------
+    InputError
+        When something is there that is no file.
     RunError
         When the file cannot be written; then nothing is left behind.
     """
-    made = [parent for parent in path.absolute().parents if not parent.exists()]
-    temporary = (folder or path.parent) / f".{path.name}.{os.getpid()}.part"
+    file = file_behind(path)
+    made = [parent for parent in file.absolute().parents if not parent.exists()]
+    temporary = (folder or file.parent) / f".{file.name}.{os.getpid()}.part"
 
     def clear() -> None:
         temporary.unlink(missing_ok=True)
@@ -100,11 +102,11 @@ def whole(path: Path, folder: Path | None = None) -> Iterator[Path]:
 
     with undone(clear):
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
+            file.parent.mkdir(parents=True, exist_ok=True)
             yield temporary
             flush(temporary)
-            os.replace(temporary, path)
-            flush(path.parent)
+            os.replace(temporary, file)
+            flush(file.parent)
         except (OSError, RuntimeError) as error:
             raise RunError(f"{path}: could not be written: {reason(error, path)}") from None
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from uq.errors import InputError, RunError
 from uq.interrupts import undone
+from uq.places import file_behind
 from uq.store.files import flush, reason, remove_empty
 from uq.store.journal import read
 from uq.store.records import RowsRecord, RunRecord, understood
@@ -37,8 +38,9 @@ class Holder(NamedTuple):
 
 
 def folder_of(path: Path) -> Path:
-    """Return the folder in which the rows of a result are kept."""
-    return path.with_name(f"{path.name}.rows")
+    """Return the folder in which the rows of a result are kept, beside the file itself."""
+    file = file_behind(path)
+    return file.with_name(f"{file.name}.rows")
 
 
 def history(folder: Path) -> list[RunRecord | RowsRecord]:

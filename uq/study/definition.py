@@ -82,6 +82,15 @@ class Study:
         return max(lows), min(highs)
 
     @property
+    def random(self) -> bool:
+        """Whether the rows depend on their seed."""
+        free = {*self.uncertain, *self.tied}
+        return self.model.random and not any(
+            name not in free and self.fixed.get(name, self.model.nominal[name]) == value
+            for name, value in self.model.random_unless.items()
+        )
+
+    @property
     def identity(self) -> str:
         """SHA-256 of what decides the rows: not how many, comments or [analysis]."""
         design = self.design.model_dump(exclude={"samples", "file", "until"})
@@ -110,6 +119,8 @@ class Study:
             parts.append(self.dependence.model_dump(exclude={"source"}))
         if self.imported:
             parts.append(dict(self.imported))
+        if self.random and DESIGNS[self.design.method].shares_seeds:
+            parts.append("rows that are compared share a seed")
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
     def with_samples(self, samples: int) -> Self:

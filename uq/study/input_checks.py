@@ -16,12 +16,13 @@ from uq.inputs.conditioning import (
     ppf_within,
     support,
 )
-from uq.inputs.data_files import Columns, numbers
+from uq.inputs.data_files import Columns, columns_of_files, numbers
 from uq.inputs.dependence import matrix_problem
 from uq.inputs.distributions import Law
 from uq.inputs.faults import Fault
 from uq.inputs.observed import Empirical, values_problem
 from uq.study.file import ENTRY, Tied
+from uq.study.reading import parse, shape_faults, sound_entries
 
 Entries = Mapping[str, Any]
 """Parameter -> `Law` or `Tied`."""
@@ -58,6 +59,14 @@ def read_entries(tables: Mapping[str, Any], columns: Columns) -> tuple[Entries, 
             entry = entry.model_copy(update={"values": values})
         entries[name] = entry
     return entries, faults
+
+
+def laws_of(text: str) -> dict[str, Law]:
+    """Return the laws in the text of a study that a result carries, with their listed values."""
+    data = parse(text, "study of this result")
+    tables = sound_entries(data, shape_faults(data))
+    entries, _ = read_entries(tables, columns_of_files(tables, None)[0])
+    return {name: entry for name, entry in entries.items() if not isinstance(entry, Tied)}
 
 
 def input_faults(model: Model, entries: Entries) -> Iterator[Fault]:

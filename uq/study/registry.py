@@ -7,6 +7,7 @@ from importlib.metadata import EntryPoint, entry_points
 
 from uq.contract import Model
 from uq.errors import InputError, nearest
+from uq.study.compiled import keep_apart
 
 GROUP = "vibrolife.models"
 
@@ -34,25 +35,30 @@ def find_model(reference: str) -> Model:
         There is no such model, or its package cannot be imported. A model that is broken does not
         stand in the way of the others.
     """
+    label = f"--model {reference}" if ":" in reference else f"model '{reference}'"
+    return _load(_point(reference), label)
+
+
+def module_of(reference: str) -> str:
+    """Return the full name of the module in which a model lives; see `find_model`."""
+    return _point(reference).value.partition(":")[0]
+
+
+def _point(reference: str) -> EntryPoint:
+    """Return where a model lives; whoever asks can import it from there."""
     if ":" in reference:
         # A model under development usually lies in the folder one works in, which an installed
         # command does not search.
         if os.getcwd() not in sys.path:
             sys.path.append(os.getcwd())
-        return _load(EntryPoint(reference, reference, GROUP), f"--model {reference}")
+        return EntryPoint(reference, reference, GROUP)
     installed = _entry_points()
     if reference not in installed:
         names = ", ".join(sorted(installed)) or "none"
         raise InputError(
             f"no such model '{reference}'{nearest(reference, installed)} (installed: {names})"
         )
-    return _load(installed[reference], f"model '{reference}'")
-
-
-def module_of(reference: str) -> str:
-    """Return the full name of the module in which a model lives; see `find_model`."""
-    point = _entry_points().get(reference)
-    return (point.value if point else reference).partition(":")[0]
+    return installed[reference]
 
 
 def _entry_points() -> dict[str, EntryPoint]:
@@ -63,6 +69,7 @@ def _load(point: EntryPoint, label: str) -> Model:
     module_name, _, attribute = point.value.partition(":")
     if not module_name or not attribute:
         raise InputError(f"{label}: write it as package.module:ATTRIBUTE")
+    keep_apart(module_name)
     try:
         found = getattr(importlib.import_module(module_name), attribute)
     except (Exception, SystemExit) as error:

@@ -1,0 +1,83 @@
+"""Which input changes from one row to the next: read from the design, not from rounded values."""
+
+import numpy as np
+import pytest
+from computed import computed, study_of
+
+from uq.analysis.realised import compare, stated_and_realised
+from uq.errors import InputError
+from uq.indices.independent_inputs import independent_inputs
+from uq.indices.sensitivities import sensitivities
+
+A = {"distribution": "normal", "mean": 10.0, "sd": 1.0}
+C = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
+
+
+def result(method, samples, replicates=1, a=A, factor=None, c=C):
+    factor = factor or {"distribution": "normal", "mean": 1.0, "sd": 0.1}
+    return computed(
+        study_of(
+            {
+                "study": {"name": "sum", "model": "linear"},
+                "design": {"method": method, "samples": samples, "replicates": replicates},
+                "uncertain": {"a": a, "b": factor | {"times": "a"}, "c": c},
+            },
+            "sample_models:ADDED",
+        )
+    )
+
+
+def entry_of(ds):
+    return sensitivities(ds)["outputs"]["y"]
+
+
+def test_shapley_effects_of_a_factor_are_those_of_what_varies_on_its_own():
+    # y = a (1 + f) + c: what a does alone 4, f alone 1, both together 0.01, c 1.
+    parts = np.array([4 + 0.005, 1 + 0.005, 1])
+    found = entry_of(result("shapley", 4096))["shapley"]
+    for one, truth in zip(found.values(), parts / parts.sum(), strict=True):
+        assert one["low"] <= truth <= one["high"]
+        assert one["value"] == pytest.approx(truth, abs=0.03)
+
+
+def test_effects_of_an_input_that_varies_by_a_tiny_part_of_its_size_are_seen():
+    # A step of c moves y by 1e-10 of c, beyond the rounding of c by far.
+    far = {"distribution": "uniform", "lower": 900.0, "upper": 900.0 + 1e-10}
+    found = entry_of(result("morris", 32, c=far))
+    # y is rounded to 1e-13.
+    assert found["mu_star"]["c"]["value"] == pytest.approx(1e-10, rel=0.02)
+
+
+def test_steps_of_a_factor_are_counted_once_each():
+    # Steps of the factor alone move b by a, by half of b's range and down where a is negative.
+    below = {"distribution": "uniform", "lower": -12.0, "upper": -8.0}
+    factor = {"distribution": "uniform", "lower": 1.0, "upper": 2.0}
+    found = entry_of(result("morris", 64, a=below, factor=factor))
+    assert found["mu"]["b"]["value"] == pytest.approx(-10.0, abs=0.7)
+    assert found["mu"]["a"]["value"] == pytest.approx(4 * 2.5, abs=0.7)
+
+
+@pytest.mark.parametrize("method", ["shapley", "morris"])
+def test_rows_that_are_not_those_of_the_design_are_refused(method):
+    ds = result(method, 64)
+    a = ds["a"].values.copy()
+    a[5] += 1e-3
+    with pytest.raises(InputError, match="the rows are not those of its design"):
+        sensitivities(ds.assign(a=("sample", a, ds["a"].attrs)))
+
+
+@pytest.mark.parametrize(
+    "factor",
+    [
+        {"distribution": "discrete-choice", "values": [0.1, 0.7, 1.3]},
+        {"distribution": "integer-range", "lower": 1, "upper": 3},
+        {"distribution": "empirical", "values": [0.1, 0.7, 1.3]},
+    ],
+    ids=["choice", "integer", "empirical"],
+)
+def test_a_factor_of_listed_values_has_these_and_no_others(factor):
+    ds = result("monte-carlo", 300, factor=factor)
+    expected = factor.get("values", [1.0, 2.0, 3.0])
+    assert np.unique(independent_inputs(ds)["b"]).tolist() == expected
+    law, values = stated_and_realised(ds)["b"]
+    assert compare(law, values).distance < 0.1

@@ -1,0 +1,133 @@
+"""The source files that a module of a model consists of: its own, and what it imports.
+
+That is its package, and what it imports beside that, in the same folder. What is installed in other
+packages has a version; `uq` itself is no part of any model.
+"""
+
+import ast
+import os
+import sys
+from collections.abc import Iterator
+from functools import lru_cache
+from importlib.machinery import EXTENSION_SUFFIXES
+from importlib.util import find_spec, resolve_name
+from pathlib import Path
+from typing import NamedTuple
+
+_INSTALLED = ("site-packages", "dist-packages")
+_PLATFORM = __name__.partition(".")[0]
+_FILES = ("/__init__.py", ".py", *EXTENSION_SUFFIXES)
+
+
+class Sources(NamedTuple):
+    """What a module is made from.
+
+    Attributes
+    ----------
+    own : dict of str to bytes
+        Module -> its source, or the machine code of an extension; empty if none was found.
+    root : Path or None
+        The folder in which the package lies.
+    others : set of str
+        Packages from elsewhere that they import.
+    """
+
+    own: dict[str, bytes]
+    root: Path | None
+    others: set[str]
+
+
+def sources_of(module: str) -> Sources:
+    """Return what a module is made from: its source and those that it imports, in turn.
+
+    Parameters
+    ----------
+    module : str
+        Its full name; it can be imported, and need not be yet.
+    """
+    package = module.partition(".")[0]
+    root = _root(package)
+    found: dict[str, bytes] = {}
+    others: set[str] = set()
+    if root is None:
+        return Sources(found, root, others)
+    beside = root.name not in _INSTALLED
+    todo, seen = {module}, set()
+    while todo:
+        name = todo.pop()
+        seen.add(name)
+        first = name.partition(".")[0]
+        if first != package and not (beside and _is_module(root, first)):
+            others.add(first)
+            continue
+        for ending in _FILES:
+            file = Path(f"{root.joinpath(*name.split('.'))}{ending}")
+            if name not in found and file.is_file():
+                found[name] = file.read_bytes()
+                above = name.rpartition(".")[0]
+                within = name if ending == _FILES[0] else above
+                inside = _imported(found[name], within) if ending.endswith(".py") else ()
+                todo |= {above or name, *inside} - seen
+        todo = {name for name in todo if name.partition(".")[0] != _PLATFORM}
+    return Sources(found, root, others)
+
+
+def signature(package: str) -> list[tuple[str, int, int]]:
+    """Return what changes when a package from elsewhere does: files, times and sizes.
+
+    Of an installed package its first file says enough: all are written together.
+
+    Parameters
+    ----------
+    package : str
+    """
+    root = _root(package) if package not in sys.stdlib_module_names else None
+    if root is None:
+        return []
+    folder = root / package
+    files = [file for ending in _FILES if (file := Path(f"{folder}{ending}")).is_file()]
+    if root.name not in _INSTALLED:
+        files += sorted(folder.rglob("*.py"))
+    looks = ((str(file), file.stat()) for file in files)
+    return [(name, look.st_mtime_ns, look.st_size) for name, look in looks]
+
+
+def is_installed(package: str) -> bool:
+    """Return whether a package is not one that somebody may be editing."""
+    root = _root(package) if package not in sys.stdlib_module_names else None
+    return root is None or root.name in _INSTALLED
+
+
+def _root(package: str) -> Path | None:
+    """Return the folder in which a package lies, or a module that is a file."""
+    try:
+        spec = find_spec(package)
+    except (ImportError, ValueError):
+        return None
+    if spec is None:
+        return None
+    if spec.submodule_search_locations:
+        return Path(next(iter(spec.submodule_search_locations))).parent
+    return Path(spec.origin).parent if spec.origin else None
+
+
+def _is_module(root: Path, name: str) -> bool:
+    return any(os.path.isfile(f"{root / name}{ending}") for ending in _FILES)
+
+
+@lru_cache(maxsize=1000)
+def _imported(source: bytes, within: str) -> tuple[str, ...]:
+    """Return the modules that a source imports anywhere, and names that might be some."""
+    try:
+        return tuple(_imports(source, within))
+    except (ImportError, SyntaxError, ValueError):  # whoever imports it will be told
+        return ()
+
+
+def _imports(source: bytes, within: str) -> Iterator[str]:
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and (within or not node.level):
+            base = resolve_name("." * node.level + (node.module or ""), within)
+            yield from (base, *(f"{base}.{alias.name}" for alias in node.names))
