@@ -41,7 +41,7 @@ def exact_fma(a: float, b: float, c: float) -> float:
     try:
         return top / (bottom * bottom_c)
     except OverflowError:
-        return math.copysign(math.inf, top)
+        return math.inf if top > 0 else -math.inf
 
 
 @intrinsic
