@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from benchmarks.coverage import further, known_indices, noise, problems
 from benchmarks.coverage.page import page
@@ -54,7 +55,14 @@ def test_indices_of_the_jump_are_those_of_many_rows(big):
 def test_indices_of_the_life_are_those_of_many_rows(big):
     life = big["never"].values
     known = known_indices.life_truths()
-    for name, values in (("rate(never)", 1 / life), ("P(never<1.0)", (life < 1.0).astype(float))):
+    targets = {
+        "log(life)": np.log(big["life"].values),
+        "rank(never)": stats.rankdata(life) / len(life),
+        "rate(never)": 1 / life,
+        "P(never<1.0)": (life < 1.0).astype(float),
+    }
+    assert set(targets) == set(known)
+    for name, values in targets.items():
         for kind, of in (("S1", big["r1"]), ("ST", big["r2"] + big["r3"])):
             parts = np.array_split(np.argsort(of.values), 400)
             share = np.var([values[part].mean() for part in parts]) / values.var()

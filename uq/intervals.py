@@ -188,32 +188,49 @@ def scattered_share_interval(
     return Interval(*(np.where(few, *ends) for ends in zip(exact, found, strict=True)))
 
 
+def is_within(probability: float, rows: int) -> bool:
+    """Whether so many values reach a quantile: their ranks, on average, lie at i/(n + 1).
+
+    Rows of replicates count together: their designs spread as evenly, or more so.
+    """
+    return bool(1 - _ROUNDING <= probability * (rows + 1) <= rows + _ROUNDING * rows)
+
+
+def rows_to_reach(probability: float) -> int:
+    """Return the least number of values that reach a quantile."""
+    rarer = min(probability, 1 - probability)
+    rows = int(np.ceil(1 / rarer - 1))
+    return next(n for n in (rows - 1, rows, rows + 1) if n > 0 and is_within(probability, n))
+
+
 def quantile(values: Floats, probability: float) -> float:
     """Return the median-unbiased estimate of a quantile (type 8 of [1]_).
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Finite or +inf.
+        Finite or infinite.
     probability : float
 
     Returns
     -------
     float
-        +inf as soon as an infinite value takes part; NaN without values.
+        Infinite as soon as an infinite value takes part; NaN beyond what the values reach, see
+        `is_within`.
 
     References
     ----------
     .. [1] R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", Am. Stat. 50,
        361-365 (1996).
     """
-    finite = values[np.isfinite(values)]
-    if len(finite) == 0:
-        return np.inf if len(values) else np.nan
+    if not is_within(probability, len(values)):
+        return np.nan
     # Infinity times zero is no number: numpy interpolates towards a huge number instead.
-    huge = np.finfo(float).max / 4
-    found = np.quantile(np.minimum(values, huge), probability, method="median_unbiased")
-    return float(found) if found <= finite.max() else np.inf
+    huge, finite = np.finfo(float).max / 4, values[np.isfinite(values)]
+    found = np.quantile(np.clip(values, -huge, huge), probability, method="median_unbiased")
+    if found > finite.max(initial=-huge):
+        return np.inf
+    return float(found) if found >= finite.min(initial=huge) else -np.inf
 
 
 def quantile_interval(
@@ -224,7 +241,7 @@ def quantile_interval(
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Finite or +inf.
+        Finite or infinite.
     probability : float
     replicate : ndarray of int, shape (n,), optional
     confidence : float, optional
@@ -233,7 +250,8 @@ def quantile_interval(
     -------
     Interval
         Independent rows: order statistics, by the binomial law [1]_. Replicates: the quantiles at
-        both ends of the interval of the share of rows below the quantile [2]_. Bounds may be +inf.
+        both ends of the interval of the share of rows below the quantile [2]_. Bounds may
+        be infinite.
 
     References
     ----------
@@ -251,7 +269,9 @@ def quantile_interval(
             order_statistic(values, int(stats.binom.isf(tail, n, probability)) + 1),
         )
     value = quantile(values, probability)
-    below = values <= value if np.isfinite(value) else values < value
+    if np.isnan(value):
+        return UNKNOWN
+    below = values < value if np.isposinf(value) else values <= value
     low, high = scattered_share_interval(
         probability, _means(below, replicate), below.mean(), confidence
     )

@@ -10,7 +10,7 @@ from uq.analysis.regime_split import between_share
 from uq.analysis.statistics import regime_shares
 from uq.errors import InputError
 from uq.indices.given_data import given_data_indices
-from uq.indices.targets import RefusedError, Target, category_targets, targets
+from uq.indices.targets import RefusedError, Target, category_targets, number_of
 from uq.moments import moments
 from uq.rows.elements import (
     Floats,
@@ -44,7 +44,7 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
         ``regime``: ``rows``, ``mean``, ``sd`` (NaN where too heavy a tail has
         none). Over ``output``: ``between``, the share of its
         variance that lies between regimes, with ``between_low`` and ``between_high``. Lifetimes
-        stand as their rates.
+        stand as their logarithms, or as their ranks where rows never end or are censored.
 
     Raises
     ------
@@ -93,8 +93,9 @@ _SHARES = {"count": "count", "share": "share", "share_low": "low", "share_high":
 
 
 def _numbers(rows: xr.Dataset) -> Iterator[Target]:
-    """Yield the outputs as they are; lifetimes as their rates."""
-    for target in targets(elements_of(rows, shown_outputs(rows, analysis_of(rows))), {}):
+    """Yield the outputs as they are; lifetimes as logarithms or ranks."""
+    for element in elements_of(rows, shown_outputs(rows, analysis_of(rows))):
+        target = number_of(element)
         if not target.refused:
             yield target
 

@@ -1,6 +1,6 @@
 """Which inputs an output's scatter comes from: every method, for a result as a whole."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +17,16 @@ from uq.indices.independent_inputs import are_dependent, independent_inputs, not
 from uq.indices.morris import morris_indices, trajectories
 from uq.indices.shapley import paths, shapley_indices
 from uq.indices.sobol import crossed, sobol_indices
-from uq.indices.targets import Index, Indices, RefusedError, Target, category_targets, targets
+from uq.indices.targets import (
+    Index,
+    Indices,
+    RefusedError,
+    Target,
+    all_targets,
+    category_targets,
+    split_name,
+    targets,
+)
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.in_regime import within_regime
 
@@ -61,7 +70,7 @@ def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
 def sensitivities(
     ds: xr.Dataset,
     method: str | None = None,
-    output: str | None = None,
+    output: str | Sequence[str] | None = None,
     regime: str | None = None,
 ) -> dict[str, Any]:
     """Estimate sensitivity indices as plain data, ready for JSON.
@@ -72,10 +81,14 @@ def sensitivities(
         A result.
     method : str, optional
         By default the first of `methods`.
-    output : str, optional
+    output : str or sequence of str, optional
         An output, one element of it, or one of the names that this function returns; by default
         the outputs that the study wants to see. Of a category, such as the regime, the targets
-        are ``P(regime=label)``: whether a row is in each that occurs.
+        are ``P(regime=label)``: whether a row is in each that occurs. Of a lifetime they are its
+        logarithm, or its rank where rows never end or are censored, and ``P(life<t)``; its rate
+        1/T is there as ``rate(life)``. A value whose tail is heavy stands by default as its
+        logarithm or rank, and under its own name as it is. Of several names those are left out
+        that mean nothing here.
     regime : str, optional
         Use the rows in this regime only. Among them the inputs depend on each other.
 
@@ -192,7 +205,7 @@ class _Found(NamedTuple):
 
 
 def _estimate(
-    ds: xr.Dataset, method: str | None, output: str | None, within: bool = False
+    ds: xr.Dataset, method: str | None, output: str | Sequence[str] | None, within: bool = False
 ) -> tuple[str, list[_Found]]:
     why = (
         "within a regime the inputs depend on each other"
@@ -221,7 +234,7 @@ def _estimate(
                 indices = given_data_indices(method, inputs, target.values, quantiles)
             else:
                 indices = estimate(design, target.values)
-            indices = indices._replace(notes=few + indices.notes + notes)
+            indices = indices._replace(notes=target.notes + few + indices.notes + notes)
         except RefusedError as refusal:
             indices = str(refusal)
         alone = np.arange(target.values.size)[:, None]
@@ -233,7 +246,7 @@ def _estimate(
 def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
     """Return what quantiles of a target are called: B10 of a life is where its rate is high."""
     if target.element is not None and target.element.kind == "lifetime":
-        return {"B10": 0.9, "B50": 0.5}
+        return {"B10": 0.9 if target.name.startswith("rate(") else 0.1, "B50": 0.5}
     return {f"Q{probability!r}": probability for probability in asked}
 
 
@@ -259,7 +272,7 @@ def _check_method(ds: xr.Dataset, method: str, dependent: str) -> None:
     )
 
 
-def _chosen(ds: xr.Dataset, method: str, output: str | None) -> list[Target]:
+def _chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> list[Target]:
     """Return the targets that a user means, all that suit the method or by name."""
     if output is None:
         found = [
@@ -277,26 +290,40 @@ def _chosen(ds: xr.Dataset, method: str, output: str | None) -> list[Target]:
         if not found:
             raise InputError("none of the outputs is a number: there is nothing to apportion")
         return found
-    # rate(first_time_to_depth[depth=0.00025]) and P(life<1000.0) hold the name of an element.
-    inside = output.removeprefix("rate(").removeprefix("P(").rstrip(")").partition("<")[0]
-    name = inside if "[" in inside else inside.partition("=")[0]
-    found = _targets(ds, name)
-    if output == name:
-        if not found:
-            raise InputError(f"no row has a {name}: there is nothing to apportion")
-        return found
-    chosen = [target for target in found if target.name == output]
-    if not chosen:
-        raise InputError(f"no such output '{output}'{nearest(output, [t.name for t in found])}")
-    return chosen
+    if not isinstance(output, str):
+        return [target for name in output for target in _named(ds, name)]
+    found = _named(ds, output)
+    if not found:
+        _, inside, _ = split_name(output)
+        if output == inside:
+            raise InputError(f"no row has a {output}: there is nothing to apportion")
+        names = [target.name for target in _targets(ds, _output_in(inside), every=True)]
+        raise InputError(f"no such output '{output}'{nearest(output, names)}")
+    return found
 
 
-def _targets(ds: xr.Dataset, name: str) -> list[Target]:
+def _named(ds: xr.Dataset, name: str) -> list[Target]:
+    """Return the targets that a user means by a name; none where it means nothing."""
+    form, inside, _ = split_name(name)
+    found = _targets(ds, _output_in(inside), every=True)
+    if form:
+        return [target for target in found if target.name == name]
+    own = [target for target in found if split_name(target.name)[0] == ""]
+    return own or _targets(ds, name)
+
+
+def _output_in(inside: str) -> str:
+    """Return the output or element that the name of a target is about."""
+    return inside if "[" in inside else inside.partition("=")[0]
+
+
+def _targets(ds: xr.Dataset, name: str, every: bool = False) -> list[Target]:
     """Return the targets of an output or of one element of it."""
     if name in ds and ds[name].attrs.get("kind") == "category" and ds[name].ndim == 1:
         return list(category_targets(ds, name))
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
-    return list(targets(known, analysis_of(ds).thresholds))
+    make = all_targets if every else targets
+    return list(make(known, analysis_of(ds).thresholds))
 
 
 def _plain(index: Index) -> dict[str, float | None]:

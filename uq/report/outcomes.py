@@ -7,6 +7,7 @@ import xarray as xr
 
 from uq.contract import Status
 from uq.drawing.figure import place_in_words, powers
+from uq.indices.targets import FORMS, split_name
 from uq.report.table import Cell, Table, count, estimate, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
 from uq.time_units import TimeUnit, time_unit
@@ -166,7 +167,7 @@ def _statistics(one: Outcome) -> Iterator[Cell]:
         yield one.moment(moment)
     yield from (one.cell(quantile) for quantile in entry["quantiles"].values())
     split = entry.get("between_regimes")
-    yield estimate(split)._replace(text=variance_between(split)) if split else Cell("")
+    yield _between(split) if split else Cell("")
     yield from (count(entry[name]) for name in _COUNTS)
     yield _missed(entry.get("accuracy"))
 
@@ -175,6 +176,12 @@ def _missed(accuracy: Mapping[str, Any] | None) -> Cell:
     if not accuracy or not accuracy["missed"]:
         return Cell("")
     return count(accuracy["missed"])._replace(more=percent(accuracy["share"]))
+
+
+def _between(split: Mapping[str, Any]) -> Cell:
+    form, *_ = split_name(split["of"])
+    of = f", of the {FORMS[form]}" if form else ""
+    return estimate(split)._replace(text=variance_between(split) + of)
 
 
 def _thresholds(one: Outcome) -> Iterator[tuple[Cell, ...]]:

@@ -93,7 +93,7 @@ class Study:
     @property
     def identity(self) -> str:
         """SHA-256 of what decides the rows: not how many, comments or [analysis]."""
-        design = self.design.model_dump(exclude={"samples", "file", "until"})
+        design = self.design.model_dump(exclude={"samples", "file", "until", "independent"})
         constants = {
             name: self.fixed.get(name, nominal)
             for name, nominal in self.model.nominal.items()
@@ -233,12 +233,14 @@ def study_from_text(
     file = StudyFile.model_validate(data)
     settings, _ = read_settings(found, file.settings)
     outputs = file.analysis.outputs or tuple(found.outputs)
+    imported = _imported(file, columns)
+    rows = min((len(numbers(column)) for column in imported.values()), default=0)
     return Study(
         name=file.study.name,
         model=found,
         model_reference=reference,
         description=file.study.description,
-        design=file.design,
+        design=file.design.model_copy(update={"samples": file.design.samples or rows}),
         fixed=file.fixed,
         uncertain={name: law for name, law in entries.items() if not isinstance(law, Tied)},
         settings=settings,
@@ -247,7 +249,7 @@ def study_from_text(
         path=source,
         tied={name: tied for name, tied in entries.items() if isinstance(tied, Tied)},
         dependence=file.dependence,
-        imported=_imported(file, columns),
+        imported=imported,
     )
 
 
