@@ -14,7 +14,7 @@ from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
 from uq.indices.sobol import MIN_GROUPS
 from uq.indices.targets import split_name
-from uq.rows.elements import Element, elements_of, named_elements, output_names
+from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
 
 _FEWEST = 16  # samples
 
@@ -132,7 +132,7 @@ def _own_error(ds: xr.Dataset, element: Element) -> float:
 
 def _sizes(ds: xr.Dataset) -> list[int]:
     method, size = ds.attrs["design"], int(ds.attrs["samples"])
-    if not DESIGNS[method].append_only:
+    if not (DESIGNS[method].append_only or are_independent(ds)):
         able = " or ".join(f"'{name}'" for name, design in DESIGNS.items() if design.append_only)
         raise InputError(
             f"the first rows of a '{method}' design are no such design, so nothing can be said of"

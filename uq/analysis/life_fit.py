@@ -29,6 +29,11 @@ MOST_DRAWN = 400 * REFITS
 
 LEVEL = 0.05
 
+INDEPENDENT_ONLY = (
+    "the test of fit holds for independent rows; use method = 'monte-carlo', or, of imported rows"
+    " that are independent, independent = true"
+)
+
 ASSUMES = (
     "that lives follow this law: that a test of {rows} rows does not refuse it is no proof, least"
     " of all where no row lies"
@@ -141,7 +146,7 @@ def _one(law: str, element: Element, independent: bool) -> dict[str, Any]:
 def _problem(life: Floats, ended: Mask, independent: bool) -> str:
     """Say why no law can be fitted, or return ""."""
     if not independent:
-        return "the test of fit holds for independent rows; use method = 'monte-carlo'"
+        return INDEPENDENT_ONLY
     never = int((np.isposinf(life) & ended).sum())
     if never:
         return f"{never} of {len(life)} rows never end, and under this law all do"

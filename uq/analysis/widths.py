@@ -18,6 +18,7 @@ from uq.rows.elements import (
     Element,
     Floats,
     analysis_of,
+    are_independent,
     elements_of,
     flags,
     independent_rows,
@@ -48,7 +49,7 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
     samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
     labels = [label for _, label in flags(pilot["block"])]
     rows = samples * replicates * (2 if "A" in labels else 1)
-    factor = _factor(pilot.attrs["design"], replicates)
+    factor = _factor(are_independent(pilot), replicates)
     groups = _groups(pilot, len(labels))
     found = {}
     for whole, element in zip(
@@ -72,9 +73,9 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _factor(design: str, replicates: int) -> float | None:
+def _factor(independent: bool, replicates: int) -> float | None:
     """Return half the width of an interval in standard errors."""
-    if design == "monte-carlo":
+    if independent:
         return float(stats.norm.ppf(_LEVEL))
     return float(stats.t.ppf(_LEVEL, replicates - 1)) if replicates > 1 else None
 

@@ -34,12 +34,13 @@ def check(path: str, model: str | None) -> None:
     factors = {"replicates": design.replicates, "rows each": group_size(study)}
     parts = [f"{design.samples} samples"]
     parts += [f"{number} {name}" for name, number in factors.items() if number > 1]
+    stated = ", stated to be independent" * design.independent
     dependent = study.dependence is not None
     feeds = ", ".join(DESIGNS[design.method].feeds_with(dependent))
     grid(
         [
             ("model", f"{study.model.name}, version {study.model.version}"),
-            ("design", f"{design.method}: {DESIGNS[design.method].meaning}"),
+            ("design", f"{design.method}: {DESIGNS[design.method].meaning}{stated}"),
             ("rows", f"{rows(study)} = {' x '.join(parts)}" if parts[1:] else str(rows(study))),
             *_of_random(study),
             ("outputs", ", ".join(study.analysis.outputs)),

@@ -109,7 +109,13 @@ def independent_rows(ds: xr.Dataset) -> xr.Dataset:
 
 def replicates_of(rows: xr.Dataset) -> Replicates:
     """Return the replicate of each row, or None where the rows are independent."""
-    return None if rows.attrs["design"] == "monte-carlo" else rows["replicate"].values
+    return None if are_independent(rows) else rows["replicate"].values
+
+
+def are_independent(ds: xr.Dataset) -> bool:
+    """Whether the rows of a result, A and B where a design has these, are independent."""
+    design = DESIGNS[ds.attrs["design"]]
+    return design.independent or (design.draw is None and study_file_of(ds).design.independent)
 
 
 def flags(variable: xr.DataArray) -> list[tuple[int, str]]:

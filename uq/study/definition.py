@@ -93,7 +93,7 @@ class Study:
     @property
     def identity(self) -> str:
         """SHA-256 of what decides the rows: not how many, comments or [analysis]."""
-        design = self.design.model_dump(exclude={"samples", "file", "until"})
+        design = self.design.model_dump(exclude={"samples", "file", "until", "independent"})
         constants = {
             name: self.fixed.get(name, nominal)
             for name, nominal in self.model.nominal.items()

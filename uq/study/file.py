@@ -146,9 +146,19 @@ class DesignTable(_Table):
     file: str | None = Field(
         None, description="imported only: CSV or netCDF with a column for each uncertain parameter"
     )
+    independent: bool = Field(
+        False,
+        description="imported only: you state that the rows are independent draws of the laws;"
+        " they then feed what a monte-carlo sample feeds",
+    )
     until: Until | None = Field(
         None, description="stop as soon as this is known well enough; samples is then the budget"
     )
+
+    @property
+    def has_independent_rows(self) -> bool:
+        """Whether rows are independent, by the design or because the study states it."""
+        return self.independent or DESIGNS[self.method].independent
 
 
 class Tied(_Table):
