@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
+from uq.analysis.survival_band import simultaneous_band
 from uq.intervals import CONFIDENCE, Interval, Replicates, scattered_share_interval
 from uq.rows.elements import Element, Floats, Mask, independent_rows, lifetimes, replicates_of
 
@@ -29,8 +30,10 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
         life that never ends is known at once, it is that of the rows that end, times their share,
         plus the share that never does. ``low``, ``high``: its pointwise 95 % interval, for
         independent rows by the exponential Greenwood formula [1]_, else from the replicates; NaN
-        where nothing can be said. ``never``: the share of rows known never to end. Counts:
-        ``rows``, ``censored``, and ``undefined`` and ``failed``, which take no part.
+        where nothing can be said. ``band_low``, ``band_high``: a 95 % band that holds the whole
+        curve, of independent rows only; see the attribute ``band``. ``never``: the share of rows
+        known never to end. Counts: ``rows``, ``censored``, and ``undefined`` and ``failed``, which
+        take no part.
 
     Raises
     ------
@@ -55,6 +58,9 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     time = np.unique(np.concatenate([_finite(element.values) for element in chosen]))
     replicate = replicates_of(rows)
     curves = [curve(element, time, replicate) for element in chosen]
+    for found, element in zip(curves, chosen, strict=True):
+        whole_band = band(element, time) if replicate is None else _no_band(time)
+        found["band_low"], found["band_high"] = whole_band
 
     whole = rows[chosen[0].output]
     places = {dim: whole[dim] for dim in whole.dims if dim != "sample"}
@@ -69,13 +75,22 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     coords = places if dims else chosen[0].place
     axis = ("time", time, {"long_name": "time", "units": "s"})
     attrs = {"output": output, "long_name": whole.attrs["long_name"]}
+    attrs["band"] = BAND if replicate is None else NO_BAND
     return xr.Dataset(data, {**coords, "time": axis}, attrs)
 
+
+BAND = (
+    "holds the whole curve with 95 % confidence: Kolmogorov's without censored rows, else Hall and"
+    " Wellner's, which ends where fewer than 10 rows are at risk"
+)
+NO_BAND = "none: a band for a whole curve takes independent rows"
 
 _VARIABLES = {
     "survival": "probability of a longer life",
     "low": "lower end of the pointwise 95 % interval",
     "high": "upper end of the pointwise 95 % interval",
+    "band_low": "lower end of the simultaneous 95 % band",
+    "band_high": "upper end of the simultaneous 95 % band",
     "never": "share of rows that never end",
     "rows": "number of rows with a lifetime",
     "censored": "number of rows of which only a lower bound is known",
@@ -107,11 +122,37 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, An
     return counts | {"never": never, "survival": found.share} | interval._asdict()
 
 
+def band(element: Element, time: Floats) -> Interval:
+    """Return the simultaneous 95 % band of `survival` for one element of independent rows."""
+    values, censored = element.at_least, element.censored[element.present]
+    if len(values) == 0:
+        return _no_band(time)
+    found = _estimate(values, censored, time, element.never_known_at_once)
+    among = found.among or found
+    at_risk = found.ending * len(values) - np.searchsorted(np.sort(values), time)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        deviation = np.sqrt(among.variance) / among.share
+    return simultaneous_band(
+        ending=found.ending,
+        among=among.share,
+        deviation=deviation,
+        at_risk=at_risk.astype(float),
+        rows=len(values),
+        ended=int((np.isfinite(values) & ~censored).sum()),
+        complete=not censored.any(),
+    )
+
+
 class _Estimate(NamedTuple):
-    """Share that outlives each time, and the variance of that estimate from independent rows."""
+    """Share that outlives each time, and the variance of that estimate from independent rows.
+
+    Where never is known at once, also the share that ends and the estimate among those.
+    """
 
     share: Floats
     variance: Floats
+    ending: float = 1.0
+    among: "_Estimate | None" = None
 
 
 def _estimate(values: Floats, censored: Mask, time: Floats, known_at_once: bool) -> _Estimate:
@@ -148,7 +189,7 @@ def _estimate(values: Floats, censored: Mask, time: Floats, known_at_once: bool)
     of_ending = _kaplan_meier(values[~never], censored[~never], time)
     share = 1 - p + p * of_ending.share
     spread = (1 - of_ending.share) ** 2 * p * (1 - p) / len(values)
-    return _Estimate(share, spread + p**2 * of_ending.variance)
+    return _Estimate(share, spread + p**2 * of_ending.variance, float(p), of_ending)
 
 
 def _kaplan_meier(values: Floats, censored: Mask, time: Floats) -> _Estimate:
@@ -176,6 +217,10 @@ def _greenwood(estimate: _Estimate) -> Interval:
         low, high = (np.exp(-np.exp(middle + side * half)) for side in (1, -1))
     known = (share > 0) & (share < 1)
     return Interval(*(np.where(known, end, np.nan) for end in (low, high)))
+
+
+def _no_band(time: Floats) -> Interval:
+    return Interval(*np.full((2, len(time)), np.nan))
 
 
 def _finite(values: Floats) -> Floats:
