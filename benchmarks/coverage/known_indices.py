@@ -139,5 +139,9 @@ def _first_and_total(given_one, given_others, mean, variance, kink):
     return {"S1": float(first), "ST": float(1 - others)}
 
 
-REASONS = {}
+WIDENED = (
+    "conservative: the variance rests on fewer than 50 rows of each replicate, and intervals are"
+    " widened by what one more such row might do"
+)
+REASONS = {"rate(never)": WIDENED, f"P(never<{SOONER!r})": WIDENED}
 """Quantity -> why its coverage is not 95 %."""

@@ -10,6 +10,7 @@ import uq
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
 from uq.indices.transforms import HEAVY, heaviness, tail_share
+from uq.report.indices import sensitivity_of
 
 
 def heavy(sign=1, shift=0.0, samples=64):
@@ -78,6 +79,14 @@ def test_an_output_without_a_heavy_tail_stands_as_it_is():
     ds = asking(heavy(), outputs=["y"])
     name, entry = only(ds)
     assert name == "y" and entry["notes"] == []
+
+
+def test_reports_say_what_the_indices_are_of():
+    ds = asking(heavy(samples=128), outputs=["work"], sensitivity=["sobol"])
+    (method,) = sensitivity_of(ds)
+    (subject,) = method.subjects
+    assert subject.words == "Logarithm of the meaning of work"
+    assert "matters most to the logarithm of the meaning of work" in subject.leading
 
 
 def test_plans_and_convergence_name_and_judge_the_same_number():

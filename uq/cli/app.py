@@ -280,7 +280,10 @@ def summary(
 @app.command()
 def sensitivity(
     result: ResultFile,
-    output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    output: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Only this output, or of it log(NAME), rank(NAME), ..."),
+    ] = None,
     method: Annotated[str | None, typer.Option(metavar="M", help="Default: the study's.")] = None,
     regime: Regime = None,
     json: Json = False,
