@@ -150,7 +150,7 @@ def scattered_share_interval(
     estimates: Floats,
     scatter_at: Floats | float | None = None,
     confidence: float = CONFIDENCE,
-    rows: int | None = None,
+    rows: Floats | float | None = None,
 ) -> Interval:
     """Return the interval of a share, or of several, from estimates by replicates.
 
@@ -163,7 +163,7 @@ def scattered_share_interval(
     scatter_at : float or ndarray, optional
         The share whose scatter `estimates` show, if it is not exactly `share`.
     confidence : float, optional
-    rows : int, optional
+    rows : float or ndarray, shape (k,), optional
         Of all replicates together: where hits are few, they count for no more than these.
 
     Returns
