@@ -60,11 +60,12 @@ def test_the_version_is_that_of_the_distribution(uq):
     assert uq("--version") == (0, f"vibrolife {version('vibrolife')}\n", "")
 
 
-def test_a_narrow_terminal_is_seen_as_narrow(monkeypatch):
-    monkeypatch.delenv("COLUMNS", raising=False)
+def test_a_narrow_terminal_is_seen_as_narrow():
+    environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
     ours, theirs = pty.openpty()
     termios.tcsetwinsize(theirs, (24, 60))
-    subprocess.run([COMMAND, "run", "--help"], stdout=theirs, check=True)
+    # Its own environment: readline, if it is loaded, has the widths of this one in the C library's.
+    subprocess.run([COMMAND, "run", "--help"], stdout=theirs, env=environment, check=True)
     os.close(theirs)
     lines = os.read(ours, 10_000).decode().splitlines()
     os.close(ours)
