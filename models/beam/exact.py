@@ -100,6 +100,11 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     yield rows, System(each, modal, reach(beams), beams, beams.forcing, steps)
 
 
+def finer(system: System) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Return no systems of smaller steps: there are no steps; see `models.beam.lanes.finer`."""
+    return iter(())
+
+
 def start(system: System, displacement: Array, velocity: Array) -> Array:
     """Return the state at phase 0 of the force, tip displaced in the shape of the first mode.
 
