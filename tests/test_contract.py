@@ -148,6 +148,15 @@ def test_the_same_rows_give_the_same_bits_again(model, settings):
     assert bits(run(model, settings, x, seed)) == bits(run(model, settings, x, seed))
 
 
+def test_only_models_that_say_so_depend_on_the_seed(model, settings):
+    x, seed = near_nominal(model, 3)
+    for name, value in model.random_unless.items():
+        assert model.random
+        x[:, model.parameter_names.index(name)] = value
+    if model.random_unless or not model.random:
+        assert bits(run(model, settings, x, seed)) == bits(run(model, settings, x, seed[::-1]))
+
+
 def test_every_corner_of_the_bounds_ends_with_a_status(model, settings):
     rng = np.random.default_rng(4)
     bounds = np.array([model.parameter(name).bounds for name in model.parameter_names])

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy import stats
 
-from benchmarks.coverage import further, known_indices, problems
+from benchmarks.coverage import further, known_indices, noise, problems
 from benchmarks.coverage.page import page
 from benchmarks.coverage.parts import PARTS
 from benchmarks.coverage.tally import Tally
@@ -54,7 +55,14 @@ def test_indices_of_the_jump_are_those_of_many_rows(big):
 def test_indices_of_the_life_are_those_of_many_rows(big):
     life = big["never"].values
     known = known_indices.life_truths()
-    for name, values in (("rate(never)", 1 / life), ("P(never<1.0)", (life < 1.0).astype(float))):
+    targets = {
+        "log(life)": np.log(big["life"].values),
+        "rank(never)": stats.rankdata(life) / len(life),
+        "rate(never)": 1 / life,
+        "P(never<1.0)": (life < 1.0).astype(float),
+    }
+    assert set(targets) == set(known)
+    for name, values in targets.items():
         for kind, of in (("S1", big["r1"]), ("ST", big["r2"] + big["r3"])):
             parts = np.array_split(np.argsort(of.values), 400)
             share = np.var([values[part].mean() for part in parts]) / values.var()
@@ -97,3 +105,14 @@ def test_parts_count_what_is_printed(name):
     lines = PARTS[name].count(2)
     assert all(line.repetitions == 2 for line in lines if line.by == "uq")
     assert any(line.by == "uq" and line.given == 2 for line in lines)
+
+
+def test_truths_of_the_random_model_are_those_of_many_rows():
+    law = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
+    study = problems.study_of("saltelli", 2**14, 1, noise.NAME, dict.fromkeys(("x1", "x2"), law))
+    y = problems.computed(study)["y"].values.reshape(-1, 5)
+    a, ab_1, ab_2, b, again = ((y - y.mean()) / y[:, [0, 3]].std()).T
+    for one, name in ((ab_1, "x1"), (ab_2, "x2")):
+        assert np.mean(b * (one - a)) == pytest.approx(noise.TRUTH["S1"][name], abs=0.03)
+        assert np.mean((a - one) ** 2) / 2 == pytest.approx(noise.TRUTH["ST"][name], abs=0.03)
+    assert np.mean((a - again) ** 2) / 2 == pytest.approx(noise.SHARE, abs=0.03)

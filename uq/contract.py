@@ -196,6 +196,12 @@ class Model:
     cheap : dict of str to Batch
         Outputs that can be computed alone at a small part of a row's cost -> a batch that returns
         just this output, with the same bits.
+    random : bool
+        Whether rows depend on their seed. Rows that a design compares with each other then share
+        one, so that noise is not counted as an input's.
+    random_unless : dict of str to float
+        Parameter -> its value at which a random model is not random after all, such as a level of
+        noise of 0.
     block : int
         Rows that the kernel advances together; a chunk shorter than this wastes work.
     references : tuple of str
@@ -213,6 +219,8 @@ class Model:
     coordinates: Callable[[Any], Mapping[str, Sequence[Any]]] = field(default=_no_coordinates)
     dimensions: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     cheap: Mapping[str, Batch] = field(default_factory=dict)
+    random: bool = False
+    random_unless: Mapping[str, float] = field(default_factory=dict)
     block: int = 1
     references: tuple[str, ...] = ()
 

@@ -14,6 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from uq.exact_shares import are_few, exact_interval
+
 CONFIDENCE = 0.95
 _ROUNDING = 64 * np.finfo(float).eps
 
@@ -96,7 +98,9 @@ def share_interval(
     -------
     Interval
         Wilson's score interval [1]_. For replicates with the number of independent rows that
-        would scatter as much, and Student's t for the normal quantile [2]_.
+        would scatter as much, and Student's t for the normal quantile [2]_. Where hits or misses
+        are few that of Clopper and Pearson (`uq.exact_shares`), which is conservative; replicates
+        then count for no more than their rows, since few hits show little of their scatter.
 
     References
     ----------
@@ -108,10 +112,31 @@ def share_interval(
     if len(hits) == 0:
         return UNKNOWN
     if replicate is None:
-        return wilson_interval(hits.mean(), len(hits), confidence)
+        return binomial_interval(hits.mean(), len(hits), confidence)
     return _floats(
-        scattered_share_interval(hits.mean(), _means(hits, replicate), confidence=confidence)
+        scattered_share_interval(
+            hits.mean(), _means(hits, replicate), confidence=confidence, rows=len(hits)
+        )
     )
+
+
+def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Interval:
+    """Return the interval of a share known as well as from so many rows: exact where hits are few.
+
+    Parameters
+    ----------
+    share : float
+    rows : float
+        Independent rows that tell as much.
+    confidence : float, optional
+
+    Returns
+    -------
+    Interval
+    """
+    if are_few(share, rows):
+        return _floats(Interval(*exact_interval(share, rows, confidence)))
+    return wilson_interval(share, rows, confidence)
 
 
 def wilson_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Interval:
@@ -124,6 +149,7 @@ def scattered_share_interval(
     estimates: Floats,
     scatter_at: Floats | float | None = None,
     confidence: float = CONFIDENCE,
+    rows: int | None = None,
 ) -> Interval:
     """Return the interval of a share, or of several, from estimates by replicates.
 
@@ -136,6 +162,8 @@ def scattered_share_interval(
     scatter_at : float or ndarray, optional
         The share whose scatter `estimates` show, if it is not exactly `share`.
     confidence : float, optional
+    rows : int, optional
+        Of all replicates together: where hits are few, they count for no more than these.
 
     Returns
     -------
@@ -149,8 +177,30 @@ def scattered_share_interval(
     variance = estimates.var(axis=0, ddof=1) / count
     # A curve of survival may reach 0 as a whole while a replicate's, censored, does not.
     known = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
-    variance = np.where(known, variance, np.nan)
-    return _wilson(share, at * (1 - at) / variance, stats.t.ppf(_upper_tail(confidence), count - 1))
+    worth = at * (1 - at) / np.where(known, variance, np.nan)
+    wide = stats.t.ppf(_upper_tail(confidence), count - 1)
+    found = _wilson(share, worth, wide)
+    if rows is None:
+        return found
+    normal = stats.norm.ppf(_upper_tail(confidence))
+    worth = np.fmin(worth * (normal / wide) ** 2, rows)
+    few, exact = are_few(share, rows), exact_interval(share, worth, confidence)
+    return Interval(*(np.where(few, *ends) for ends in zip(exact, found, strict=True)))
+
+
+def is_within(probability: float, rows: int) -> bool:
+    """Whether so many values reach a quantile: their ranks, on average, lie at i/(n + 1).
+
+    Rows of replicates count together: their designs spread as evenly, or more so.
+    """
+    return bool(1 - _ROUNDING <= probability * (rows + 1) <= rows + _ROUNDING * rows)
+
+
+def rows_to_reach(probability: float) -> int:
+    """Return the least number of values that reach a quantile."""
+    rarer = min(probability, 1 - probability)
+    rows = int(np.ceil(1 / rarer - 1))
+    return next(n for n in (rows - 1, rows, rows + 1) if n > 0 and is_within(probability, n))
 
 
 def quantile(values: Floats, probability: float) -> float:
@@ -159,26 +209,28 @@ def quantile(values: Floats, probability: float) -> float:
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Finite or +inf.
+        Finite or infinite.
     probability : float
 
     Returns
     -------
     float
-        +inf as soon as an infinite value takes part; NaN without values.
+        Infinite as soon as an infinite value takes part; NaN beyond what the values reach, see
+        `is_within`.
 
     References
     ----------
     .. [1] R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", Am. Stat. 50,
        361-365 (1996).
     """
-    finite = values[np.isfinite(values)]
-    if len(finite) == 0:
-        return np.inf if len(values) else np.nan
+    if not is_within(probability, len(values)):
+        return np.nan
     # Infinity times zero is no number: numpy interpolates towards a huge number instead.
-    huge = np.finfo(float).max / 4
-    found = np.quantile(np.minimum(values, huge), probability, method="median_unbiased")
-    return float(found) if found <= finite.max() else np.inf
+    huge, finite = np.finfo(float).max / 4, values[np.isfinite(values)]
+    found = np.quantile(np.clip(values, -huge, huge), probability, method="median_unbiased")
+    if found > finite.max(initial=-huge):
+        return np.inf
+    return float(found) if found >= finite.min(initial=huge) else -np.inf
 
 
 def quantile_interval(
@@ -189,7 +241,7 @@ def quantile_interval(
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Finite or +inf.
+        Finite or infinite.
     probability : float
     replicate : ndarray of int, shape (n,), optional
     confidence : float, optional
@@ -198,7 +250,8 @@ def quantile_interval(
     -------
     Interval
         Independent rows: order statistics, by the binomial law [1]_. Replicates: the quantiles at
-        both ends of the interval of the share of rows below the quantile [2]_. Bounds may be +inf.
+        both ends of the interval of the share of rows below the quantile [2]_. Bounds may
+        be infinite.
 
     References
     ----------
@@ -216,7 +269,9 @@ def quantile_interval(
             order_statistic(values, int(stats.binom.isf(tail, n, probability)) + 1),
         )
     value = quantile(values, probability)
-    below = values <= value if np.isfinite(value) else values < value
+    if np.isnan(value):
+        return UNKNOWN
+    below = values < value if np.isposinf(value) else values <= value
     low, high = scattered_share_interval(
         probability, _means(below, replicate), below.mean(), confidence
     )

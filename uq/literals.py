@@ -2,6 +2,7 @@
 
 import json
 import re
+import tomllib
 from collections.abc import Mapping
 from math import isinf
 from typing import Any
@@ -39,6 +40,31 @@ def shown(value: Any, width: int = 60) -> str:
     except (ValueError, RecursionError):  # thousands of digits, or of brackets
         return "..."
     return text if len(text) <= width else f"{text[: width - 3]}..."
+
+
+# More parts than any key has: Python's parser takes a time that grows with their square.
+_MOST_PARTS = 64
+_LONG_KEY = re.compile(
+    rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}"""
+)
+
+
+def read_toml(text: str) -> dict[str, Any]:
+    """Read TOML; a number as `read_number` does.
+
+    Raises
+    ------
+    ValueError
+        When it is none, or has a key of absurdly many parts.
+    OverflowError
+        When a number is too large.
+    RecursionError
+        When it is nested too deeply.
+    """
+    if found := _LONG_KEY.search(text):
+        line = text.count("\n", 0, found.start()) + 1
+        raise ValueError(f"a key of more than {_MOST_PARTS} parts (at line {line})")
+    return tomllib.loads(text, parse_float=read_number)
 
 
 def read_number(text: str) -> float:

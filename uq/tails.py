@@ -28,6 +28,8 @@ MAX_TAIL = 1000
 LARGEST_SHARE = 0.4
 """Share of the rows that counts as tail if a generalised Pareto law fits it."""
 
+FEWEST_ROWS = int(MIN_TAIL / LARGEST_SHARE)
+
 DISTINCT = 0.95
 """Share of the tail's values that must differ: the law of a lattice or of ties has no k."""
 
@@ -120,6 +122,12 @@ def heavier_tail(values: Floats) -> Tail | None:
         if (tail := _tail(extreme, side)) is not None
     ]
     return max(found, key=lambda tail: tail.k, default=None)
+
+
+def lacks_variance(values: Floats) -> bool:
+    """Whether the finite ones among some values speak against a finite variance."""
+    tail = heavier_tail(values[np.isfinite(values)])
+    return tail is not None and tail.no_variance
 
 
 def _tail(ascending: Floats, side: str) -> Tail | None:

@@ -3,9 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
-
-from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Interval, is_constant
 
 
 class Estimate(NamedTuple):
@@ -61,38 +58,3 @@ def ratio(first: Estimate, second: Estimate, correlation: float) -> Estimate:
         for one in (first, second)
     )
     return Estimate(*np.exp(difference(below, above, correlation)).tolist())
-
-
-def sd_interval(values: Floats, confidence: float = CONFIDENCE) -> Interval:
-    """Return the interval of the standard deviation of independent rows.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-        Finite, of any law.
-    confidence : float, optional
-
-    Returns
-    -------
-    Interval
-        After [1]_, which takes the kurtosis from the rows.
-
-    References
-    ----------
-    .. [1] D. G. Bonett, "Approximate confidence interval for standard deviation of nonnormal
-       distributions", Comput. Stat. Data Anal. 50, 775-782 (2006).
-    """
-    n = len(values)
-    if n < _FEWEST or is_constant(values):
-        return UNKNOWN
-    z = stats.norm.ppf(0.5 + confidence / 2)
-    middle = stats.trim_mean(values, 1 / (2 * np.sqrt(n - 4)))
-    squares = (values - values.mean()) ** 2
-    kurtosis = n * np.sum((values - middle) ** 4) / squares.sum() ** 2
-    c = n / (n - z)
-    error = c * np.sqrt(max(kurtosis - (n - 3) / n, 0.0) / (n - 1))
-    sides = np.exp((np.log(c) + z * error * np.array([-1, 1])) / 2)
-    return Interval(*(values.std(ddof=1) * sides).tolist())
-
-
-_FEWEST = 8  # rows

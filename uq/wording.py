@@ -50,6 +50,8 @@ def known(entry: Entry, key: str = "value", per: float = 1.0) -> str:
     """
     if entry[key] is not None:
         return number(entry[key] / per)
+    if key == "value" and "rows_needed" in entry:
+        return f"needs {entry['rows_needed']} rows"
     prefix = "" if key == "value" else f"{key}_"
     if entry.get(f"{prefix}never"):
         return "never"
@@ -60,6 +62,16 @@ def interval(entry: Entry, per: float = 1.0) -> str:
     """Return the ends of the interval of an entry; nothing where it has none, or both never."""
     ends = [known(entry, end, per) if end in entry else "-" for end in ("low", "high")]
     return "" if ends == ["-", "-"] or ends[0] == "never" else " to ".join(ends)
+
+
+def failed_interval(entry: Entry, per: float = 1.0) -> str:
+    """Return the bounds with failed rows at best and at worst; nothing where no row failed."""
+    if "failed_low" not in entry:
+        return ""
+    low, high = (known(entry, f"failed_{end}", per) for end in ("low", "high"))
+    if low == "-":
+        return "no bound" if high == "-" else f"up to {high}"
+    return f"from {low} on" if high == "-" else f"{low} to {high}"
 
 
 def estimated(label: str, per: float = 1.0) -> str:
@@ -109,7 +121,11 @@ def percent_with_interval(entry: Entry) -> str:
     """Return a share in per cent, with its interval where it has one."""
     ends = [entry[end] for end in ("low", "high")]
     told = percent(entry["value"])
-    return told if None in ends else f"{told} ({percent_interval(*ends)})"
+    if None in ends:
+        return told
+    bounds = [entry[end] for end in ("failed_low", "failed_high") if entry.get(end) is not None]
+    worst = f"; with failed rows {percent_interval(*bounds)}" if len(bounds) == 2 else ""
+    return f"{told} ({percent_interval(*ends)}{worst})"
 
 
 def percent_interval(low: float, high: float) -> str:

@@ -1,5 +1,7 @@
 """Twins, runs that stop when they know enough, and rare events."""
 
+from functools import partial
+
 import numpy as np
 import openturns as ot
 from scipy import stats
@@ -24,8 +26,8 @@ from uq.analysis.twin import with_twin
 from uq.intervals import UNKNOWN
 from uq.rows import stopping
 from uq.running.design_points import design_points, drawn_around
-from uq.running.reliability import log_scatter_interval
 from uq.running.subset import subset_simulation
+from uq.running.supported import log_scatter_interval, subset_interval
 
 UNIFORMS = {
     name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")
@@ -107,10 +109,31 @@ def subset(repetitions):
         truth = _jump_probability() if margin is _jump else RARE
         for seed in range(repetitions):
             found = subset_simulation(margin, d, 1000, np.random.default_rng(seed).spawn(8))
-            interval = log_scatter_interval(np.array([one.probability for one in found]))
-            tally.add("probability", truth, *interval)
+            tally.add("probability", truth, *subset_interval(found, 1000))
         lines += tally.lines()
     return lines
+
+
+def plateau(repetitions):
+    """Count the intervals of subset simulation where the margin does not lead to the event."""
+    tally = Tally("subset simulation on a plateau, 8 replicates of 1000 rows", REASONS)
+    for share in PLATEAU:
+        for steps in (1, 2):
+            what = f"P = {share:g}" + ", half of the rows on a step" * (steps == 2)
+            margin = partial(_flat, share, steps)
+            for seed in range(repetitions):
+                found = subset_simulation(margin, 2, 1000, np.random.default_rng(seed).spawn(8))
+                tally.add(what, share, *subset_interval(found, 1000))
+    return tally.lines()
+
+
+PLATEAU = (2e-5, 2e-4, 1e-3)
+
+
+def _flat(share, steps, u):
+    """Beyond a limit of the first input; elsewhere flat, or on two steps of the second."""
+    within = ndtr(-u[:, 0]) < share
+    return np.where(within, 1.0, -1.0 + 0.5 * (steps == 2) * (u[:, 1] > 0))
 
 
 def _jump_probability():

@@ -22,9 +22,9 @@ Problems: *Ishigami's function*; a *function of two regimes* that jumps by 3 whe
 1.2, added to x1 + x3; a *life with a heavy tail*, whose P(T > t) falls as t^-3, so that it has a
 variance but no skewness; the same life *never ending* in some rows, *censored* at a horizon or at
 random times; lives of which 60 % *never end*, known at once, while the others, Weibull, may be
-censored; Weibull and lognormal lives; the *g-function*; a *linear function* in two studies;
-limits with a probability of 1e-5. Their truths are closed forms or quadratures
-(`benchmarks/coverage`).
+censored; Weibull and lognormal lives; the *g-function*; a *linear function* in two studies; a
+*random model*, x1 + (1 + 2 x2) e with noise e; limits with a probability of 1e-5. Their truths
+are closed forms or quadratures (`benchmarks/coverage`).
 
 Printed without an interval, because none would be honest: sd, within-regime sd, extended FAST,
 RBD-FAST, delta, PAWN, HDMR and quantile-oriented indices. The last table counts what stands in
@@ -69,7 +69,8 @@ def _row(line):
     name = f"**{what}**" if by == OURS else what
     covered = f"{value:.1%} ({low:.1%} to {high:.1%})" if line.given else "none given"
     width = f"{line.width:.3g}" if math.isfinite(line.width) else ""
-    remark = line.reason if line.by != OURS or _is_off(line) else ""
+    told = line.by != OURS or not line.given or _is_off(line)
+    remark = line.reason if told else ""
     if line.given < line.repetitions:
         remark = "; ".join(filter(None, [f"{line.repetitions - line.given} not given", remark]))
     return f"| {name} | {by} | {covered} | {line.given} | {width} | {remark} |"

@@ -25,7 +25,7 @@ def _simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
 MODEL = Model(
     name="beam",
     title="loosely supported beam rattling between two elastic stops that wear",
-    version="4",
+    version="5",
     parameters=Params,
     settings=Settings,
     outputs=OUTPUTS,
@@ -33,6 +33,8 @@ MODEL = Model(
     simulate=_simulate,
     coordinates=coordinates,
     dimensions={"depth": ("m", "growth of the gap by wear")},
+    random=True,
+    random_unless={"random_force_level": 0.0},
     block=1024,
     references=(
         "J. Knudsen, A. R. Massih, Impact work-rate and wear of a loosely supported beam subject "

@@ -7,17 +7,14 @@ from numpy.typing import NDArray
 
 from models.mole.lane_rows import OUT_OF_BUDGET, OUTCOME, table_of
 from models.mole.parameters import (
-    CHAOTIC,
     NO_IMPACT,
     PERIODIC,
-    QUASI_PERIODIC,
     Params,
     Settings,
 )
 from models.mole.periods import common_periods
 from models.mole.response import (
     BATCHES,
-    SURE,
     Machines,
     Response,
     follow_other,
@@ -68,27 +65,27 @@ def batch(
         late = settle_late(machines, other, tolerance, response)
         unstable = follow_repeating(machines, late, duration, tolerance, response)
         follow_other(machines, unstable, duration, tolerance, response)
-    outputs = _outputs(p, response)
+    outputs = _outputs(p, machines, response)
     lost = np.isnan(response.time)
     over = machines.record[:, OUTCOME] == OUT_OF_BUDGET
     status = np.where(lost, np.where(over, Status.OUT_OF_BUDGET, Status.NON_FINITE), Status.OK)
     return outputs, status.astype(np.int8)
 
 
-def _outputs(p: Any, response: Response) -> dict[str, NDArray[Any]]:
+def _outputs(p: Any, machines: Machines, response: Response) -> dict[str, NDArray[Any]]:
     known = np.isfinite(response.time)
     repeats = response.period > 0
     progression, progression_error = _mean(response.progress, response.time, repeats)
     impact, impact_error = _mean(response.impact, response.time, repeats)
     electrical, _ = _mean(response.electric, response.time, repeats)
     exponent, exponent_error = _mean(response.growth, response.time, repeats)
-    wild = exponent > SURE * exponent_error
-    regime = np.where(repeats, PERIODIC, np.where(wild, CHAOTIC, QUASI_PERIODIC))
+    regime = np.where(repeats, PERIODIC, machines.verdicts(np.arange(len(repeats)), response))
     regime[(response.contacts == 0) & ~response.touching] = NO_IMPACT
     regime[~known] = -1
     force = p.contact_stiffness * np.maximum(response.high - p.stop_gap, 0.0)
     range_ = response.high - response.low
     impacts = response.contacts / (response.time * p.control_frequency)
+    blows = np.where(response.contacts > 0, response.contacts, np.nan)
     return {
         "progression_rate": progression,
         "progression_rate_error": progression_error,
@@ -96,6 +93,8 @@ def _outputs(p: Any, response: Response) -> dict[str, NDArray[Any]]:
         "impact_work_rate": impact,
         "impact_work_rate_error": impact_error,
         "impacts_per_period": impacts,
+        "impact_impulse": response.impulse / blows,
+        "impact_energy": response.impact.sum(axis=1) / blows,
         "displacement_range": np.where(known, range_, np.nan),
         "electrical_power": electrical,
         "efficiency": impact / electrical,

@@ -23,7 +23,9 @@ The second part holds energies since the start [J]:
 IMPACT_WORK, ELECTRICAL_WORK, MAGNETIC_WORK, FRICTION_LOSS, VISCOUS_LOSS = range(6, 11)
 """Work of the contact force on the mole, of the supply but for what coil and capacitor store, and
 of the magnetic force on the bar; heat from dry friction and from viscous damping."""
-SIZE = 11
+IMPULSE = 11
+"""Of the contact force since the start [N s]."""
+SIZE = 12
 
 _FAR = 8.0  # widths of the coil, from where on the bar adds 1e-14 of its inductance and less
 
@@ -146,3 +148,4 @@ def rates(t, y, mode, dy):
     dy[MAGNETIC_WORK] = magnetic * v
     dy[FRICTION_LOSS] = q.bar_limit * mode.bar * v + q.mole_limit * mode.mole * x
     dy[VISCOUS_LOSS] = q.damping * v * v
+    dy[IMPULSE] = contact

@@ -21,7 +21,7 @@ from models.numerics.jit import kernel
 STEPS_PER_RADIAN = 10
 _SPARE_STEPS = 10_000
 _CONTACT, _BAR, _MOLE = range(3)  # guards
-_LOOKS = 8  # in a step: with 4, slips of the mole half a millisecond long go unseen
+_LOOKS = 16  # in a step: with 8, slips of the mole half a millisecond long go unseen
 
 
 class State(NamedTuple):
@@ -31,7 +31,7 @@ class State(NamedTuple):
     ----------
     time : float
         Since the relay first closed [s].
-    y : ndarray, shape (11,)
+    y : ndarray, shape (12,)
         See `models.mole.equations`.
     contact : bool
         Whether the bar touches the stop.
@@ -67,7 +67,7 @@ class Motion(NamedTuple):
         Displacement u [m].
     steps : int
         Tried.
-    samples : ndarray, shape (k, 11)
+    samples : ndarray, shape (k, 12)
         At the times asked for, NaN from where the motion ended.
     """
 
@@ -290,11 +290,12 @@ def scales(q: Mole) -> NDArray[np.float64]:
     """Return the size of each component of the state.
 
     Of voltage and displacement by the data; of the current by the resistance; of energy by what
-    such a current has in the coil on behalf of the bar; of velocity by a bar with that energy.
+    such a current has in the coil on behalf of the bar; of velocity and impulse by a bar with that
+    energy.
     """
     current = q.voltage / q.resistance
     energy = 0.5 * q.bar_inductance * current**2
     velocity = math.sqrt(2 * energy / q.mass)
     length = 1 / math.sqrt(q.sharpness)
     motion = [length, velocity, velocity * q.mass / q.mole_mass, current, q.voltage, length]
-    return np.array(motion + [energy] * 5)
+    return np.array([*motion, *[energy] * 5, velocity * q.mass])

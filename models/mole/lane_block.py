@@ -32,32 +32,32 @@ MEASURED = 5
     GAP,
 ) = range(16)
 
-# Integrals over a trial step, and their sums so far: of velocity, and of the powers of impacts and
-# supply.
-PROGRESS, IMPACT, ELECTRIC = range(3)
-INTEGRALS = 3
-INTEGRAL, SUM = 16, 19
+# Integrals over a trial step, and their sums so far: of velocity, of the powers of impacts and
+# supply, and of the contact force.
+PROGRESS, IMPACT, ELECTRIC, IMPULSE = range(4)
+INTEGRALS = 4
+INTEGRAL, SUM = 16, 20
 
 # Derivatives of F with respect to u and i, and of i' with respect to u, v, i and p.
-JACOBIAN = 22
+JACOBIAN = 24
 
 # Guards, positive while the mode lasts: of the stop, of the bar's and of the mole's friction. How
 # they follow from the state, and their values and rates at both ends of a step.
 TOUCH, BAR, MOLE = range(3)
 GUARDS = 3
-OPEN, BAR_SLIP, MOLE_SLIP, BAR_HOLD, MOLE_HOLD = range(28, 33)
-BAR_OFFSET, MOLE_OFFSET, BAR_LIMIT, MOLE_LIMIT = range(33, 37)
-START, START_RATE, END, END_RATE = (37 + i * GUARDS for i in range(4))
+OPEN, BAR_SLIP, MOLE_SLIP, BAR_HOLD, MOLE_HOLD = range(30, 35)
+BAR_OFFSET, MOLE_OFFSET, BAR_LIMIT, MOLE_LIMIT = range(35, 39)
+START, START_RATE, END, END_RATE = (39 + i * GUARDS for i in range(4))
 
 # Mode, clock, bookkeeping.
-ROW, BAR_MODE, MOLE_MODE, TOUCHING, HALF, TARGET, CONTACTS, ENTRIES = range(49, 57)
-WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(57, 65)
+ROW, BAR_MODE, MOLE_MODE, TOUCHING, HALF, TARGET, CONTACTS, ENTRIES = range(51, 59)
+WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(59, 67)
 
 # Of the coil: what the bar adds in its middle, its width, and how long a step may be near it.
-ADDED_MOST, WIDTH, REACH = range(65, 68)
+ADDED_MOST, WIDTH, REACH = range(67, 70)
 
-GROWTH = 68  # logarithm of what tangents were divided by
-ROWS = 69
+GROWTH = 70  # logarithm of what tangents were divided by
+ROWS = 71
 
 LONGEST_PERIOD = 64
 """Common periods among which a repetition is looked for."""

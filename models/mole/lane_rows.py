@@ -28,6 +28,7 @@ from models.numerics.jit import kernel, lean
     PROGRESS,
     IMPACT,
     ELECTRIC,
+    IMPULSE,
     CONTACTS,
     LOW,
     HIGH,
@@ -35,8 +36,8 @@ from models.numerics.jit import kernel, lean
     OUTCOME,
     PERIOD,
     GROWTH,
-) = range(19)
-RECORD = 19
+) = range(20)
+RECORD = 20
 
 GOING, REPEATING, REACHED_END, OUT_OF_BUDGET, STUCK = range(5)
 """Outcomes of a run."""

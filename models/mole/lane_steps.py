@@ -79,6 +79,7 @@ def _add_rest(lane, rest, m, y):
     m[(at.SUM + at.PROGRESS) * LANES + lane] += rest * x
     m[(at.SUM + at.IMPACT) * LANES + lane] += rest * contact * x
     m[(at.SUM + at.ELECTRIC) * LANES + lane] += rest * electric
+    m[(at.SUM + at.IMPULSE) * LANES + lane] += rest * contact
 
 
 @lean

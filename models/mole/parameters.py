@@ -12,9 +12,9 @@ from typing import Annotated, Any, Literal, NamedTuple
 from uq.contract import Output, Parameter, Setting
 
 PAPER = "Ho, Nguyen & Woo 2011"
-REGIMES = ("no-impact", "periodic", "quasi-periodic", "chaotic")
+REGIMES = ("no-impact", "periodic", "quasi-periodic", "chaotic", "undecided")
 FORMULATIONS = ("physical", "paper", "as-printed")
-NO_IMPACT, PERIODIC, QUASI_PERIODIC, CHAOTIC = range(4)
+NO_IMPACT, PERIODIC, QUASI_PERIODIC, CHAOTIC, UNDECIDED = range(5)
 PHYSICAL, PAPERS, AS_PRINTED = range(3)
 
 
@@ -160,7 +160,8 @@ class Settings:
         int,
         Setting(
             "control periods averaged, rounded up to whole periods of the response, or to 20 "
-            "times the common period where it does not repeat; 0: one period, or 200 at least",
+            "times the common period where it does not repeat; 0: one period, or 200. Where the "
+            "regime is then undecided, up to 16 times as many",
             bounds=(0, 100_000),
         ),
     ] = 0
@@ -185,6 +186,12 @@ OUTPUTS: Mapping[str, Output] = {
         "W", "standard error of the impact work-rate, 0 where the motion repeats"
     ),
     "impacts_per_period": Output("1", "contacts per control period"),
+    "impact_impulse": Output(
+        "N s", "impulse of the contact force in one contact, mean", may_be_undefined=True
+    ),
+    "impact_energy": Output(
+        "J", "work of the contact force on the mole in one contact, mean", may_be_undefined=True
+    ),
     "displacement_range": Output("m", "largest less smallest displacement u"),
     "electrical_power": Output("W", "mean power drawn from the supply"),
     "efficiency": Output("1", "impact work-rate over electrical power"),

@@ -20,6 +20,7 @@ from models.mole.lane_rows import (
     HALF,
     HIGH,
     IMPACT,
+    IMPULSE,
     LOW,
     OUTCOME,
     PERIOD,
@@ -32,7 +33,9 @@ from models.mole.lane_rows import (
     begin,
 )
 from models.mole.lanes import run
+from models.mole.parameters import UNDECIDED
 from models.mole.system import Mole
+from models.mole.verdict import SURE, verdicts
 from models.numerics.batch_means import mean_and_error
 from models.numerics.exponents import log_multiplier
 
@@ -43,10 +46,10 @@ Counts = NDArray[np.int64]
 LONGEST = 120.0  # s of transient
 LATEST = 1200.0  # s more where the tangent flow says that the motion is still settling
 BUDGET = 2_000_000  # trial steps, for as many control periods as are averaged at first
-APERIODIC = 200, 800, 3200
-"""Control periods averaged where the motion does not repeat: as many as it takes to tell whether
-the exponent is positive."""
-SURE = 3.0  # standard errors by which it is
+APERIODIC = 200
+"""Control periods averaged at first where the motion does not repeat."""
+LOOKS = 1, 4, 16
+"""How often as many it may take until its regime is decided."""
 _UNSTABLE = 1e-3  # logarithm of a multiplier from which on a motion that repeats is no attractor
 BATCHES = 20
 _FORGOTTEN = np.log(1e-6)
@@ -89,7 +92,7 @@ class Machines(NamedTuple):
         """Return moles just switched on, with a budget for so many control periods and more."""
         record = np.empty((len(table), RECORD))
         begin(table, displacement, velocity, record)
-        budget = BUDGET * max(1, -(-periods // APERIODIC[0]))
+        budget = BUDGET * max(1, -(-periods // APERIODIC))
         return Machines(table, control_frequency, common, record, budget)
 
     def run(
@@ -128,6 +131,16 @@ class Machines(NamedTuple):
         """Return how many control periods have passed."""
         return (self.record[rows, HALF] / 2).astype(np.int64)
 
+    def verdicts(self, rows: Counts, known: "Response") -> NDArray[np.int8]:
+        """Return what motions that do not repeat are; see `models.mole.verdict`."""
+        periods = known.time[rows] * self.control_frequency[rows]
+        return verdicts(known.growth[rows], periods, self.common[rows] == 0)
+
+    def settling(self, rows: Counts, known: "Response") -> Flags:
+        """Tell which motions draw nearer to one that repeats, but have not come to it."""
+        mean, error = mean_and_error(known.growth[rows])
+        return (self.common[rows] > 0) & (mean < -SURE * error)
+
 
 class Response(NamedTuple):
     """The settled response of n moles; NaN where a run did not get so far.
@@ -139,6 +152,8 @@ class Response(NamedTuple):
     progress, impact, electric : ndarray, shape (n, BATCHES)
         Advance of the mole [m], work of the impacts and of the supply [J] in each batch; what
         repeats is all in the first.
+    impulse : ndarray, shape (n,)
+        Of the contact force [N s].
     contacts : ndarray, shape (n,)
     low, high : ndarray, shape (n,)
         Smallest and largest displacement u [m].
@@ -155,6 +170,7 @@ class Response(NamedTuple):
     progress: Array
     impact: Array
     electric: Array
+    impulse: Array
     contacts: Array
     low: Array
     high: Array
@@ -173,6 +189,7 @@ class Response(NamedTuple):
             impact,
             electric,
             np.zeros(n),
+            np.zeros(n),
             np.full(n, np.inf),
             np.full(n, -np.inf),
             np.zeros(n, bool),
@@ -190,6 +207,7 @@ class Response(NamedTuple):
         self.progress[rows, batch] += record[:, PROGRESS]
         self.impact[rows, batch] += record[:, IMPACT]
         self.electric[rows, batch] += record[:, ELECTRIC]
+        self.impulse[rows] += record[:, IMPULSE]
         self.contacts[rows] += record[:, CONTACTS]
         self.low[rows] = np.minimum(self.low[rows], record[:, LOW])
         self.high[rows] = np.maximum(self.high[rows], record[:, HIGH])
@@ -263,8 +281,7 @@ def settle_late(machines: Machines, rows: Counts, tolerance: float, known: Respo
     ndarray of int
         Rows whose motion has come to repeat.
     """
-    mean, error = mean_and_error(known.growth[rows])
-    rows = rows[(machines.common[rows] > 0) & (mean < -SURE * error)]
+    rows = rows[machines.settling(rows, known)]
     limit = machines.periods(rows) + np.ceil(LATEST * machines.control_frequency[rows]).astype(int)
     reached = machines.run(rows, limit, tolerance, True, np.empty((len(rows), 0)))
     rows = rows[reached]
@@ -334,13 +351,16 @@ def follow_other(
 ) -> None:
     """Follow moles whose motion does not repeat through batches of control periods.
 
+    Where the regime remains undecided, a longer look follows and replaces the one before. None does
+    where the motion is settling: what it settles to is not for the exponent to say.
+
     Parameters
     ----------
     machines : Machines
     rows : ndarray of int
     duration : int
-        Control periods to be averaged at least, in `BATCHES` batches of whole common periods; 0:
-        as many as it takes.
+        Control periods to be averaged at first, in `BATCHES` batches of whole common periods; 0:
+        `APERIODIC`.
     tolerance : float
     out : Response
         Updated in place.
@@ -349,13 +369,13 @@ def follow_other(
     limit = machines.periods(rows) + _WARM_UP
     reached = machines.run(rows, limit, tolerance, False, tangents)
     rows, tangents = rows[reached], tangents[reached]
-    for periods in (duration,) if duration else APERIODIC:
+    for times in LOOKS:
         common = np.maximum(machines.common[rows], 1)
-        each = -(-periods // (BATCHES * common)) * common
+        each = -(-times * (duration or APERIODIC) // (BATCHES * common)) * common
         places = _follow_batches(machines, rows, each, tangents, tolerance, out)
-        mean, error = mean_and_error(out.growth[rows[places]])
-        places = places[np.abs(mean) < SURE * error]
         rows, tangents = rows[places], tangents[places]
+        open_ = (machines.verdicts(rows, out) == UNDECIDED) & ~machines.settling(rows, out)
+        rows, tangents = rows[open_], tangents[open_]
 
 
 def _follow_batches(

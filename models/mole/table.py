@@ -18,6 +18,7 @@ from models.mole.parameters import (
     PERIODIC,
     QUASI_PERIODIC,
     REGIMES,
+    UNDECIDED,
     Params,
     Settings,
 )
@@ -25,6 +26,7 @@ from models.mole.periods import common_periods
 
 STARTS = 16  # neighbouring ones over which a chaotic response is averaged, too
 LONG = 3000  # control periods of each
+LONGEST = 25_600  # control periods of one whose regime is undecided
 CURVE = 2000  # strobe points by which closed curves are counted
 
 NOTE = """\
@@ -100,6 +102,11 @@ def responses(formulation: Any) -> dict[str, NDArray[Any]]:
         values = longer[name].reshape(-1, STARTS)
         outputs[name][chaotic] = values.mean(axis=1)
         outputs[f"{name}_error"][chaotic] = values.std(axis=1, ddof=1) / np.sqrt(STARTS)
+    undecided = np.flatnonzero(outputs["regime"] == UNDECIDED)
+    settings = Settings(formulation=formulation, duration=LONGEST)
+    longest, _ = batch(x[undecided], np.zeros(len(undecided), np.uint64), settings)
+    for name, values in longest.items():
+        outputs[name][undecided] = values
     return outputs
 
 

@@ -3,7 +3,8 @@
 For machines on flexible mounts, with feed or with exact kinematics, and as the yardstick of
 rigid ones. A run-up is watched in looks of eight turns. Once the vibrators keep step, their
 synchronous running is found as a periodic orbit; the run stops as soon as it stays near that orbit,
-if it is stable, and goes on to the end where it does not.
+if it is stable, and vibration of the body on its springs can no longer make the largest
+displacement; it goes on to the end where it does not.
 """
 
 import math
@@ -26,6 +27,7 @@ from models.vibrator.outcome import (
     wrapped,
 )
 from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.rates import slowest_period
 from models.vibrator.system import System
 from models.vibrator.track import LAST, Track
 from uq.contract import Status
@@ -80,6 +82,7 @@ def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
     track = Track(state, settings.run_up / wanted, LOOK)
     guess = proposal(machine)
     orbit, next_search = None, LOOK
+    slowest = slowest_period(machine.system)
     while track.count < wanted:
         times = track.interval * np.arange(1, min(LOOK, wanted - track.count) + 1)
         ended, samples = machine.run(state, times[-1], settings.tolerance, times=times)
@@ -89,10 +92,11 @@ def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
         track.add(samples[: ended.sampled])
         if ended.status == OUT_OF_BUDGET:
             return _describe_unfinished(machine.system, track, out)
-        if orbit is not None and _stays_at(orbit, track):
+        stays = orbit is not None and _stays_at(orbit, track)
+        if orbit is not None and stays and track.time - track.neared >= slowest:
             _describe_orbit(orbit, track, out)
             return Status.OK
-        arriving = orbit is not None and _approaches(orbit, track)
+        arriving = stays or (orbit is not None and _approaches(orbit, track))
         if track.count >= next_search and not arriving and _is_steady(machine.system, track):
             orbit = _search(machine, guess, state, settings.tolerance) or orbit
             guess = None

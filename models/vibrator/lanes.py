@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics.blocks import LANES, aligned
+from models.numerics.events import crossing, dip
+from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
 from models.numerics.nystrom import ORDER_5, ORDER_8, STAGES, layout, stepper
 from models.numerics.sincos import cosine_sine, nearest
@@ -140,35 +142,89 @@ def _begin(w, target, notes):
         for i in (ALPHA_HIGH, LEFT_HIGH, RIGHT_HIGH, ANGLE_HIGH):
             notes[i * LANES + lane] = -np.inf
         notes[LAST_ENTRY * LANES + lane] = -1.0
-        far, out, off = _whereabouts(w, target, lane)
-        notes[_FAR * LANES + lane], notes[_OUT * LANES + lane] = far, out
-        notes[_OFF * LANES + lane] = off
+        notes[_FAR * LANES + lane], notes[_OUT * LANES + lane] = _distance(w, lane)
+        notes[_OFF * LANES + lane], notes[_DRIFT * LANES + lane] = _way(w, target, lane)
 
 
 @inlined
-def _whereabouts(w, target, lane):
-    """Return the squared displacement, its rise in a step at this rate, and the way to target."""
+def _distance(w, lane):
+    """Return the squared displacement, and its rise in a step at this rate."""
     x, y = w[_X + lane], w[_Y + lane]
-    out = 2 * w[_AT.step + lane] * (x * w[_VX + lane] + y * w[_VY + lane])
+    out = 2 * w[_AT.step + lane] * fma(x, w[_VX + lane], y * w[_VY + lane])
+    return fma(x, x, y * y), out
+
+
+@inlined
+def _way(w, target, lane):
+    """Return the disphasing angle less its target, on the circle, and its rise in a step."""
     off = w[_PSI_1 + lane] - w[_PSI_2 + lane] - target[lane]
-    return x * x + y * y, out, abs(off - _TURN * nearest(off * _PER_TURN))
+    drift = w[_AT.step + lane] * (w[_W_1 + lane] - w[_W_2 + lane])
+    return fma(-_TURN, nearest(off * _PER_TURN), off), drift
 
 
 @kernel
-def _note(c, w, target, step, band, notes):
+def _entry(off_0, drift_0, off, drift, band):
+    """Return where in a step an angle last comes into its band, -1 if it does not.
+
+    Between the ends of the step it is a cubic, which may leave the band and return.
+    """
+    if abs(off_0) > band >= abs(off):
+        side = 1.0 if off_0 > 0 else -1.0
+        return crossing(side * off_0 - band, side * drift_0, side * off - band, side * drift)
+    if max(abs(off_0), abs(off)) > band or not drift_0 * drift < 0:
+        return -1.0
+    side = 1.0 if drift_0 > 0 else -1.0
+    at, lowest = dip(-side * off_0, -side * drift_0, -side * off, -side * drift)
+    if -lowest <= band:
+        return -1.0
+    rest = 1 - at
+    return at + rest * crossing(-lowest - band, 0.0, side * off - band, side * drift * rest)
+
+
+@kernel
+def _note_entries(w, target, step, band, notes):
+    """Note when angles come into their band; nearly always a look at all lanes is enough."""
+    some = 0
+    for lane in range(LANES):
+        off, drift = _way(w, target, lane)
+        off_0, drift_0 = notes[_OFF * LANES + lane], notes[_DRIFT * LANES + lane]
+        notes[_NEW_OFF * LANES + lane], notes[_NEW_DRIFT * LANES + lane] = off, drift
+        size_0, size = abs(off_0), abs(off)
+        # A cubic is nowhere further from both its ends.
+        room = 4 / 27 * (abs(drift_0) + abs(drift))
+        higher = size_0 if size_0 > size else size
+        returns = (drift_0 * drift < 0.0) & (higher <= band) & (higher + room > band)
+        some += 1 if returns | ((size_0 > band) & (size <= band)) else 0
+    if some > 0:
+        for lane in range(LANES):
+            part = _entry(
+                notes[_OFF * LANES + lane],
+                notes[_DRIFT * LANES + lane],
+                notes[_NEW_OFF * LANES + lane],
+                notes[_NEW_DRIFT * LANES + lane],
+                band,
+            )
+            last = notes[LAST_ENTRY * LANES + lane]
+            notes[LAST_ENTRY * LANES + lane] = step + part if part >= 0 else last
+    for j in range(2 * LANES):
+        notes[_OFF * LANES + j] = notes[_NEW_OFF * LANES + j]
+
+
+@kernel
+def _note(c, w, notes):
     """Take in a step, whose end is the state."""
     for lane in range(LANES):
         w_1, w_2 = w[_W_1 + lane], w[_W_2 + lane]
         lag_1 = c[_SYNCHRONOUS_1 * LANES + lane] - w_1
         lag_2 = c[_SYNCHRONOUS_2 * LANES + lane] - w_2
         slip_1, slip_2 = c[_SLIP_1 * LANES + lane], c[_SLIP_2 * LANES + lane]
-        power_1 = c[_TORQUE_1 * LANES + lane] * lag_1 * w_1 / (slip_1 * slip_1 + lag_1 * lag_1)
-        power_2 = c[_TORQUE_2 * LANES + lane] * lag_2 * w_2 / (slip_2 * slip_2 + lag_2 * lag_2)
+        power_1 = c[_TORQUE_1 * LANES + lane] * lag_1 * w_1 / fma(slip_1, slip_1, lag_1 * lag_1)
+        power_2 = c[_TORQUE_2 * LANES + lane] * lag_2 * w_2 / fma(slip_2, slip_2, lag_2 * lag_2)
         notes[POWER_1 * LANES + lane] += power_1
         notes[POWER_2 * LANES + lane] += power_2
         cosine, sine = c[_COS * LANES + lane], c[_SIN * LANES + lane]
         alpha = w[_ALPHA + lane]
-        along = cosine * w[_X + lane] + sine * w[_Y + lane]
+        along = fma(cosine, w[_X + lane], sine * w[_Y + lane])
         lever = c[_SPACING * LANES + lane] * sine * alpha
         left, right = along - lever, along + lever
         angle = w[_PSI_1 + lane] - w[_PSI_2 + lane]
@@ -186,23 +242,16 @@ def _note(c, w, target, step, band, notes):
         notes[ANGLE_LOW * LANES + lane] = angle if angle < low else low
         notes[ANGLE_HIGH * LANES + lane] = angle if angle > high else high
         far_0, out_0 = notes[_FAR * LANES + lane], notes[_OUT * LANES + lane]
-        off_0 = notes[_OFF * LANES + lane]
-        far, out, off = _whereabouts(w, target, lane)
+        far, out = _distance(w, lane)
         notes[_FAR * LANES + lane], notes[_OUT * LANES + lane] = far, out
-        notes[_OFF * LANES + lane] = off
         # The square of the displacement is a cubic in a step; its vertex where its rate vanishes.
         turned = (out_0 > 0.0) & (out < 0.0)
         part = out_0 / (out_0 - out) if turned else 1.0
         rest = 1.0 - part
-        vertex = rest * rest * ((1.0 + 2.0 * part) * far_0 + part * out_0)
-        vertex += part * part * ((1.0 + 2.0 * rest) * far - rest * out)
+        vertex = rest * rest * fma(fma(2.0, part, 1.0), far_0, part * out_0)
+        vertex = fma(part * part, fma(fma(2.0, rest, 1.0), far, -rest * out), vertex)
         peak = notes[EXCURSION * LANES + lane]
         notes[EXCURSION * LANES + lane] = vertex if vertex > peak else peak
-        # The last time the disphasing angle came into its band.
-        came = (off_0 > band) & (off <= band)
-        part = (off_0 - band) / (off_0 - off) if came else 0.0
-        last = notes[LAST_ENTRY * LANES + lane]
-        notes[LAST_ENTRY * LANES + lane] = step + part if came else last
 
 
 _SYNCHRONOUS_1 = Rigid._fields.index("synchronous_speed_1")
@@ -211,7 +260,7 @@ _SLIP_1, _SLIP_2 = Rigid._fields.index("slip_1"), Rigid._fields.index("slip_2")
 _TORQUE_1, _TORQUE_2 = Rigid._fields.index("torque_1"), Rigid._fields.index("torque_2")
 _SPACING = Rigid._fields.index("half_spacing")
 _COS, _SIN = CONSTANTS, CONSTANTS + 1
-_FAR, _OUT, _OFF = NOTES, NOTES + 1, NOTES + 2  # of the state, for the next step
+_FAR, _OUT, _OFF, _DRIFT, _NEW_OFF, _NEW_DRIFT = range(NOTES, NOTES + 6)  # between steps
 _X, _Y, _ALPHA, _PSI_1, _PSI_2 = (_AT.position + i * LANES for i in range(abreast.DEGREES))
 _VX, _VY, _VA, _W_1, _W_2 = (_AT.velocity + i * LANES for i in range(abreast.DEGREES))
 
@@ -240,7 +289,8 @@ def _advance(constants, h, state, target, steps, accurate, band, notes, work):
                 _step_8(w)
             else:
                 _step_5(w)
-            _note(c, w, aim, float(step), band, note)
+            _note(c, w, note)
+            _note_entries(w, aim, float(step), band, note)
         store(y, first, state)
         store(note, first, notes)
 
@@ -286,7 +336,7 @@ def advance(
     work = (
         aligned((CONSTANTS + 2) * LANES),
         aligned(_SIZE),
-        aligned((NOTES + 3) * LANES),
+        aligned((NOTES + 6) * LANES),
         aligned(LANES),
         aligned(LANES),
     )

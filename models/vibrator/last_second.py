@@ -37,6 +37,8 @@ class Live(NamedTuple):
         When the disphasing angle last came into its band [s].
     far : ndarray, shape (n,)
         Largest squared displacement of C so far [m2].
+    neared : ndarray, shape (n,)
+        When one was last comparable to that [s].
     """
 
     rows: NDArray[np.intp]
@@ -44,6 +46,7 @@ class Live(NamedTuple):
     state: Array
     came: Array
     far: Array
+    neared: Array
 
     def take(self, chosen: NDArray[np.bool_]) -> "Live":
         """Return some of them."""

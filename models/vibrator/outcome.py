@@ -12,6 +12,7 @@ LOCKED_0, LOCKED_PI, ASYNCHRONOUS, CAPTURED, STALLED = range(len(REGIMES))
 STALLED_BELOW = 0.05  # of the synchronous speed
 CAPTURED_BELOW = 0.8
 BAND = 0.05  # of the disphasing angle about its mean, when synchronised [rad]
+COMPARABLE = 0.75  # of the largest displacement: what may, in another phase, exceed it
 
 
 class Outcome(NamedTuple):

@@ -390,7 +390,11 @@ OUTPUTS: Mapping[str, Output] = {
     "theory_disphasing_angle": Output(
         "rad", "disphasing angle by the averaged theory", "angle", may_be_undefined=True
     ),
-    "angular_amplitude": Output("rad", "amplitude of the body's rotation, first harmonic"),
+    "angular_amplitude": Output(
+        "rad",
+        "amplitude of the body's rotation: its first harmonic in time, one cycle a turn; half "
+        "peak-to-peak where unlocked",
+    ),
     "stroke_left": Output("m", "half peak-to-peak displacement along xi of the left deck end"),
     "stroke_right": Output("m", "half peak-to-peak displacement along xi of the right deck end"),
     "speed": Output("rad s-1", "mean speed of the vibrators"),
@@ -407,7 +411,9 @@ OUTPUTS: Mapping[str, Output] = {
         "lifetime",
         never_known_at_once=False,  # steps may be used up before motors have locked or not
     ),
-    "max_excursion": Output("m", "largest displacement of C during the start"),
+    "max_excursion": Output(
+        "m", "largest displacement of C from standstill until its free vibration has died away"
+    ),
     "regime": Output(
         "1", "kind of steady state reached from the start", "category", categories=REGIMES
     ),

@@ -1,4 +1,6 @@
-"""How fast a machine can change: what bounds the step of a fixed-step method."""
+"""How fast a machine can change, which bounds a fixed step, and how slowly its body vibrates."""
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,3 +44,21 @@ def fastest_rates(m: System) -> NDArray[np.float64]:
         )
     ]
     return np.maximum.reduce([vibration + decay, *motor])
+
+
+def slowest_period(m: System) -> Any:
+    """Return about the longest period of a body on its supports [s].
+
+    Parameters
+    ----------
+    m : System
+        One machine, or n with fields of shape (n,).
+
+    Returns
+    -------
+    float or ndarray, shape (n,)
+        As if the body could move in one of its three ways only.
+    """
+    turning = m.stiffness_x * m.support_offset**2 + m.stiffness_y * m.half_spacing**2
+    ways = (m.mass / m.stiffness_x, m.mass / m.stiffness_y, m.inertia / turning)
+    return 2 * np.pi * np.sqrt(np.maximum.reduce(ways))

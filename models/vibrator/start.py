@@ -2,7 +2,9 @@
 
 The averaged theory proposes the synchronous motion, Newton's method finds it as a periodic orbit,
 and the run-up only has to tell whether it is reached: it stops as soon as the disphasing angle
-stays near that of a stable orbit, and goes on to the end where it does not.
+stays near that of a stable orbit, and goes on to the end where it does not. Vibration of the body
+on its springs dies away more slowly: the run also waits until it can no longer make the largest
+displacement.
 """
 
 from typing import Any, NamedTuple
@@ -17,10 +19,12 @@ from models.vibrator.last_second import LAST, NEAR, STEPS, Live, learn, run_last
 from models.vibrator.outcome import (
     BAND,
     CAPTURED_BELOW,
+    COMPARABLE,
     Outcome,
     locked_regime,
 )
 from models.vibrator.parameters import Rows, Settings
+from models.vibrator.rates import slowest_period
 from models.vibrator.synchronous import Known, Machines, describe, propose
 from uq.contract import Status
 
@@ -109,7 +113,7 @@ def _run(
     """
     again = [np.empty(0, np.intp)]
     some, n = machines.take(rows), len(rows)
-    live = Live(rows, some, initial_state(some.p), np.zeros(n), np.zeros(n))
+    live = Live(rows, some, initial_state(some.p), *np.zeros((3, n)))
     ending = plan.looks[rows] == 0
     look = 0
     while len(live.rows):
@@ -126,20 +130,25 @@ def _run(
         constants, accurate = live.machines.constants, settings.steps_per_turn > 0
         notes = lanes.advance(constants, step, live.state, target, LOOK, BAND, accurate)
         came = notes[:, lanes.LAST_ENTRY]
+        far = np.maximum(live.far, notes[:, lanes.EXCURSION])
+        near = notes[:, lanes.EXCURSION] > COMPARABLE**2 * far
         live = live._replace(
             came=np.where(came >= 0, (look * LOOK + came) * step, live.came),
-            far=np.maximum(live.far, notes[:, lanes.EXCURSION]),
+            far=far,
+            neared=np.where(near, (look + 1) * LOOK * step, live.neared),
         )
         look += 1
         speed = (live.state[:, 3:5] - before) / (LOOK * step)[:, None]
         low, high = notes[:, lanes.ANGLE_LOW], notes[:, lanes.ANGLE_HIGH]
         finite = np.isfinite(live.state).all(axis=1)
         arrived = finite & _is_near(known, live.rows, low, high, speed)
-        _note_locked(known, live.take(arrived), out)
-        going = finite & ~arrived
+        calm = look * LOOK * step - live.neared >= slowest_period(live.machines.system)
+        done = arrived & (calm | (plan.looks[live.rows] <= look))
+        _note_locked(known, live.take(done), out)
+        going = finite & ~done
         if not final and look & (look - 1) == 0:
             fast = (speed >= CAPTURED_BELOW * live.machines.synchronous_speed).all(axis=1)
-            waiting = going & fast & (high - low < _STEADY)
+            waiting = going & ~arrived & fast & (high - low < _STEADY)
             if waiting.any():
                 steady = live.take(waiting)
                 found = learn(steady.machines, steady.state, steady.rows, known, settings)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.vibrator.measures import excursion, refine
-from models.vibrator.outcome import BAND, wrapped
+from models.vibrator.outcome import BAND, COMPARABLE, wrapped
 
 LAST = 1.0  # [s]
 
@@ -31,12 +31,14 @@ class Track:
         Samples after the first.
     excursion : float
         Largest displacement of C so far [m].
+    neared : float
+        When one was last comparable to that [s].
     """
 
     def __init__(self, state: NDArray[np.float64], interval: float, look: int) -> None:
         self.interval = interval
         self.count = 0
-        self.excursion = 0.0
+        self.excursion = self.neared = 0.0
         self._second = math.ceil(LAST / interval)
         self._keep = max(self._second, look) + 1
         self._parts = [state[None].copy()]
@@ -51,8 +53,10 @@ class Track:
     def add(self, samples: NDArray[np.float64]) -> None:
         """Append samples."""
         joined = np.concatenate([self._parts[-1][-1:], samples])
-        self.excursion = max(self.excursion, excursion(joined, self.interval))
+        far = excursion(joined, self.interval)
+        self.excursion = max(self.excursion, far)
         self.count += len(samples)
+        self.neared = self.time if far > COMPARABLE * self.excursion else self.neared
         self._parts.append(samples)
         self._kept += len(samples)
         while self._kept - len(self._parts[0]) >= self._keep:
@@ -74,18 +78,26 @@ class Track:
         return np.concatenate(self._parts[first:])[-wanted:]
 
     def last_time_off(self, mean: float) -> float:
-        """Return the last time psi_1 - psi_2 is out of the band about its mean, 0 if never."""
+        """Return the last time psi_1 - psi_2 is out of the band about its mean, 0 if never.
+
+        An angle that leaves the band between two samples counts.
+        """
         angle, rate = np.concatenate(self._angles, axis=1)
         off = wrapped(angle - mean)
-        out = np.flatnonzero(np.abs(off) > BAND)
-        if not len(out):
-            return 0.0
-        i = out[-1]
-        if i == self.count:
+        out = np.abs(off) > BAND
+        if out[-1]:
             return self.time
         # Unwrapped: both ends on the branch of the first.
-        ends = off[i] + angle[i : i + 2] - angle[i]
-        gap = np.abs(wrapped(refine(ends[:, None], rate[i : i + 2, None], self.interval)[0]))
+        values = np.stack([off[:-1], off[:-1] + np.diff(angle)])
+        rates = np.stack([rate[:-1], rate[1:]])
+        returns = out[:-1].copy()
+        turning = np.flatnonzero(~returns & (rates[0] * rates[1] < 0))
+        gaps = refine(values[:, turning], rates[:, turning], self.interval)
+        returns[turning] = np.abs(gaps).max(axis=1) > BAND
+        if not returns.any():
+            return 0.0
+        i = np.flatnonzero(returns)[-1]
+        gap = np.abs(wrapped(refine(values[:, i : i + 1], rates[:, i : i + 1], self.interval)[0]))
         k = np.flatnonzero(gap > BAND)[-1]
         part = (k + (gap[k] - BAND) / (gap[k] - gap[k + 1])) / (len(gap) - 1)
         return float(self.interval * (i + part))

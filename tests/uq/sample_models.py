@@ -288,3 +288,35 @@ def _added(x, seed, settings):
 
 ADDED = _simple("added", _added, parameters=Summands)
 """y = a + b + c."""
+
+
+def _noise(seed):
+    """Return numbers uniform on (-1/2, 1/2), independent from seed to seed."""
+    return (seed >> np.uint64(11)) * 2.0**-53 - 0.5
+
+
+def _noisy(x, seed, settings):
+    x1, x2 = np.ascontiguousarray(x.T)
+    noise = _noise(seed)
+    # In `crossed` the noise acts through x2 alone.
+    return {"y": x1 + noise, "crossed": x1 + 2 * x2 * noise}, ok(len(x))
+
+
+NOISY = _simple(
+    "noisy",
+    _noisy,
+    outputs={
+        "y": Output("1", "x1 and noise of the same variance"),
+        "crossed": Output("1", "x1 and noise times 2 x2"),
+    },
+    random=True,
+)
+"""Depends on its seed; x2 does nothing to y."""
+
+
+def _sometimes(x, seed, settings):
+    return {"y": x[:, 0] + x[:, 1] * _noise(seed)}, ok(len(x))
+
+
+SOMETIMES = _simple("sometimes", _sometimes, random=True, random_unless={"x2": 0.0})
+"""Depends on its seed unless x2 is 0."""

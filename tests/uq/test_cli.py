@@ -63,7 +63,7 @@ def test_run_ends_with_the_summary_and_what_to_type_next(uq, write_study, folder
     path = write_study(samples=300)
     first = uq("run", path)
     assert (first.code, first.err) == (0, "")
-    assert "results/small.nc: 300 rows in" in first.out
+    assert "results/small.nc: 300 rows computed in" in first.out
     assert "uq sensitivity results/small.nc" in first.out
     shown = uq("summary", "results/small.nc").out
     assert shown in first.out

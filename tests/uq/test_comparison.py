@@ -14,8 +14,9 @@ from uq.analysis.statistics import summarise
 from uq.contract import Status
 from uq.errors import InputError
 from uq.intervals import wilson_interval
+from uq.moments import sd_interval
 from uq.store.files import write_result
-from uq.two_samples import Estimate, difference, sd_interval
+from uq.two_samples import Estimate, difference
 
 NARROW = {"distribution": "uniform", "lower": 0.3, "upper": 0.7, "source": "better made"}
 FOUR = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)

@@ -142,6 +142,10 @@ def test_indices_of_the_g_function():
 def test_indices_of_a_lifetime():
     design = ("saltelli", 256, 8)
     tally = Tally(title("wear", design))
+    # The logarithm is a sum of two normal laws.
+    whole = SIGMA**2 + SPREAD**2
+    shares = {"rate": SIGMA**2 / whole, "depth": SPREAD**2 / whole}
+    logarithm = {"S1": shares, "ST": shares}
     # The rate 1/life = rate/depth is a product of two lognormals.
     a, b = np.expm1(SIGMA**2), np.expm1(SPREAD**2)
     variance = (1 + a) * (1 + b) - 1
@@ -159,7 +163,9 @@ def test_indices_of_a_lifetime():
     event = {"S1": first, "ST": {"rate": 1 - first["depth"], "depth": 1 - first["rate"]}}
     for ds in repeat("exponential-wear", design, WEAR, analysis={"thresholds": {"life": LIMIT}}):
         outputs = sensitivities(ds)["outputs"]
-        tally_indices(tally, outputs["rate(life)"], truth, "rate: ")
+        tally_indices(tally, outputs["log(life)"], logarithm, "logarithm: ")
+        by_rate = sensitivities(ds, output="rate(life)")["outputs"]["rate(life)"]
+        tally_indices(tally, by_rate, truth, "rate: ")
         tally_indices(tally, outputs[f"P(life<{LIMIT!r})"], event, "event: ")
     tally.check()
 

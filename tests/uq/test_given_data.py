@@ -148,7 +148,7 @@ def test_quantile_indices_of_a_normal_sum_are_the_closed_form():
         assert entry["dummy"][kind] < 0.02
 
 
-def test_quantile_indices_of_a_lifetime_are_those_of_its_rate():
+def test_quantile_indices_of_a_lifetime_are_those_of_the_rows_that_end_first():
     sigma, spread = 0.5, 0.2
     ds = computed(
         study_of(
@@ -162,13 +162,18 @@ def test_quantile_indices_of_a_lifetime_are_those_of_its_rate():
             }
         )
     )
+    entry = entry_of(ds, "quantile", "log(life)")  # a normal sum
+    deviation = np.hypot(sigma, spread)
+    for kind in ("B10", "B50"):
+        expected = [1 - rest / deviation for rest in (spread, sigma)]
+        assert values(entry, kind) == pytest.approx(expected, abs=0.04)
     entry = entry_of(ds, "quantile", "rate(life)")
 
     def contrast(p, s):  # of a lognormal law, over its mean
         return p - stats.norm.cdf(stats.norm.ppf(p) - s)
 
     for kind, p in {"B10": 0.9, "B50": 0.5}.items():
-        whole = contrast(p, np.hypot(sigma, spread))
+        whole = contrast(p, deviation)
         expected = [1 - contrast(p, rest) / whole for rest in (spread, sigma)]
         assert values(entry, kind) == pytest.approx(expected, abs=0.04)
 

@@ -40,6 +40,8 @@ def refused(ended):
         (("samples = 64", f"samples = {'9' * 5000}"), "small.toml: "),
         (("[study]", "[study]\nx = " + "[" * 5000), "not valid TOML"),
         (("[study]", "[study]\n\x00"), "not valid TOML"),
+        (("[study]", f"[study]\n{'x.' * 20_000}y = 1"), "key of more than 64 parts (at line 2)"),
+        (("[study]", f'[study]\nx = {{{"a . " * 20_000}"y" = 1}}'), "not valid TOML: a key of"),
         (("[uncertain]", '[uncertain]\n"\\u001b[31m\\n\\u202e" = 1'), r"\u001b[31m"),
         (("[study]", "[study]\n#" + "x" * 1_000_001), "no study is longer than 1 MB"),
     ],

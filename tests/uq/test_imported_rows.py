@@ -3,9 +3,14 @@
 import numpy as np
 import pytest
 import xarray as xr
-from computed import as_text, computed
+from computed import as_text, computed, with_output
 from input_studies import UNIFORM, refusal, tables
 
+from uq.analysis.comparison import comparison
+from uq.analysis.convergence import running_estimates
+from uq.analysis.life_fit import life_fits
+from uq.analysis.lifetime import survival
+from uq.analysis.pairing import Kinship, kinship
 from uq.analysis.statistics import summarise
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
@@ -34,17 +39,33 @@ def test_imported_rows_are_those_of_the_file_to_the_bit(table, file):
     folder, x = table
     text = as_text(imported(file, {"x1": UNIFORM, "x2": UNIFORM, "x4": {"equals": "x2"}}))
     study = study_from_text(text, folder=folder)
-    found = row_block(study, 0, 100).x
-    np.testing.assert_array_equal(found[:, [0, 1, 3]], x[:, [0, 1, 1]])
-    np.testing.assert_array_equal(row_block(study, 30, 31).x, found[30:31])
+    drawn = row_block(study, 0, 100).x
+    np.testing.assert_array_equal(drawn[:, [0, 1, 3]], x[:, [0, 1, 1]])
+    np.testing.assert_array_equal(row_block(study, 30, 31).x, drawn[30:31])
     ds = computed(study)
     assert sensitivities(ds)["method"] == "delta"
-    assert summarise(ds)["outputs"]["y"]["mean_interval"]["low"] is None
+    found = summarise(ds)
+    assert found["outputs"]["y"]["mean_interval"]["low"] is None
+    assert "nothing is known of how imported rows came about" in found["notes"][0]
+    assert not any("replicates" in note for note in found["notes"])
     again = study_from_text(ds.attrs["study"])
     assert again.identity == study.identity
-    np.testing.assert_array_equal(row_block(again, 0, 100).x, found)
+    np.testing.assert_array_equal(row_block(again, 0, 100).x, drawn)
     with pytest.raises(InputError, match="--samples 101: the file has 100 rows for 'imported'"):
         study.with_samples(101)
+
+
+def test_without_a_number_of_samples_all_rows_are_imported(table):
+    given = imported()
+    del given["design"]["samples"]
+    study = study_from_text(as_text(given), folder=table[0])
+    assert study.design.samples == 100
+    assert study.identity == study_from_text(as_text(imported()), folder=table[0]).identity
+    again = study_from_text(computed(study).attrs["study"])
+    assert (again.design.samples, again.identity) == (100, study.identity)
+    assert study.with_samples(30).design.samples == 30
+    del (other := tables({"x1": UNIFORM}))["design"]["samples"]
+    assert "[design] samples: is missing" in refusal(other, table[0])
 
 
 @pytest.mark.parametrize(
@@ -65,6 +86,18 @@ def test_imported_rows_are_those_of_the_file_to_the_bit(table, file):
             "imported rows are as dependent as they are",
         ),
         (tables({"x1": UNIFORM}, design={"file": "rows.csv"}), "only for method = 'imported'"),
+        (
+            tables({"x1": UNIFORM}, design={"independent": True}),
+            "[design] independent = true: only for method = 'imported'",
+        ),
+        (
+            imported() | {"analysis": {"tolerance": {"coverage": 0.9, "confidence": 0.9}}},
+            "independent = true if they are",
+        ),
+        (
+            imported(independent=True) | {"analysis": {"twin": {"fail_above": 2.0}}},
+            "needs rows that can be drawn",
+        ),
     ],
 )
 def test_what_cannot_be_imported_is_one_line(table, given, said):
@@ -75,3 +108,62 @@ def test_imported_values_must_lie_within_the_bounds(table):
     (table[0] / "rows.csv").write_text("x1,x2\n" + "0.5,0.5\n" * 50 + "1.5,0.5\n" * 50)
     said = refusal(imported(), table[0])
     assert "'x1' = 1.5 in row 51 is outside the parameter's bounds, 0.0 to 1.0 [1]" in said
+
+
+EVERYTHING = {
+    "tolerance": {"coverage": 0.9, "confidence": 0.9},
+    "thresholds": {"y": 1.5},
+    "quantiles": [0.5],
+}
+
+
+def result_of(folder, **design):
+    text = as_text(imported(**design) | {"analysis": EVERYTHING})
+    return computed(study_from_text(text, folder=folder))
+
+
+def test_rows_stated_to_be_independent_feed_what_a_plain_sample_feeds(table):
+    folder, _ = table
+    ds = result_of(folder, independent=True)
+    found = summarise(ds)
+    plain = summarise(ds.assign_attrs(design="monte-carlo"))
+    assert found == plain and found["notes"] == []
+    y = found["outputs"]["y"]
+    for entry in (y["mean_interval"], y["sd_interval"], y["quantiles"]["0.5"]):
+        assert entry["low"] < entry["high"]
+    assert y["tolerance"]["lower"] < y["tolerance"]["upper"]
+    running = running_estimates(ds)
+    assert running["samples"].max() == 100 and running["low"].notna().any()
+
+
+def test_a_life_of_independent_imported_rows_has_a_curve_and_fits(table):
+    ds = result_of(table[0], independent=True)
+    values = np.random.default_rng(0).weibull(2.0, 100)
+    ds = with_output(ds, "life", values, "lifetime")
+    assert survival(ds, "life")["low"].notnull().any()
+    assert "B10" in life_fits(ds, "life")["life"]["weibull"]
+
+
+def test_without_the_statement_the_remedy_is_named(table):
+    (note,) = summarise(computed(study_from_text(as_text(imported()), folder=table[0])))["notes"]
+    assert "independent = true" in note and "replicates" not in note
+
+
+def test_the_statement_does_not_change_the_rows(table):
+    stated, silent = (
+        study_from_text(as_text(imported(**more)), folder=table[0])
+        for more in ({"independent": True}, {})
+    )
+    assert stated.identity == silent.identity
+
+
+def test_the_same_imported_rows_are_pairs_and_others_are_not(table):
+    folder, x = table
+    one = result_of(folder, independent=True)
+    assert kinship(one, result_of(folder, independent=True, seed=5)) is Kinship.ROWS_IMPORTED
+    assert comparison(one, one)["pairing"] == "rows"
+    lines = ["x2,x1", *(f"{a!r},{b!r}" for b, a in (1 - x).tolist())]
+    (folder / "rows.csv").write_text("\n".join(lines))
+    other = result_of(folder, independent=True, seed=5)
+    assert kinship(one, other) is Kinship.UNKNOWN_IMPORTED
+    assert comparison(one, other)["pairing"] == "unknown"

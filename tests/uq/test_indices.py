@@ -47,9 +47,13 @@ def test_outputs_can_be_named_in_every_way():
     assert list(indices(ds, output="angle")["outputs"]) == ["angle"]
     assert list(indices(ds, output="work[side=left]")["outputs"]) == ["work[side=left]"]
     assert len(indices(ds, output="life")["outputs"]) == 8
+    assert list(indices(ds, output="life")["outputs"])[0] == "rank(life[side=left,depth=0.5])"
     name = "P(life[side=left,depth=0.5]<1.0)"
     assert list(indices(ds, output=name)["outputs"]) == [name]
-    name = "rate(life[side=right,depth=1.5])"
+    for form in ("log", "rank", "rate"):
+        name = f"{form}(life[side=right,depth=1.5])"
+        assert list(indices(ds, output=name)["outputs"]) == [name]
+    name = "log(work[side=left])"
     assert list(indices(ds, output=name)["outputs"]) == [name]
     both = ["P(regime=slow)", "P(regime=fast)"]
     assert list(indices(ds, output="regime")["outputs"]) == both
@@ -58,6 +62,9 @@ def test_outputs_can_be_named_in_every_way():
         "wrok": "no such output 'wrok'; did you mean 'work'",
         "work[side=lefd]": r"no such element 'work\[side=lefd\]'; did you mean 'work\[side=left\]'",
         "rate(work[side=left])": "no such output",
+        "log(angle)": "no such output",
+        "log(life)": "no such output",
+        "rank(regime)": "no such output",
         "P(life[side=left,depth=0.5]<2.0)": "no such output",
         "P(regime=medium)": "no such output",
     }.items():

@@ -29,12 +29,16 @@ def test_mean_of_replicates_is_students_interval_of_their_means():
     assert mean_interval(VALUES, REPLICATE) == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("hits", [0, 1, 17, 40])
-def test_share_of_independent_rows_is_wilsons_interval(hits):
-    ours = share_interval(np.arange(40) < hits)
-    scipys = stats.binomtest(hits, 40).proportion_ci(0.95, method="wilson")
-    assert ours == pytest.approx((scipys.low, scipys.high), abs=1e-15)
-    assert (ours.low == 0) == (hits == 0) and (ours.high == 1) == (hits == 40)
+@pytest.mark.parametrize(
+    ("hits", "method"),
+    [(0, "exact"), (1, "exact"), (19, "exact"), (20, "wilson"), (80, "wilson"), (81, "exact")],
+)
+def test_share_of_independent_rows_is_exact_where_few_and_wilsons_elsewhere(hits, method):
+    ours = share_interval(np.arange(100) < hits)
+    scipys = stats.binomtest(hits, 100).proportion_ci(0.95, method=method)
+    assert ours == pytest.approx((scipys.low, scipys.high), rel=1e-12)
+    assert (ours.low == 0) == (hits == 0) and ours.high < 1
+    assert share_interval(np.ones(40, dtype=bool)).high == 1
 
 
 def test_share_of_replicates_comes_from_their_scatter():
@@ -75,7 +79,7 @@ def test_quantile_is_numpys_median_unbiased_one_and_knows_infinity():
     assert quantile(VALUES, 0.37) == expected
     assert quantile(np.array([1.0, 2.0, 3.0, np.inf, np.inf]), 0.5) == 3.0
     assert quantile(np.array([1.0, 2.0, np.inf, np.inf]), 0.5) == np.inf
-    assert quantile(np.full(3, np.inf), 0.1) == np.inf
+    assert quantile(np.full(9, np.inf), 0.1) == np.inf
     assert np.isnan(quantile(np.array([]), 0.5))
 
 
@@ -104,7 +108,7 @@ def test_no_interval_without_evidence():
     # Replicates that agree to the last bit say nothing about the error.
     assert share_interval(np.arange(200) < 80, REPLICATE) == unknown
     assert mean_interval(np.repeat(VALUES[:25], 8), REPLICATE) == unknown
-    assert share_interval(np.zeros(200, dtype=bool), REPLICATE) == unknown
+    assert share_interval(np.arange(200) < 0, same) == unknown
 
 
 def test_a_replicate_without_rows_does_not_count():

@@ -155,13 +155,13 @@ def test_titles_of_indices_are_in_words():
     ds = linear("saltelli", 32, 4)
     ds = with_output(ds, "life", 1440 * ds["y"].values, "lifetime")
     ds = asking(ds, outputs=["life"], thresholds={"life": [7200.0]})
-    assert "Rate, 1/time: meaning of life" in words(index_bars(ds, "rate(life)"))
+    assert "Logarithm of the meaning of life" in words(index_bars(ds, "log(life)"))
+    assert "Rank of the meaning of life" in words(index_bars(ds, "rank(life)"))
+    assert "Inverse of the meaning of life" in words(index_bars(ds, "rate(life)"))
     assert "Whether it ends before 2 hours: meaning of life" in words(
         index_bars(ds, "P(life<7200.0)")
     )
-    with pytest.raises(
-        InputError, match=r"'life' stands for several; name one of: rate\(life\), P"
-    ):
+    with pytest.raises(InputError, match=r"'life' stands for several; name one of: log\(life\), P"):
         index_bars(ds, "life")
     flat = with_output(ds, "flat", np.ones(ds.sizes["sample"]))
     with pytest.raises(InputError, match="flat: the same value"):

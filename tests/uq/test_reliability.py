@@ -14,8 +14,9 @@ import uq as api
 from uq.errors import InputError
 from uq.rows.sampling import row_block
 from uq.running.design_points import design_points, drawn_around
-from uq.running.reliability import log_scatter_interval, rare_event
-from uq.running.subset import subset_simulation
+from uq.running.reliability import rare_event
+from uq.running.subset import Found, subset_simulation
+from uq.running.supported import log_scatter_interval, subset_interval
 
 UNIFORMS = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
 LAST = 10.0 - 576e-6**0.25  # P(x1 + 2 x2 + 3 x3 + 4 x4 > 10 - h) = h^4/576 for h < 1
@@ -175,17 +176,75 @@ def test_undefined_and_censored_rows_lie_on_neither_side():
     assert int(ds["failed"]) > 0 and "censored" in ds.attrs["notes"]
 
 
-def test_a_threshold_out_of_reach_has_probability_zero_and_no_interval():
+def test_a_threshold_out_of_reach_is_bounded_by_the_levels_that_were_reached():
     for of, output, threshold in ((linear(), "y", 10.5), (branches(), "turn", 90.0)):
         ds = rare_event(of, output, threshold, samples=200, replicates=2)
-        assert float(ds["probability"]) == 0
-        assert np.isnan(interval(ds)).all()
-        assert "out of reach" in ds.attrs["notes"]
+        assert float(ds["probability"]) == float(ds["low"]) == 0
+        assert set(ds["ended"].values) <= {"smallest", "plateau"}
+        assert 0 < float(ds["high"]) < 0.01
+        assert f"below {float(ds['high']):.2g}" in ds.attrs["notes"]
 
 
 def test_all_rows_failed_is_no_event():
     ds = rare_event(linear(settings={"fail_above": -1.0}), "y", 9.0, samples=200, replicates=2)
     assert float(ds["probability"]) == 0 and int(ds["failed"]) == int(ds["rows"]) == 400
+
+
+# What the rows support ---------------------------------------------------------------------------
+
+
+def flat(u, share=2e-5):
+    return np.where(stats.norm.sf(u[:, 0]) < share, 1.0, -1.0)
+
+
+def test_a_plateau_supports_what_its_independent_rows_do():
+    found = subset_simulation(flat, 2, 1000, np.random.default_rng(1).spawn(8))
+    assert [one.ended for one in found] == ["plateau"] * 8
+    assert [one.levels for one in found] == [1] * 8
+    low, high = subset_interval(found, 1000)
+    assert low == 0 and high == pytest.approx(4.6e-4, rel=0.01)  # 1 - 0.025^(1/8000)
+
+
+def test_on_a_plateau_the_command_prints_what_the_rows_support():
+    # A life that never ends is one plateau.
+    of = study("exponential-wear", WEAR, fixed={"threshold": 1.8e-9})
+    ds = rare_event(of, "life", 1e9, below=True)  # ends in 4e-5 of rows, and then long before
+    assert 2e-5 < LIFE_ENDS < 8e-5
+    assert float(ds["low"]) <= LIFE_ENDS <= float(ds["high"])
+    assert "1e-12" not in ds.attrs["notes"]
+    if float(ds["probability"]) == 0:
+        assert "plateau" in ds.attrs["notes"] and "0.00046" in ds.attrs["notes"]
+
+
+LIFE_ENDS = stats.norm.sf(np.log(1.8e-9 / 2.5e-10) / 0.5)
+
+
+@pytest.mark.parametrize("share", [2e-5, 3e-4, 2e-3])
+def test_intervals_on_a_plateau_hold_the_truth(share):
+    held = 0
+    for seed in range(60):
+        found = subset_simulation(
+            lambda u: flat(u, share), 2, 500, np.random.default_rng(seed).spawn(8)
+        )
+        low, high = subset_interval(found, 500)
+        held += low <= share <= high
+    assert held >= 55
+
+
+def test_replicates_that_never_got_there_count_with_the_level_they_reached():
+    inside = np.zeros((1, 2))
+    there = [Found(one, 5, inside, 1e-4, 0, "event") for one in (1e-6, 2e-6, 1.5e-6, 1.2e-6)]
+    stuck = [Found(0.0, 3, inside, 1e-3, 0, "plateau")]
+    low, high = subset_interval(there + stuck, 1000)
+    assert 0 <= low < 1e-6 and 2e-4 < high <= 1 - 0.025 ** (1 / 5000)
+
+
+def test_failed_rows_within_the_event_have_a_bound_of_their_own():
+    ds = rare_event(linear(settings={"fail_above": 0.97}), "y", 9.0, samples=500)
+    # 3 % of the independent rows failed.
+    assert 0.025 < float(ds["failed_high"]) < 0.04
+    assert f"no more than {float(ds['failed_high']):.2g}" in ds.attrs["notes"]
+    assert np.isnan(rare_event(linear(), "y", 9.0, samples=500)["failed_high"])
 
 
 # Who computes ------------------------------------------------------------------------------------

@@ -83,7 +83,7 @@ def test_a_report_says_all_there_is_to_say():
         "rows never ending",
         "rbd-fast",
         "pawn",
-        "lifetimes are censored",
+        "share the highest rank",
         "uq run kinds.toml",
         "uq verify OUT.nc",
         ds.attrs["study_sha256"],
@@ -96,9 +96,8 @@ def test_a_report_says_all_there_is_to_say():
     summary = re.search(r"angle an angle rad ([0-9.]+)", words)
     assert float(summary[1]) == pytest.approx(np.nanmean(ds["angle"]), rel=1e-4)
     drawn = found.tags.count("svg")
-    assert (
-        drawn == 12 + 2 * len([1 for name in ("left", "right", "P", "angle", "slow", "fast")]) + 2
-    )
+    judged = ["left", "right", *["rank"] * 4, "P", "angle", "slow", "fast"]
+    assert drawn == 12 + 2 * len(judged) + 2
 
 
 def test_links_lead_somewhere_and_names_are_unique():

@@ -54,6 +54,7 @@ def test_the_template_of_every_model_is_valid(validator, name):
         ({"design": {"method": "saltelli", "samples": 1000}}, "design/samples"),
         ({"design": {"samples": 1.5}}, "design/samples"),
         ({"design": {"samples": True}}, "design/samples"),
+        ({"design": {"samples": None}}, "design"),
         ({"design": {"second_order": True}}, "design/second_order"),
         ({"design": {"until": {"output": "y", "half_width": 0}}}, "design/until/half_width"),
         ({"design": {"until": {"output": "y"}}}, "design/until"),
@@ -100,6 +101,7 @@ def test_the_fault_is_where_it_is(validator, changes, place):
         {"analysis": {"thresholds": {"y": [1, 2.5]}, "sensitivity": ["pawn"]}},
         {"uncertain": {"x3": {"distribution": "lognormal", "median": 1, "sigma": 0.1}}},
         {"settings": {}, "fixed": {}},
+        {"design": {"method": "imported", "file": "rows.csv", "samples": None}},
     ],
 )
 def test_what_a_study_may_say_is_valid(validator, changes):

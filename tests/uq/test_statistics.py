@@ -106,7 +106,8 @@ def test_a_study_of_which_every_row_failed_has_no_numbers():
         assert entry["mean"] is entry["sd"] is entry["quantiles"]["0.5"]["value"] is None
         assert "never" not in entry["quantiles"]["0.5"]
         nothing = dict.fromkeys(("value", "low", "high"))
-        assert entry["thresholds"]["5.0"]["above"] == nothing
+        open_ = {"failed_low": 0.0, "failed_high": 1.0}
+        assert entry["thresholds"]["5.0"]["above"] == nothing | open_
         assert uq.summary(ds)["failed"].item() == 16 * replicates
 
 
@@ -250,7 +251,8 @@ def test_outputs_that_the_study_names_are_shown():
     assert list(summarise(ds)["outputs"]) == ["angle"]
     table = uq.summary(kinds(analysis={"quantiles": [0.5]}))
     assert table.index[0] == "work[side=left]"
-    expected = ["units", "mean", "mean_low", "mean_high", "sd", "q0.5", "q0.5_low", "q0.5_high"]
+    expected = ["units", "mean", "mean_low", "mean_high", "sd", "sd_low", "sd_high", "tail_k"]
+    expected += ["q0.5", "q0.5_low", "q0.5_high"]
     lives = [f"{name}{end}" for name in ("B1", "B10", "B50") for end in ("", "_low", "_high")]
     counts = ["never", "censored", "undefined", "failed"]
     assert list(table.columns) == [*expected, *counts, *lives]

@@ -49,6 +49,7 @@ def test_every_entry_arrives(tmp_path):
         "second_order": False,
         "seed": 11,
         "file": None,
+        "independent": False,
         "until": None,
     }
     assert study.fixed == {"x4": 1.0, "x2": 0.25}

@@ -1,9 +1,10 @@
-"""What of a lifetime has indices: its rate, and whether it ends before a time."""
+"""What of a lifetime has indices: its logarithm or rank, and whether it ends before a time."""
 
 import numpy as np
 import pytest
 from asked_indices import indices, values
 from computed import asking, kinds, linear, with_output
+from scipy import stats
 
 
 def lives(values, censored=None, thresholds=()):
@@ -12,21 +13,38 @@ def lives(values, censored=None, thresholds=()):
     return asking(life, outputs=["life"], thresholds={"life": list(thresholds)})
 
 
-def test_lifetimes_are_judged_by_rate_and_by_the_studys_own_times():
+def alone(ds, values):
+    """Return the total indices of these numbers as an output of its own."""
+    ds = asking(with_output(ds, "number", values), outputs=["number"])
+    (entry,) = indices(ds, output="number")["outputs"].values()
+    return [index["value"] for index in entry["ST"].values()]
+
+
+def test_lives_that_all_end_are_judged_by_logarithm_and_by_the_studys_own_times():
+    ds = lives(lambda y: 1 / y**4, thresholds=[0.001, 0.01])
+    found = indices(ds)["outputs"]
+    assert list(found) == ["log(life)", "P(life<0.001)", "P(life<0.01)"]
+    assert values(found["log(life)"], "ST") == pytest.approx(alone(ds, np.log(ds["y"].values)))
+    assert values(found["P(life<0.01)"], "ST") == pytest.approx(alone(ds, ds["life"] < 0.01))
+    assert not any("logarithm" in note for note in found["log(life)"]["notes"])
+
+
+def test_lives_that_may_never_end_are_judged_by_rank():
     ds = lives(
         lambda y: np.where(y > 1, 1 / np.maximum(y - 1, 1e-9), np.inf), thresholds=[0.2, 0.5]
     )
     found = indices(ds)["outputs"]
-    assert list(found) == ["rate(life)", "P(life<0.2)", "P(life<0.5)"]
-    # The rate of a life that never ends is 0; here the rate is max(y - 1, 0).
-    by_rate = with_output(ds, "rate", np.maximum(ds["y"].values - 1, 0.0))
-    by_rate = asking(by_rate, outputs=["rate"])
-    assert values(found["rate(life)"], "ST") == pytest.approx(
-        values(indices(by_rate)["outputs"]["rate"], "ST"), rel=1e-6
-    )
-    event = with_output(ds, "event", ds["life"].values < 0.2)
-    event = indices(asking(event, outputs=["event"]))["outputs"]["event"]
-    assert found["P(life<0.2)"]["ST"] == event["ST"]
+    assert list(found) == ["rank(life)", "P(life<0.2)", "P(life<0.5)"]
+    ranks = stats.rankdata(-np.maximum(ds["y"].values, 1))
+    assert values(found["rank(life)"], "ST") == pytest.approx(alone(ds, ranks))
+    never = int(np.isinf(ds["life"]).sum())
+    assert f"{never} rows that never end" in found["rank(life)"]["notes"][0]
+    refused = indices(ds, output="log(life)")["outputs"]["log(life)"]["refused"]
+    assert f"{never} never end" in refused and "rank(life)" in refused
+    # The rate of a life that never ends is 0; here it is max(y - 1, 0).
+    rate = indices(ds, output="rate(life)")["outputs"]["rate(life)"]
+    expected = alone(ds, np.maximum(ds["y"].values - 1, 0.0))
+    assert values(rate, "ST") == pytest.approx(expected, rel=1e-6)
 
 
 def test_names_of_lifetimes_carry_their_element():
@@ -34,36 +52,57 @@ def test_names_of_lifetimes_carry_their_element():
     names = list(indices(ds)["outputs"])
     assert names[:2] == ["work[side=left]", "work[side=right]"]
     assert names[2:4] == [
-        "rate(life[side=left,depth=0.5])",
+        "rank(life[side=left,depth=0.5])",
         "P(life[side=left,depth=0.5]<1000000.0)",
     ]
     assert names[-3:] == ["angle", "P(regime=slow)", "P(regime=fast)"]
     assert len(names) == 2 + 8 + 1 + 2
 
 
-def test_censored_lives_have_no_rate_but_may_have_a_probability():
-    def censored_at_half(ds_values):
-        return np.minimum(1 / ds_values, 0.5)
+def test_lives_censored_at_one_horizon_share_the_highest_rank():
+    def censored_at_a_third(ds_values):
+        return np.minimum(1 / ds_values, 1 / 3)
 
     free = lives(lambda y: 1 / y)
-    censored = 1 / free["y"].values > 0.5
-    found = indices(lives(censored_at_half, censored, [0.3, 0.5, 0.7]))["outputs"]
-    assert "censored" in found["rate(life)"]["refused"]
+    censored = 1 / free["y"].values > 1 / 3
+    ds = lives(censored_at_a_third, censored, [0.2, 0.33, 0.7])
+    found = indices(ds)["outputs"]
+    assert values(found["rank(life)"], "ST") == pytest.approx(
+        alone(ds, stats.rankdata(censored_at_a_third(ds["y"].values)))
+    )
     assert f"{censored.sum()} of 1536 rows" in found["P(life<0.7)"]["refused"]
-    for name in ("P(life<0.3)", "P(life<0.5)"):
+    for name in ("P(life<0.2)", "P(life<0.33)"):
         assert found[name]["ST"]["x4"]["value"] > 0.2
+    for name in ("log(life)", "rate(life)"):
+        assert "censored" in indices(ds, output=name)["outputs"][name]["refused"]
+
+
+def test_ranks_of_rows_censored_while_others_end_are_not_known():
+    early = np.arange(1536) % 7 == 0
+    ds = lives(lambda y: np.where(early, 0.01, 1 / y), early, [0.005])
+    found = indices(ds)["outputs"]
+    assert f"ranks of {early.sum()} rows are not known" in found["rank(life)"]["refused"]
+    assert "same value" in found["P(life<0.005)"]["refused"]
 
 
 def test_rows_without_a_life_drop_their_groups_from_every_target():
     ds = lives(lambda y: np.where(y > 9, np.nan, 1 / y), thresholds=[0.2])
     lacking = np.isnan(ds["life"].values.reshape(-1, 6)).any(axis=1).sum()
-    for name in ("rate(life)", "P(life<0.2)"):
+    for name in ("log(life)", "P(life<0.2)"):
         assert indices(ds)["outputs"][name]["groups_dropped"] == lacking > 0
+    assert indices(ds, output="rank(life)")["outputs"]["rank(life)"]["groups_dropped"] == lacking
 
 
 def test_an_event_that_never_or_always_happens_is_refused():
     found = indices(lives(lambda y: 1 + y, thresholds=[0.5, 100.0]))["outputs"]
     assert "same value" in found["P(life<0.5)"]["refused"]
     assert "same value" in found["P(life<100.0)"]["refused"]
-    zero = indices(lives(lambda y: np.where(y > 5, 0.0, y)))["outputs"]["rate(life)"]
+
+
+def test_lives_of_zero_have_no_logarithm_and_no_rate():
+    ds = lives(lambda y: np.where(y > 5, 0.0, y))
+    assert list(indices(ds)["outputs"]) == ["rank(life)"]
+    zero = indices(ds, output="rate(life)")["outputs"]["rate(life)"]
     assert "lifetime zero" in zero["refused"]
+    zero = indices(ds, output="log(life)")["outputs"]["log(life)"]
+    assert "are not positive" in zero["refused"]

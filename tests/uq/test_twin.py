@@ -5,8 +5,10 @@ import json
 import numpy as np
 import pytest
 from computed import UNIFORM, as_text, computed, study_of, with_seed
+from scipy.stats import norm
 
 import uq as api
+from uq.analysis.control_variate import controlled_share
 from uq.analysis.statistics import summarise
 from uq.analysis.twin import two_fidelities, with_twin
 from uq.errors import InputError
@@ -79,7 +81,9 @@ def test_plain_estimates_are_those_of_the_summary():
     )
     above = entry["thresholds"]["2.5"]["above"]
     line = table.loc[("y", "P(>2.5)")]
-    assert tuple(line[["plain", "plain_low", "plain_high"]]) == tuple(above.values())
+    assert tuple(line[["plain", "plain_low", "plain_high"]]) == tuple(
+        above[end] for end in ("value", "low", "high")
+    )
 
 
 def series(samples=300, **analysis):
@@ -153,6 +157,30 @@ def test_no_hit_leaves_the_plain_interval():
     ds = paired(50, twin="near", thresholds={"y": 4.0})
     line = two_fidelities(ds, PAIRED).loc[("y", "P(>4.0)")]
     assert line["value"] == 0 and line["high"] == line["plain_high"] > 0
+
+
+def test_few_hits_are_said_and_below_five_the_twin_is_not_used():
+    ds = paired(60, twin="near", thresholds={"y": [2.7, 2.85]})
+    found = with_twin(ds, PAIRED)["outputs"]["y"]
+    hits = {t: int((ds["y"] > float(t)).sum()) for t in ("2.7", "2.85")}
+    assert hits["2.85"] < 5 <= hits["2.7"] < 20
+    few, none = found["P(>2.7)"], found["P(>2.85)"]
+    assert f"{hits['2.7']} of" in few["note"] and "conservative" in few["note"]
+    assert "not used below 5" in none["note"]
+    assert {end: none[end] for end in none["plain"]} == none["plain"]
+    assert "note" not in with_twin(paired(twin="near"), PAIRED)["outputs"]["y"]["P(>1.5)"]
+
+
+@pytest.mark.parametrize("rho", [0.9, 0.99])
+def test_probabilities_of_four_or_five_hits_are_covered(rho):
+    rng, n, p = np.random.default_rng(0), 300, 0.015
+    held, repetitions, every = 0, 300, np.ones(300, dtype=bool)
+    for _ in range(repetitions):
+        z, many = rng.standard_normal(n), rng.standard_normal(100 * n)
+        hits = rho * z + np.sqrt(1 - rho**2) * rng.standard_normal(n) > norm.isf(p)
+        low, high = controlled_share(hits, every, z, many).interval
+        held += low <= p <= high
+    assert held >= 0.94 * repetitions
 
 
 def test_a_constant_output_and_an_all_failed_one_have_no_interval():

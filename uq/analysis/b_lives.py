@@ -104,7 +104,8 @@ def quantile_entry(element: Element, probability: float, replicate: Replicates) 
     Returns
     -------
     dict
-        ``value``, ``low``, ``high``; see `entry`.
+        ``value``, ``low``, ``high``; see `entry`. Where the rows do not reach it ``value`` is None,
+        with ``reason`` and ``rows_needed``; one end may still bound it.
     """
 
     def estimate(values: Floats) -> tuple[float, Interval]:
@@ -113,11 +114,21 @@ def quantile_entry(element: Element, probability: float, replicate: Replicates) 
 
     value, early = estimate(element.at_least)
     latest, late = estimate(element.at_most) if element.censored.any() else (value, early)
-    return entry(
+    found = entry(
         value=(value, np.inf if value < latest else value),
         low=(early.low, early.low),
         high=(early.high, late.high),
     )
+    return found | beyond(probability, len(element.at_least))
+
+
+def beyond(probability: float, rows: int) -> dict[str, Any]:
+    """Say that rows do not reach a quantile; nothing where they do, or there are none."""
+    if rows == 0 or intervals.is_within(probability, rows):
+        return {}
+    needed = intervals.rows_to_reach(probability)
+    reason = f"{rows} rows do not reach the quantile {probability:g}: it takes {needed}"
+    return {"reason": reason, "rows_needed": needed}
 
 
 def entry(**numbers: tuple[float, float]) -> dict[str, Any]:

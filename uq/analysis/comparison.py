@@ -88,8 +88,9 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> dict[str, Any]:
         ``replicates``, ``strangers`` or ``unknown``. ``regime``: label -> estimate; ``outputs``:
         element -> ``mean``, ``sd``, ``quantiles``, ``b_lives``, ``thresholds``, where an estimate
         is ``a`` and ``b``, as `uq.analysis.statistics.summarise` has them, and ``difference``:
-        ``value``, ``low``, ``high`` of b less a; that of sd also has ``ratio``. ``notes``:
-        sentences.
+        ``value``, ``low``, ``high`` of b less a, and ``identical`` where the rows are pairs and
+        both of each say the same: then there is no interval; that of sd also has ``ratio``.
+        ``notes``: sentences.
     """
     _refuse(first, second)
     results = (first, second)
@@ -114,7 +115,7 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> dict[str, Any]:
             {"kind": one.kind, "name": one.name, "a": one.first, "b": one.second} for one in changed
         ],
         "only": None if name is None else _only(results, name),
-        "pairing": pair.kinship.name.lower(),
+        "pairing": pair.kinship.name.lower().removesuffix("_imported"),
         "regime": dict(_regimes(pair, [one["regime"] for one in found])),
         "outputs": {
             name: _compared(
@@ -216,8 +217,8 @@ def _compared(pair: Pair, elements: list[Element], entries: list[Entry]) -> Entr
 
     return {
         "units": elements[0].units,
-        "mean": _estimate(pair, MEAN, present, means),
-        "sd": _sds(pair, present, entries),
+        "mean": _without_refused(_estimate(pair, MEAN, present, means), "mean", entries),
+        "sd": _without_refused(_sds(pair, present, entries), "sd", entries),
         "quantiles": each("quantiles", lambda probability: quantile(float(probability))),
         "b_lives": each("b_lives", lambda name: quantile(B_LIVES[name])),
         "thresholds": {
@@ -229,16 +230,26 @@ def _compared(pair: Pair, elements: list[Element], entries: list[Entry]) -> Entr
     }
 
 
+def _without_refused(found: Entry, moment: str, entries: list[Entry]) -> Entry:
+    """Take out the intervals of what the tail of one of the two forbids."""
+    if any(f"{moment}_interval" in entry["reasons"] for entry in entries):
+        for key in found.keys() - {"a", "b"}:
+            found[key] = found[key] | {"low": None, "high": None}
+    return found
+
+
 def _sds(pair: Pair, samples: list[Sample], entries: list[Entry]) -> Entry:
+    sds = [{"value": entry["sd"], **entry["sd_interval"]} for entry in entries]
+    sides = dict(zip("ab", sds, strict=True))
     if any(entry["sd"] is None for entry in entries):
         nothing = dict.fromkeys(_ENDS)
-        sides = {
-            key: nothing | {"value": entry["sd"]} for key, entry in zip("ab", entries, strict=True)
-        }
         return {**sides, "difference": nothing, "ratio": nothing}
-    known = [pair.sd(i, sample) for i, sample in enumerate(samples)]
+    known = [_known(entry) for entry in sds]
+    if pair.identical(samples):
+        same = {"low": None, "high": None, "identical": True}
+        return {**sides, "difference": {"value": 0.0} | same, "ratio": {"value": 1.0} | same}
     return {
-        **dict(zip("ab", map(_plain, known), strict=True)),
+        **sides,
         "difference": _plain(pair.difference(SD, samples, known)),
         "ratio": _plain(pair.ratio(samples, known)),
     }
@@ -265,10 +276,10 @@ def _sides(pair: Pair, elements: list[Element], threshold: float, entries: list[
 def _estimate(
     pair: Pair, estimator: Estimator, samples: list[Sample], entries: list[Entry]
 ) -> Entry:
-    known = [
-        Estimate(*(np.nan if entry[end] is None else entry[end] for end in _ENDS))
-        for entry in entries
-    ]
+    known = [_known(entry) for entry in entries]
+    if pair.identical(samples) and not np.isnan(known[0].value):
+        difference = {"value": 0.0, "low": None, "high": None, "identical": True}
+        return {**dict(zip("ab", entries, strict=True)), "difference": difference}
     if any(np.isnan(one.value) for one in known):
         apart = NOTHING
     elif any("assumes" in entry for entry in entries):  # not a plain quantile of the rows
@@ -276,6 +287,10 @@ def _estimate(
     else:
         apart = pair.difference(estimator, samples, known)
     return {**dict(zip("ab", entries, strict=True)), "difference": _plain(apart)}
+
+
+def _known(entry: Entry) -> Estimate:
+    return Estimate(*(np.nan if entry[end] is None else entry[end] for end in _ENDS))
 
 
 def _plain(estimate: Estimate) -> Entry:
@@ -291,6 +306,8 @@ def _notes(
     yield pair.kinship.value
     for which, one in zip("AB", found, strict=True):
         yield from (f"{which}: {note}" for note in one["notes"])
+    if any(output["failed"] for one in found for output in one["outputs"].values()):
+        yield "differences are of the rows that did not fail"
     of_a, of_b = elements
     for which, mine, other in (("A", of_a, of_b), ("B", of_b, of_a)):
         if alone := [name for name in mine if name not in other]:

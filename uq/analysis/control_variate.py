@@ -16,6 +16,10 @@ from uq.intervals import UNKNOWN, Interval
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+FEWEST = 5
+"""Hits, or misses, from which a control says more of a share than the rows themselves."""
+
+_AGAINST = 5  # hits that count against a control
 _UPPER_TAIL = 0.5 + intervals.CONFIDENCE / 2
 
 
@@ -82,13 +86,18 @@ def controlled_share(hits: Mask, kept: Mask, control: Floats, many: Floats) -> C
     -------
     Controlled
         The control counts where it exceeds what as many rows exceed as there are hits. The interval
-        is Wilson's for the number of independent plain rows that would do as well.
+        is that of a share (`uq.intervals.binomial_interval`) for the number of independent plain
+        rows that would do as well. With fewer than `FEWEST` hits, or misses, nothing shows what the
+        control is worth: the plain rows alone count.
 
     Notes
     -----
     Half a row is added to each of the four cases (hit or not, control beyond or not) where the
     variance is estimated, as in [1]_ for two shares of the same rows: control and hits may agree in
-    every row by chance.
+    every row by chance. What the control adds is counted as k/(k + 5) of what it seems to, k the
+    number of hits: it is seen in these alone. Measured with 300 rows, 5 to 18 hits expected and
+    correlations of 0.5 to 0.999, the intervals then hold the truth in 95 to 99 % of cases, without
+    it in 91 to 96 %.
 
     References
     ----------
@@ -97,6 +106,9 @@ def controlled_share(hits: Mask, kept: Mask, control: Floats, many: Floats) -> C
     """
     n, count = len(hits), int(hits[kept].sum())
     plain = float(hits[kept].mean())
+    rarer = min(count, int(kept.sum()) - count)
+    if rarer < FEWEST:
+        return Controlled(plain, intervals.share_interval(hits[kept]), 1.0)
     known = ~np.isnan(control)
     oriented = _orientation(hits[kept & known], control[kept & known])
     beyond = _limit(oriented * control[known], count)
@@ -109,7 +121,8 @@ def controlled_share(hits: Mask, kept: Mask, control: Floats, many: Floats) -> C
     weight = np.append(np.ones(n), np.full(4, 0.5))
     slope, reduction = _regressed(padded, cases, weight, len(many))
     value = float(np.clip(plain - slope[0] * (here.mean() - there.mean()), 0.0, 1.0))
-    return Controlled(value, intervals.wilson_interval(value, reduction * kept.sum()), reduction)
+    reduction = 1 + (reduction - 1) * rarer / (rarer + _AGAINST)
+    return Controlled(value, intervals.binomial_interval(value, reduction * kept.sum()), reduction)
 
 
 def _orientation(hits: Mask, control: Floats) -> float:

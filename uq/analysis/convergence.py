@@ -13,7 +13,8 @@ from uq.designs.table import DESIGNS
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
 from uq.indices.sobol import MIN_GROUPS
-from uq.rows.elements import Element, elements_of, named_elements, output_names
+from uq.indices.targets import split_name
+from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
 
 _FEWEST = 16  # samples
 
@@ -49,11 +50,14 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     [16, 32, 63, 125, 250, 500, 1000]
     """
     names = None if output is None else {element.name for element in named_elements(ds, output)}
+    targets = _targets(ds)
     lines = [
         (name, label, samples, *estimate)
         for samples in _sizes(ds)
-        for name, label, estimate in _estimates(ds.isel(sample=ds["group"].values < samples))
-        if names is None or name.removeprefix("rate(").removesuffix(")") in names or name in names
+        for name, label, estimate in _estimates(
+            ds.isel(sample=ds["group"].values < samples), targets
+        )
+        if names is None or split_name(name)[1] in names
     ]
     columns = ["output", "estimate", "samples", "value", "low", "high"]
     return pd.DataFrame(lines, columns=columns)
@@ -73,10 +77,11 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
     -------
     pandas.DataFrame
         Index: element of an output. ``estimate``, its mean or, where rows never end or are
-        censored, its median; ``sampling``, the half-width of its interval; ``own``, the mean
-        magnitude of ``<output>_error``, the error of solver and time averages that the model gives
-        for each row (NaN where it gives none): what the estimate would be off by if they all lay on
-        one side; ``warning``, not empty where `own` is the larger: then more rows do not help.
+        censored or the tail is heavy, its median; ``sampling``, the half-width of its interval;
+        ``own``, the mean magnitude of ``<output>_error``, the error of solver and time averages
+        that the model gives for each row (NaN where it gives none): what the estimate would be off
+        by if they all lay on one side; ``warning``, not empty where `own` is the larger: then more
+        rows do not help.
     """
     found = summarise(ds)["outputs"]
     lines = {}
@@ -85,7 +90,7 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
             continue
         entry = found[element.name]
         label, interval = "mean", entry["mean_interval"]
-        if entry["mean"] is None:
+        if entry["mean"] is None or "mean_interval" in entry["reasons"]:
             label, interval = "median", entry["quantiles"].get("0.5", {"low": None, "high": None})
         known = None not in (interval["low"], interval["high"])
         sampling = (interval["high"] - interval["low"]) / 2 if known else np.nan
@@ -127,7 +132,7 @@ def _own_error(ds: xr.Dataset, element: Element) -> float:
 
 def _sizes(ds: xr.Dataset) -> list[int]:
     method, size = ds.attrs["design"], int(ds.attrs["samples"])
-    if not DESIGNS[method].append_only:
+    if not (DESIGNS[method].append_only or are_independent(ds)):
         able = " or ".join(f"'{name}'" for name, design in DESIGNS.items() if design.append_only)
         raise InputError(
             f"the first rows of a '{method}' design are no such design, so nothing can be said of"
@@ -142,7 +147,19 @@ def _sizes(ds: xr.Dataset) -> list[int]:
 Estimate = tuple[float, float, float]
 
 
-def _estimates(ds: xr.Dataset) -> Iterator[tuple[str, str, Estimate]]:
+def _targets(ds: xr.Dataset) -> list[str]:
+    """Return what all rows have indices of: whether a life has a logarithm may change with rows."""
+    if not _has_indices(ds):
+        return []
+    return list(sensitivities(ds, method="sobol")["outputs"])
+
+
+def _has_indices(ds: xr.Dataset) -> bool:
+    crossed = DESIGNS[ds.attrs["design"]].crossed
+    return crossed and len(np.unique(ds["group"])) * ds.attrs["replicates"] >= MIN_GROUPS
+
+
+def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[tuple[str, str, Estimate]]:
     for name, entry in summarise(ds)["outputs"].items():
         yield name, "mean", _numbers({"value": entry["mean"], **entry["mean_interval"]})
         for probability, found in entry["quantiles"].items():
@@ -150,9 +167,8 @@ def _estimates(ds: xr.Dataset) -> Iterator[tuple[str, str, Estimate]]:
         for threshold, found in entry["thresholds"].items():
             yield name, f"P(>{threshold})", _numbers(found["above"])
             yield name, f"P(<{threshold})", _numbers(found["below"])
-    crossed = DESIGNS[ds.attrs["design"]].crossed
-    if crossed and len(np.unique(ds["group"])) * ds.attrs["replicates"] >= MIN_GROUPS:
-        for name, kinds in sensitivities(ds, method="sobol")["outputs"].items():
+    if _has_indices(ds):
+        for name, kinds in sensitivities(ds, "sobol", targets)["outputs"].items():
             for kind in ("S1", "ST"):
                 for parameter, index in kinds.get(kind, {}).items():
                     yield name, f"{kind} {parameter}", _numbers(index)

@@ -8,7 +8,7 @@ import xarray as xr
 
 from uq.analysis.b_lives import B_LIVES
 from uq.analysis.location_scale import FAMILIES, Family, anderson_darling, fit
-from uq.intervals import CONFIDENCE
+from uq.intervals import CONFIDENCE, is_within
 from uq.rows.elements import Element, Floats, Mask, independent_rows, lifetimes, replicates_of
 
 MIN_ENDED = 20
@@ -29,6 +29,17 @@ MOST_DRAWN = 400 * REFITS
 
 LEVEL = 0.05
 
+INDEPENDENT_ONLY = (
+    "the test of fit holds for independent rows; use method = 'monte-carlo', or, of imported rows"
+    " that are independent, independent = true"
+)
+
+ASSUMES = (
+    "that lives follow this law: that a test of {rows} rows does not refuse it is no proof, least"
+    " of all where no row lies"
+)
+"""What every number of an accepted law rests on."""
+
 
 def life_fits(ds: xr.Dataset, output: str) -> dict[str, dict[str, Any]]:
     """Fit Weibull and lognormal laws to a lifetime.
@@ -46,7 +57,9 @@ def life_fits(ds: xr.Dataset, output: str) -> dict[str, dict[str, Any]]:
         Name of element -> ``weibull`` and ``lognormal`` -> ``p_value`` of the Anderson-Darling
         test, its law from refits; where it is above `LEVEL`, ``parameters`` (shape and scale [s];
         median [s] and sigma, named as in study files) and ``B1``, ``B10``, ``B50`` [s], each with
-        ``value``, ``low``, ``high``; else ``refused``, a sentence. ``rows``: how many were used.
+        ``value``, ``low``, ``high``, and ``extrapolated``: whether it is earlier than the rows
+        reach, 1/(n + 1); ``assumes``, a sentence; else ``refused``, a sentence. ``rows``: how many
+        were used.
 
     Raises
     ------
@@ -112,7 +125,7 @@ def _one(law: str, element: Element, independent: bool) -> dict[str, Any]:
         }
     locations, scales = locations[kept], scales[kept]
 
-    def at(w: float) -> dict[str, float]:
+    def at(w: float) -> dict[str, Any]:
         pivot = (locations + w * scales - location - w * scale) / scales
         value = location + w * scale
         return _interval(value, value - scale * pivot)
@@ -123,13 +136,17 @@ def _one(law: str, element: Element, independent: bool) -> dict[str, Any]:
         entry["parameters"] = {"shape": shape, "scale": at(0.0)}
     else:
         entry["parameters"] = {"median": at(0.0), "sigma": spread}
-    return entry | {name: at(family.standard.ppf(p)) for name, p in B_LIVES.items()}
+    entry["assumes"] = ASSUMES.format(rows=len(life))
+    return entry | {
+        name: at(family.standard.ppf(p)) | {"extrapolated": not is_within(p, len(life))}
+        for name, p in B_LIVES.items()
+    }
 
 
 def _problem(life: Floats, ended: Mask, independent: bool) -> str:
     """Say why no law can be fitted, or return ""."""
     if not independent:
-        return "the test of fit holds for independent rows; use method = 'monte-carlo'"
+        return INDEPENDENT_ONLY
     never = int((np.isposinf(life) & ended).sum())
     if never:
         return f"{never} of {len(life)} rows never end, and under this law all do"

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
+from uq.analysis.failed_rows import HIGH, LOW, with_failed_at
 from uq.intervals import CONFIDENCE, Interval, Replicates, scattered_share_interval
 from uq.rows.elements import Element, Floats, Mask, independent_rows, lifetimes, replicates_of
 
@@ -55,13 +56,18 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     time = np.unique(np.concatenate([_finite(element.values) for element in chosen]))
     replicate = replicates_of(rows)
     curves = [curve(element, time, replicate) for element in chosen]
+    meanings = dict(_VARIABLES)
+    if any(element.failed.any() for element in chosen):
+        meanings |= _WITH_FAILED
+        for one, element in zip(curves, chosen, strict=True):
+            one |= _failed_band(element, time, replicate)
 
     whole = rows[chosen[0].output]
     places = {dim: whole[dim] for dim in whole.dims if dim != "sample"}
     dims = tuple(places) if output == whole.name else ()
     shape = tuple(whole.sizes[dim] for dim in dims)
     data = {}
-    for name, meaning in _VARIABLES.items():
+    for name, meaning in meanings.items():
         values = np.stack([one[name] for one in curves])
         along = ("time",) if values.ndim > 1 else ()
         attrs = {"long_name": meaning, "units": "1"}
@@ -82,6 +88,22 @@ _VARIABLES = {
     "undefined": "number of rows whose lifetime has no meaning",
     "failed": "number of rows that failed",
 }
+
+
+_WITH_FAILED = {
+    LOW: "lower end of the pointwise 95 % interval if the failed rows had ended at once",
+    HIGH: "upper end of the pointwise 95 % interval if the failed rows never ended",
+}
+
+
+def _failed_band(element: Element, time: Floats, replicate: Replicates) -> dict[str, Floats]:
+    """Return the band with the failed rows at worst and at best; NaN where nothing can be said."""
+    ends = {}
+    for key, life, end in ((LOW, 0.0, "low"), (HIGH, np.inf, "high")):
+        found = curve(with_failed_at(element, life), time, replicate)
+        alone = np.isnan(found["low"]).all() and np.isnan(found["high"]).all()
+        ends[key] = found["survival" if alone else end]
+    return ends
 
 
 def curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, Any]:

@@ -22,12 +22,14 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     -------
     pandas.DataFrame
         Index: name of the element. Columns: units, mean, sd and each quantile, with ``_low`` and
-        ``_high`` for the 95 % interval; tolerance bounds, where the study asks for them, with the
+        ``_high`` for the 95 % interval; ``tail_k``, the shape of the heavier tail (no variance
+        from 0.5 on, no mean from 1 on); tolerance bounds, where the study asks for them, with the
         rows they need; counts of rows never, censored, undefined and failed, and, where an accuracy
         was asked for, of those whose error is larger (``accuracy_missed``); ``B1``, ``B10`` and
         ``B50`` of lifetimes; and for each threshold ``P(>t)`` and ``P(<t)`` with their intervals,
         where it is one of the output's.
-        Infinity stands for never, NaN for what could not be given.
+        Where rows failed, ``_failed_low`` and ``_failed_high`` are the ends with these rows at best
+        and at worst. Infinity stands for never, NaN for what could not be given.
 
     Examples
     --------
@@ -40,11 +42,15 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     return pd.DataFrame(list(lines.values()), index=pd.Index(list(lines), name="output"))
 
 
+_FAILED = ("failed_low", "failed_high")
+
+
 def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
     """Return one line of `summary`."""
     line = {"units": entry["units"]}
     line |= _cells("mean", {"value": entry["mean"], **entry["mean_interval"]})
-    line |= _cells("sd", {"value": entry["sd"]})
+    line |= _cells("sd", {"value": entry["sd"], **entry["sd_interval"]})
+    line["tail_k"] = entry["tail"]["k"] if entry["tail"] else np.nan
     for probability, estimate in entry["quantiles"].items():
         line |= _cells(f"q{probability}", estimate)
     if bounds := entry["tolerance"]:
@@ -63,8 +69,8 @@ def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
 def _cells(name: str, entry: Mapping[str, Any]) -> dict[str, float]:
     """Return the numbers of an entry of `summarise`, named after what they say."""
     cells = {}
-    for key in ("value", "low", "high", "lower", "upper", "rows_needed"):
-        if key in entry:
+    for key in ("value", "low", "high", *_FAILED, "lower", "upper", "rows_needed"):
+        if key in entry and not (key == "rows_needed" and "value" in entry):
             never = entry.get("never" if key == "value" else f"{key}_never")
             number = np.nan if entry[key] is None else entry[key]
             cells[name if key == "value" else f"{name}_{key}"] = np.inf if never else number

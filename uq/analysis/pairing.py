@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 
 from uq import intervals, two_samples
 from uq.designs.table import DESIGNS
-from uq.rows.elements import Floats, Mask, independent_rows, replicates_of, study_file_of
+from uq.rows.elements import (
+    Floats,
+    Mask,
+    are_independent,
+    independent_rows,
+    replicates_of,
+    study_file_of,
+)
 from uq.study.file import Tied
 from uq.two_samples import Estimate
 
@@ -32,6 +39,10 @@ class Kinship(Enum):
     STRANGERS = "the seeds differ: rows of one have nothing to do with rows of the other"
     ROWS = "the seed is the same: rows of the same number are pairs"
     REPLICATES = "the seed is the same: replicates of the same number are pairs"
+    ROWS_IMPORTED = "the imported rows are the same: rows of the same number are pairs"
+    UNKNOWN_IMPORTED = (
+        "nothing is known of how imported rows came about: intervals are wide enough for the worst"
+    )
     UNKNOWN = (
         "the seed is the same but dealt out otherwise, so that rows are neither pairs nor"
         " strangers: intervals are wide enough for the worst; give one study another seed"
@@ -50,15 +61,27 @@ def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
     -------
     Kinship
     """
+    both = (first, second)
+    if any(DESIGNS[ds.attrs["design"]].draw is None for ds in both):
+        return _kinship_of_imported(first, second)
     if first.attrs["seed"] != second.attrs["seed"]:
         return Kinship.STRANGERS
-    independent = [DESIGNS[ds.attrs["design"]].independent for ds in (first, second)]
+    independent = [DESIGNS[ds.attrs["design"]].independent for ds in both]
     if all(independent):
         same = _columns(first) == _columns(second)
         return Kinship.ROWS if same else Kinship.UNKNOWN
     if not any(independent) and first.attrs["replicates"] == second.attrs["replicates"]:
         return Kinship.REPLICATES
     return Kinship.UNKNOWN
+
+
+def _kinship_of_imported(first: xr.Dataset, second: xr.Dataset) -> Kinship:
+    """Return what two results have in common of which one is imported: their seeds do not tell."""
+    files = [study_file_of(ds) for ds in (first, second)]
+    same = files[0].data == files[1].data and files[0].design.method == files[1].design.method
+    if same and all(are_independent(ds) for ds in (first, second)):
+        return Kinship.ROWS_IMPORTED
+    return Kinship.UNKNOWN_IMPORTED
 
 
 def _columns(ds: xr.Dataset) -> int:
@@ -163,7 +186,8 @@ class Pair:
         self.rows = (independent_rows(first), independent_rows(second))
         self.kinship = kinship(first, second)
         self._replicate = [replicates_of(rows) for rows in self.rows]
-        self._shared = shared_rows(*self.rows) if self.kinship is Kinship.ROWS else None
+        paired = self.kinship in (Kinship.ROWS, Kinship.ROWS_IMPORTED)
+        self._shared = shared_rows(*self.rows) if paired else None
 
     def difference(
         self, estimator: Estimator, samples: list[Sample], known: list[Estimate]
@@ -178,14 +202,23 @@ class Pair:
             if intervals.is_constant(apart + np.abs(own).max()):  # they differ by rounding alone
                 return Estimate(value, np.nan, np.nan)
             return Estimate(value, *intervals.scatter_interval(value, apart))
+        if estimator is SHARE and all(one is None for one in self._replicate):
+            known = [_newcombe(sample) for sample in samples]
         found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
         wide = sum(one.high - one.low for one in known)
-        if (
-            self.kinship is Kinship.REPLICATES
-            and found.high - found.low <= _ROUNDING * wide < np.inf
-        ):
-            return found._replace(low=np.nan, high=np.nan)  # as good as the same in each replicate
+        paired = self.kinship in (Kinship.ROWS, Kinship.REPLICATES)
+        if paired and found.high - found.low <= _ROUNDING * wide < np.inf:
+            return found._replace(low=np.nan, high=np.nan)  # as good as the same in each pair
         return found
+
+    def identical(self, samples: list[Sample]) -> bool:
+        """Whether the rows are pairs, and both of each pair say the same."""
+        if self.kinship not in (Kinship.ROWS, Kinship.REPLICATES):
+            return False
+        first, second = samples
+        return np.array_equal(first.kept, second.kept) and np.array_equal(
+            first.numbers, second.numbers, equal_nan=True
+        )
 
     def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""
@@ -193,15 +226,6 @@ class Pair:
             found = [self._by_replicate(SD, i, one) for i, one in enumerate(samples)]
             return _factor(known[1].value / known[0].value, found[1], found[0])
         return two_samples.ratio(known[0], known[1], self._correlation(SD, samples))
-
-    def sd(self, i: int, sample: Sample) -> Estimate:
-        """Return the standard deviation of one of the two."""
-        values = sample.numbers[sample.kept]
-        value = _sd(values)
-        if self._replicate[i] is None:
-            return Estimate(value, *two_samples.sd_interval(values))
-        found = self._by_replicate(SD, i, sample)
-        return _factor(value, found, np.ones(len(found)))
 
     @property
     def unpaired(self) -> float:
@@ -246,6 +270,16 @@ class Pair:
             if len(values):
                 found[r] = estimator.of(values)
         return found
+
+
+def _newcombe(sample: Sample) -> Estimate:
+    """Return a share with Wilson's interval, of which that of a difference is made.
+
+    The interval of a single share is exact where hits are few: two of these would make one too
+    wide.
+    """
+    hits = sample.numbers[sample.kept]
+    return Estimate(float(hits.mean()), *intervals.wilson_interval(hits.mean(), len(hits)))
 
 
 def _factor(value: float, above: Floats, below: Floats) -> Estimate:

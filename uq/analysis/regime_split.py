@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Interval, Replicates, scatter_interval
+from uq.tails import lacks_variance
 
 MIN_IN_REGIME = 2
 """A regime with fewer rows has no variance of its own: it is left out."""
@@ -27,7 +28,8 @@ def between_share(
     -------
     value : float
         The correlation ratio; for independent rows less what chance makes of it (epsilon squared
-        [1]_). NaN where no two regimes have rows enough, or all values are the same.
+        [1]_). NaN where no two regimes have rows enough, or all values are the same,
+        or their tail is too heavy for a variance.
     interval : Interval
         For independent rows by the normal law of the estimate's influence function, and unknown
         where an F-test finds no difference between the regimes: there the estimate has no normal
@@ -44,7 +46,7 @@ def between_share(
     _, regime = np.unique(codes[kept], return_inverse=True)
     y = values[kept]
     value, deviation, residual = _split(y, regime)
-    if not np.isfinite(value):
+    if not np.isfinite(value) or lacks_variance(y):
         return np.nan, UNKNOWN
     if replicate is None:
         value, interval = _independent(value, deviation, residual, regime.max() + 1)

@@ -10,7 +10,8 @@ from uq.analysis.regime_split import between_share
 from uq.analysis.statistics import regime_shares
 from uq.errors import InputError
 from uq.indices.given_data import given_data_indices
-from uq.indices.targets import RefusedError, Target, category_targets, targets
+from uq.indices.targets import RefusedError, Target, category_targets, number_of
+from uq.moments import moments
 from uq.rows.elements import (
     Floats,
     analysis_of,
@@ -40,9 +41,10 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
         ``probability``, of the inputs of the rows in it; ``distance``, of Kolmogorov and Smirnov,
         between these and the inputs of all other rows, and ``distance_dummy``, the largest for
         inputs that play no part; NaN where one side has too few rows. Over ``output`` and
-        ``regime``: ``rows``, ``mean``, ``sd``. Over ``output``: ``between``, the share of its
+        ``regime``: ``rows``, ``mean``, ``sd`` (NaN where too heavy a tail has
+        none). Over ``output``: ``between``, the share of its
         variance that lies between regimes, with ``between_low`` and ``between_high``. Lifetimes
-        stand as their rates.
+        stand as their logarithms, or as their ranks where rows never end or are censored.
 
     Raises
     ------
@@ -91,8 +93,9 @@ _SHARES = {"count": "count", "share": "share", "share_low": "low", "share_high":
 
 
 def _numbers(rows: xr.Dataset) -> Iterator[Target]:
-    """Yield the outputs as they are; lifetimes as their rates."""
-    for target in targets(elements_of(rows, shown_outputs(rows, analysis_of(rows))), {}):
+    """Yield the outputs as they are; lifetimes as logarithms or ranks."""
+    for element in elements_of(rows, shown_outputs(rows, analysis_of(rows))):
+        target = number_of(element)
         if not target.refused:
             yield target
 
@@ -108,5 +111,7 @@ def _distances(inputs: dict[str, Floats], target: Target) -> list[float]:
 
 def _moments(values: Floats) -> tuple[float, float, float]:
     kept = values[np.isfinite(values)]
-    mean = kept.mean() if len(kept) else np.nan
-    return len(kept), mean, kept.std(ddof=1) if len(kept) > 1 else np.nan
+    if not len(kept):
+        return 0, np.nan, np.nan
+    found = moments(kept)
+    return len(kept), found.mean, found.sd

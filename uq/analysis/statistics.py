@@ -9,17 +9,20 @@ from numpy.typing import NDArray
 from uq import intervals
 from uq.analysis.accuracy import accuracy_missed
 from uq.analysis.b_lives import b_lives, ended_by, entry, quantile_entry
+from uq.analysis.failed_rows import failed_note, failed_share_bounds, with_failed_bounds
 from uq.analysis.life_fit import fits_of
 from uq.analysis.regime_split import between_share
 from uq.contract import Status
 from uq.designs.table import DESIGNS
-from uq.indices.targets import targets
-from uq.intervals import Replicates
+from uq.indices.targets import number_of
+from uq.intervals import Interval, Replicates
+from uq.moments import moments
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
     Mask,
     analysis_of,
+    are_independent,
     elements_of,
     flags,
     independent_rows,
@@ -34,6 +37,11 @@ from uq.study.file import AnalysisTable
 NO_INTERVALS = (
     "no intervals: the rows of a '{design}' design are not independent, and with replicates = 1"
     " nothing shows how far its estimates scatter; set replicates = 8"
+)
+
+NOT_STATED = (
+    "no intervals: nothing is known of how imported rows came about; if they are independent draws"
+    " of the laws, set independent = true in [design]"
 )
 
 NO_STATISTICS = (
@@ -66,12 +74,16 @@ def summarise(
     dict
         ``samples`` and ``status`` count all rows. Everything else is about the ``rows_used``, the
         independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
-        element -> mean, sd, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
-        ``between_regimes``: the share of its variance, or of its rate's, that lies between them,
+        element -> mean, sd, their intervals, ``tail``: the shape k of its heavier tail with its
+        interval, the number of values it was fitted to and their side, ``reasons``: why the tail
+        forbids any of these four, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
+        ``between_regimes``: the share of the variance of the number named ``of``, itself or the
+        logarithm or rank of a lifetime, that lies between them,
         ``accuracy``: how many rows state an error beyond the accuracy asked for, if one was,
         counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
         not be given. A number that does not exist or is not finite is None; beside it ``never``,
-        ``low_censored`` and the like say why.
+        ``low_censored`` and the like say why. Where rows failed, each probability, quantile and
+        B-life has ``failed_low`` and ``failed_high`` (`uq.analysis.failed_rows`).
     """
     analysis = analysis or analysis_of(ds)
     notes = _notes(ds)
@@ -81,19 +93,20 @@ def summarise(
     replicate = replicates_of(rows)
     outputs = shown_outputs(ds, analysis)
     codes = rows["regime"].values if "regime" in output_names(ds) else None
+    described = {
+        element.name: _describe(element, replicate, analysis)
+        | _between(element, codes, replicate)
+        | accuracy_missed(rows, element)
+        | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
+        for element in elements_of(rows, outputs)
+    }
     return {
         "samples": ds.sizes["sample"],
         "rows_used": rows.sizes["sample"],
         "status": status_counts(ds),
         "regime": {} if codes is None else regime_shares(rows),
-        "outputs": {
-            element.name: _describe(element, replicate, analysis)
-            | _between(element, codes, replicate)
-            | accuracy_missed(rows, element)
-            | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
-            for element in elements_of(rows, outputs)
-        },
-        "notes": notes,
+        "outputs": described,
+        "notes": notes + failed_note(described.values(), rows.sizes["sample"]),
     }
 
 
@@ -115,7 +128,8 @@ def regime_shares(rows: xr.Dataset) -> dict[str, dict[str, Any]]:
     Returns
     -------
     dict
-        Label -> ``count``, ``share``, ``low``, ``high``; also for regimes that do not occur.
+        Label -> ``count``, ``share``, ``low``, ``high``, where rows failed ``failed_low`` and
+        ``failed_high``; also for regimes that do not occur.
     """
     codes = rows["regime"].values
     kept = (codes >= 0) | (rows["status"].values == Status.OK)
@@ -125,6 +139,7 @@ def regime_shares(rows: xr.Dataset) -> dict[str, dict[str, Any]]:
         if code >= 0:
             hits = codes[kept] == code
             estimate = _share(hits, replicate)
+            estimate |= failed_share_bounds(codes == code, ~kept, replicates_of(rows))
             shares[label] = {"count": int(hits.sum()), "share": estimate.pop("value")} | estimate
     return shares
 
@@ -134,26 +149,48 @@ COUNTS = ("never", "censored", "undefined", "failed")
 
 
 def _describe(element: Element, replicate: Replicates, analysis: AnalysisTable) -> dict[str, Any]:
-    values = element.at_least
     within = _of(replicate, element.present)
-    moments = len(values) > 0 and not element.never.any() and not element.censored.any()
-    mean = intervals.mean_interval(values, within) if moments else intervals.UNKNOWN
     return {
         "units": element.units,
-        "mean": _plain(values.mean()) if moments else None,
-        "mean_interval": {"low": _plain(mean.low), "high": _plain(mean.high)},
-        "sd": _plain(values.std(ddof=1)) if moments and len(values) > 1 else None,
+        **_moments(element, within),
+        "tolerance": _tolerance(element, replicate, analysis),
+        **with_failed_bounds(element, lambda one: _points(one, replicate, analysis)),
+    } | {count: int(getattr(element, count).sum()) for count in COUNTS}
+
+
+def _points(
+    element: Element, replicate: Replicates, analysis: AnalysisTable
+) -> dict[str, dict[str, Any]]:
+    """Return the quantiles, B-lives and probabilities of an element."""
+    within = _of(replicate, element.present)
+    return {
         "quantiles": {
             repr(probability): quantile_entry(element, probability, within)
             for probability in analysis.quantiles
         },
-        "tolerance": _tolerance(element, replicate, analysis),
         "thresholds": {
             repr(threshold): _threshold(element, threshold, replicate)
             for threshold in analysis.thresholds.get(element.output, ())
         },
         "b_lives": b_lives(element, replicate) if element.kind == "lifetime" else {},
-    } | {count: int(getattr(element, count).sum()) for count in COUNTS}
+    }
+
+
+def _moments(element: Element, within: Replicates) -> dict[str, Any]:
+    values = element.at_least
+    if not len(values) or element.never.any() or element.censored.any():
+        nothing = _ends(intervals.UNKNOWN)
+        numbers = {"mean": None, "mean_interval": nothing, "sd": None, "sd_interval": nothing}
+        return numbers | {"tail": None, "reasons": {}}
+    found = moments(values, within)
+    return {
+        "mean": _plain(found.mean),
+        "mean_interval": _ends(found.mean_interval),
+        "sd": _plain(found.sd),
+        "sd_interval": _ends(found.sd_interval),
+        "tail": found.tail and found.tail._asdict(),
+        "reasons": found.reasons,
+    }
 
 
 def _tolerance(
@@ -175,12 +212,14 @@ def _fitted(element: Element, fits: bool) -> bool:
 def _between(
     element: Element, codes: NDArray[np.integer] | None, replicate: Replicates
 ) -> dict[str, Any]:
-    target = next(targets([element], {}))
+    target = number_of(element)
     if codes is None or target.refused:
         return {}
     value, interval = between_share(target.values, codes, replicate)
+    if not np.isfinite(value):
+        return {}
     ends = {"low": _plain(interval.low), "high": _plain(interval.high)}
-    return {"between_regimes": {"value": _plain(value)} | ends} if np.isfinite(value) else {}
+    return {"between_regimes": {"value": _plain(value)} | ends | {"of": target.name}}
 
 
 def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:
@@ -227,6 +266,10 @@ def _share(hits: Mask, replicate: Replicates) -> dict[str, Any]:
     return {"value": _plain(value), "low": _plain(interval.low), "high": _plain(interval.high)}
 
 
+def _ends(interval: Interval) -> dict[str, float | None]:
+    return {"low": _plain(interval.low), "high": _plain(interval.high)}
+
+
 def _of(replicate: Replicates, rows: Mask) -> Replicates:
     return None if replicate is None else replicate[rows]
 
@@ -242,6 +285,7 @@ def _notes(ds: xr.Dataset) -> list[str]:
     notes = []
     if design.until is not None:
         notes.append(stopping.sentence(design, ds))
-    if ds.attrs["design"] != "monte-carlo" and ds.attrs["replicates"] == 1:
-        notes.append(NO_INTERVALS.format(design=ds.attrs["design"]))
+    if not are_independent(ds) and ds.attrs["replicates"] == 1:
+        reason = NO_INTERVALS if DESIGNS[ds.attrs["design"]].draw else NOT_STATED
+        notes.append(reason.format(design=ds.attrs["design"]))
     return notes

@@ -13,12 +13,15 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.analysis.control_variate import Controlled, controlled_mean, controlled_share
+from uq.analysis.control_variate import FEWEST, Controlled, controlled_mean, controlled_share
+from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.statistics import event
 from uq.errors import InputError
+from uq.exact_shares import FEW
 from uq.inputs.values import read_settings
-from uq.intervals import Interval, mean_interval, share_interval
+from uq.intervals import Interval, share_interval
 from uq.literals import toml
+from uq.moments import moments
 from uq.rows.elements import Element, elements_of, shown_outputs
 from uq.rows.evaluate import evaluate
 from uq.rows.results import build_rows
@@ -86,7 +89,9 @@ def with_twin(ds: xr.Dataset, model: str | None = None) -> dict[str, Any]:
     -------
     dict
         ``twin``, ``rows``, ``cheap_rows``, and ``outputs``: element -> estimate -> ``value``,
-        ``low``, ``high``, ``plain`` (the same three) and ``reduction``.
+        ``low``, ``high``, ``plain`` (the same three), ``reduction``, ``note`` where few rows
+        tell, and where rows failed ``failed_low`` and ``failed_high``, of the plain rows. An
+        element whose tail has no variance has no mean here.
     """
     study = study_from_text(ds.attrs["study"], "study of this result", model)
     if not study.analysis.twin:
@@ -120,9 +125,10 @@ def _estimates(
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     present = element.present
     if present.any() and not (element.never | element.censored).any():
-        values, plain = element.values, mean_interval(element.values[present])
-        found = controlled_mean(values, present, *map(_filled, (control, many)))
-        yield "mean", _entry(found, values[present].mean(), plain)
+        alone = moments(element.values[present])
+        if "mean_interval" not in alone.reasons:
+            found = controlled_mean(element.values, present, *map(_filled, (control, many)))
+            yield "mean", _entry(found, alone.mean, alone.mean_interval)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         sides = event(element, threshold)
         kept = ~element.failed
@@ -131,7 +137,21 @@ def _estimates(
         for sign, hits in zip("><", sides, strict=True):
             found = controlled_share(hits, kept, _sized(control), _sized(many))
             plain = share_interval(hits[kept])
-            yield f"P({sign}{threshold!r})", _entry(found, hits[kept].mean(), plain)
+            lost = failed_share_bounds(hits, element.failed, None)
+            few = few_hits(int(hits[kept].sum()), int(kept.sum()))
+            yield f"P({sign}{threshold!r})", _entry(found, hits[kept].mean(), plain) | lost | few
+
+
+def few_hits(hits: int, rows: int) -> dict[str, str]:
+    """Return a ``note`` on a probability that few rows tell, or nothing."""
+    if min(hits, rows - hits) >= FEW:
+        return {}
+    seen = f"{hits} of {rows} rows" if hits <= rows - hits else f"all but {rows - hits} rows"
+    if min(hits, rows - hits) < FEWEST:
+        told = f"the twin is not used below {FEWEST}; these are the plain rows"
+    else:
+        told = f"below {FEW} the interval is exact, and conservative"
+    return {"note": f"{seen} lie there: {told}"}
 
 
 def _entry(found: Controlled, plain: float, interval: Interval) -> dict[str, Any]:

@@ -11,15 +11,20 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import stats
 
+from uq.designs.table import DESIGNS
+from uq.indices.targets import targets
+from uq.intervals import is_within
 from uq.rows.elements import (
     Element,
     Floats,
     analysis_of,
+    are_independent,
     elements_of,
     flags,
     independent_rows,
     shown_outputs,
 )
+from uq.tails import lacks_variance
 
 _ENOUGH_ROWS = 8
 _LEVEL = 0.975
@@ -44,7 +49,7 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
     samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
     labels = [label for _, label in flags(pilot["block"])]
     rows = samples * replicates * (2 if "A" in labels else 1)
-    factor = _factor(pilot.attrs["design"], replicates)
+    factor = _factor(are_independent(pilot), replicates)
     groups = _groups(pilot, len(labels))
     found = {}
     for whole, element in zip(
@@ -63,14 +68,14 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
                 for t in analysis.thresholds.get(element.output, ())
             },
         }
-        if "A" in labels:
+        if DESIGNS[pilot.attrs["design"]].crossed:
             found[element.name] |= _indices(whole, groups, labels, samples * replicates, factor)
     return found
 
 
-def _factor(design: str, replicates: int) -> float | None:
+def _factor(independent: bool, replicates: int) -> float | None:
     """Return half the width of an interval in standard errors."""
-    if design == "monte-carlo":
+    if independent:
         return float(stats.norm.ppf(_LEVEL))
     return float(stats.t.ppf(_LEVEL, replicates - 1)) if replicates > 1 else None
 
@@ -78,13 +83,13 @@ def _factor(design: str, replicates: int) -> float | None:
 def _mean(element: Element, rows: int, factor: float | None) -> float | None:
     values = element.at_least
     unbounded = element.never.any() or element.censored.any()
-    if factor is None or unbounded or len(values) < _ENOUGH_ROWS:
+    if factor is None or unbounded or len(values) < _ENOUGH_ROWS or lacks_variance(values):
         return None
     return float(2 * factor * values.std(ddof=1) / np.sqrt(rows))
 
 
 def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> float | None:
-    if factor is None or len(values) < _ENOUGH_ROWS:
+    if factor is None or len(values) < _ENOUGH_ROWS or not is_within(p, rows):
         return None
     m = len(values)
     spread = np.sqrt(p * (1 - p))
@@ -117,13 +122,10 @@ def _indices(
     element: Element, groups: NDArray[np.intp], labels: list[str], n: int, factor: float | None
 ) -> dict[str, float | None]:
     """Return the widest interval of first-order and of total indices, as of independent groups."""
-    values = element.values
-    if element.kind == "lifetime":  # whose indices are those of its rate
-        with np.errstate(divide="ignore"):
-            values = 1.0 / values
-    y = values[groups]
+    target = next(targets([element], {}))
+    y = target.values[groups]
     y = y[np.isfinite(y).all(axis=1)]
-    if factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
+    if target.refused or factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
         return {"S1": None, "ST": None}
     block = dict(zip(labels, ((y - y.mean()) / y.std()).T, strict=True))
     mixed = [value for label, value in block.items() if label.startswith("AB_")]

@@ -9,9 +9,9 @@ import sys
 from types import FrameType
 from typing import Any, NoReturn
 
+from uq.cli import streams
 from uq.errors import InputError, RunError, nearest
 from uq.interrupts import undo_all
-from uq.literals import plain_line
 from uq.threads import SINGLE_THREADED
 
 _when_interrupted = "interrupted"
@@ -23,17 +23,17 @@ def main() -> NoReturn:
         signal.signal(number, _stop)
     for name, value in SINGLE_THREADED.items():
         os.environ.setdefault(name, value)
+    streams.watch()
     try:
         code = _run(sys.argv[1:])
-        sys.stdout.flush()
     except (InputError, RunError) as error:
-        for line in getattr(error, "lines", (str(error),)):
-            print(plain_line(line), file=sys.stderr)
+        streams.complain(*getattr(error, "lines", (str(error),)))
         code = 2 if isinstance(error, InputError) else 1
-    except BrokenPipeError:  # whoever read this output, such as "head", has had enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except OSError:
+        if not streams.are_lost():
+            raise
         code = 1
-    sys.exit(code)
+    sys.exit(streams.finish(code))
 
 
 def say_when_interrupted(sentence: str) -> None:

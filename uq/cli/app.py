@@ -56,8 +56,22 @@ Mixed = Annotated[
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
 
 
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        print(f"vibrolife {version('vibrolife')}")
+        raise typer.Exit
+
+
 @app.callback(invoke_without_command=True)
-def begin(context: typer.Context) -> None:
+def begin(
+    context: typer.Context,
+    version: Annotated[
+        bool,
+        typer.Option("--version", is_eager=True, callback=_show_version, help="Show the version."),
+    ] = False,
+) -> None:
     """Probabilistic lifetime and sensitivity studies of vibro-impact machines."""
     if context.invoked_subcommand is None:
         from uq.cli.guide import guide
@@ -266,7 +280,10 @@ def summary(
 @app.command()
 def sensitivity(
     result: ResultFile,
-    output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    output: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Only this output, or of it log(NAME), rank(NAME), ..."),
+    ] = None,
     method: Annotated[str | None, typer.Option(metavar="M", help="Default: the study's.")] = None,
     regime: Regime = None,
     json: Json = False,

@@ -11,7 +11,7 @@ from uq.cli import say_when_interrupted
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.errors import InputError
 from uq.study.definition import load_study
-from uq.wording import estimated
+from uq.wording import estimated, failed_interval
 
 _SHOWN = 6  # sizes of each estimate on a terminal
 
@@ -53,9 +53,12 @@ def _plain(ds: xr.Dataset) -> dict[str, Any]:
     }
     names = {"value": "probability", "low": "low", "high": "high"}
     found["probability"] = {key: _finite(float(ds[name])) for key, name in names.items()}
+    if np.isfinite(ds["failed_high"]):
+        found["probability"]["failed_high"] = float(ds["failed_high"])
     found["estimates"] = ds["estimate"].values.tolist()
     found |= {name: int(ds[name]) for name in ("rows", "failed", "undefined")}
     if "typical" in ds:
+        found["ended"] = ds["ended"].values.tolist()
         found["typical"] = _by_parameter(ds["typical"])
     else:
         found["design_points"] = [
@@ -85,6 +88,7 @@ def _show(ds: xr.Dataset) -> None:
         [
             ("probability", number(probability["value"])),
             ("95 % interval", f"{number(probability['low'])} to {number(probability['high'])}"),
+            *_failed_inside(probability),
             ("rows", str(found["rows"])),
             ("failed", str(found["failed"] or "")),
             ("undefined", str(found["undefined"] or "")),
@@ -100,6 +104,11 @@ def _show(ds: xr.Dataset) -> None:
     for note in found["notes"]:
         console.print()
         paragraph(note, indent=0)
+
+
+def _failed_inside(probability: dict[str, Any]) -> list[tuple[str, str]]:
+    worst = probability.get("failed_high")
+    return [] if worst is None else [("with failed rows inside", f"up to {number(worst)}")]
 
 
 def twin(result: Path, model: str | None, json: bool) -> None:
@@ -131,6 +140,11 @@ def twin(result: Path, model: str | None, json: bool) -> None:
             ],
             header=("", "value", "95 % interval", "without twin", "worth"),
         )
+        for label, entry in estimates.items():
+            if note := entry.get("note"):
+                paragraph(f"{estimated(label)}: {note}", indent=2)
+            if worst := failed_interval(entry):
+                paragraph(f"{estimated(label)}, with failed rows at best and worst: {worst}", 2)
     console.print()
     per_row = 1 + found["cheap_rows"] / found["rows"]
     paragraph(

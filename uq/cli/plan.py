@@ -75,7 +75,8 @@ def _show_widths(widths: dict[str, Any]) -> None:
         grid(others)
     if any(entry["mean"] is None for entry in widths.values()):
         console.print()
-        paragraph("A dash: not from so few rows, or not from this design.", indent=0)
+        told = "A dash: not from so few rows, not from this design, or the tail is too heavy."
+        paragraph(told, indent=0)
 
 
 def _widths(widths: dict[str, Any]) -> Iterator[tuple[str, ...]]:

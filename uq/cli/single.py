@@ -1,6 +1,5 @@
 """What ``uq simulate`` does."""
 
-import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ from uq.cli.progress import say_compiling
 from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.errors import InputError
-from uq.literals import read_number
+from uq.literals import read_number, read_toml
 from uq.places import file_behind
 from uq.rows import results
 from uq.rows.elements import elements_of
@@ -156,8 +155,8 @@ def literal(text: str) -> tuple[str, Any]:
     if not equals:
         raise InputError(f"--setting {text}: write it as NAME=VALUE")
     try:
-        parsed = tomllib.loads(f"value = {value}", parse_float=read_number)
-    except tomllib.TOMLDecodeError:
+        parsed = read_toml(f"value = {value}")
+    except ValueError:
         return name.strip(), value.strip()
     except OverflowError as error:
         raise InputError(f"--setting {text}: {error}") from None

@@ -34,13 +34,15 @@ def check(path: str, model: str | None) -> None:
     factors = {"replicates": design.replicates, "rows each": group_size(study)}
     parts = [f"{design.samples} samples"]
     parts += [f"{number} {name}" for name, number in factors.items() if number > 1]
+    stated = ", stated to be independent" * design.independent
     dependent = study.dependence is not None
     feeds = ", ".join(DESIGNS[design.method].feeds_with(dependent))
     grid(
         [
             ("model", f"{study.model.name}, version {study.model.version}"),
-            ("design", f"{design.method}: {DESIGNS[design.method].meaning}"),
+            ("design", f"{design.method}: {DESIGNS[design.method].meaning}{stated}"),
             ("rows", f"{rows(study)} = {' x '.join(parts)}" if parts[1:] else str(rows(study))),
+            *_of_random(study),
             ("outputs", ", ".join(study.analysis.outputs)),
             ("sensitivity", f"{feeds} can be had from this design"),
             ("result", str(runner.output_path(study))),
@@ -51,6 +53,14 @@ def check(path: str, model: str | None) -> None:
     ties = [(name, f"equals {tied.equals}", "") for name, tied in study.tied.items()]
     grid(laws + ties, header=("parameter", "distribution", "unit"))
     _show_realised(study)
+
+
+def _of_random(study: Study) -> list[tuple[str, str]]:
+    design = DESIGNS[study.design.method]
+    if not study.random or not design.shares_seeds:
+        return []
+    more = "; one more row of each tells the share of noise" if design.crossed else ""
+    return [("seeds", f"the model is random: rows that are compared share a seed{more}")]
 
 
 def _unit(study: Study, name: str) -> str:
@@ -117,12 +127,12 @@ def carried_out(
 ) -> tuple[xr.Dataset, str]:
     """Show how a run goes on; return its result and a line on what was done."""
     began = time.monotonic()
-    computed = 0
+    computed = found = 0
     with progress.shown(quiet) as show:
 
         def report(so_far: Progress) -> None:
-            nonlocal computed
-            computed = so_far.done - so_far.found
+            nonlocal computed, found
+            computed, found = so_far.done - so_far.found, so_far.found
             if so_far.done:
                 say_when_interrupted(
                     f"interrupted after {so_far.done} of {so_far.total} rows, kept in "
@@ -136,7 +146,9 @@ def carried_out(
 
         say_when_interrupted("interrupted; nothing was written")
         ds = action(progress=report, say=say)
-    return ds, f"{target}: {computed} rows in {time.monotonic() - began:.1f} s"
+    before = f"; {found} were there already" if found else ""
+    seconds = time.monotonic() - began
+    return ds, f"{target}: {computed} rows computed in {seconds:.1f} s{before}"
 
 
 def end(

@@ -7,10 +7,12 @@ import xarray as xr
 
 from uq.analysis.b_lives import B_LIVES
 from uq.cli.printing import console, grid, heading, paragraph
+from uq.indices.targets import split_name
 from uq.wording import (
     Entry,
     accuracy_not_reached,
     duration,
+    failed_interval,
     index,
     index_interval,
     interval,
@@ -33,16 +35,24 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
         shares = summary["regime"].items()
         grid(
             [
-                (label, number(one["share"]), interval(one), str(one["count"]))
+                (
+                    label,
+                    number(one["share"]),
+                    interval(one),
+                    str(one["count"]),
+                    failed_interval(one),
+                )
                 for label, one in shares
             ],
-            header=("", "share", "95 % interval", "rows"),
+            header=("", "share", "95 % interval", "rows", "with failed rows"),
         )
     for name, output in summary["outputs"].items():
         meaning = ds[name.partition("[")[0]].attrs["long_name"]
         unit = "" if output["units"] == "1" else f" [{output['units']}]"
         heading(f"\n{name}{unit}", meaning)
         grid(_lines(output), header=("", "value", "95 % interval", ""))
+        for reason in dict.fromkeys(output["reasons"].values()):
+            paragraph(reason, indent=2)
         if fits := output.get("fits"):
             _show_fits(fits)
     for note in summary["notes"]:
@@ -61,11 +71,18 @@ def _lines(output: Entry) -> Iterator[Line]:
         return label, known(entry, key), interval(entry), in_words
 
     yield line("mean", {"value": output["mean"], **output["mean_interval"]})
-    yield line("sd", output, "sd")
+    yield line("sd", {"value": output["sd"], **output["sd_interval"]})
+
+    def failed(entry: Entry) -> Iterator[Line]:
+        if worst := failed_interval(entry):
+            yield "  with failed rows", "", worst, ""
+
     for probability, entry in output["quantiles"].items():
         yield line(f"quantile {probability}", entry)
+        yield from failed(entry)
     for name, entry in output["b_lives"].items():
         yield line(name, entry)
+        yield from failed(entry)
     if any("assumes" in entry for entry in output["b_lives"].values()):
         yield "", "B-lives suppose", _ASSUMES, ""
     if bounds := output["tolerance"]:
@@ -74,15 +91,19 @@ def _lines(output: Entry) -> Iterator[Line]:
         if bounds["lower"] is None and bounds["upper"] is None:
             yield "", f"needs {bounds['rows_needed']} rows", "", ""
     for threshold, entry in output["thresholds"].items():
-        yield line(f"P(> {number(float(threshold))})", entry["above"], time=False)
-        yield line(f"P(< {number(float(threshold))})", entry["below"], time=False)
+        for sign, side in ((">", "above"), ("<", "below")):
+            yield line(f"P({sign} {number(float(threshold))})", entry[side], time=False)
+            yield from failed(entry[side])
         if reason := entry.get("reason"):
             yield "", reason, "", ""
             guess = entry["kaplan_meier"]
             yield line(f"P(< {number(float(threshold))}), if", guess["below"], time=False)
+            yield from failed(guess["below"])
             yield "", _ASSUMES, "", ""
     if split := output.get("between_regimes"):
-        yield "variance between regimes", variance_between(split), interval(split), ""
+        form, *_ = split_name(split["of"])
+        of = f"of its {form}" if form else ""
+        yield "variance between regimes", variance_between(split), interval(split), of
     for count in ("never", "censored", "undefined", "failed"):
         if output[count]:
             yield count, str(output[count]), "", "rows"
@@ -94,14 +115,34 @@ _ASSUMES = "censoring says nothing of the life left"
 
 
 def _show_fits(fits: Mapping[str, Entry]) -> None:
-    """Print the laws that fit, with the lives they give, and why others do not."""
+    """Print the laws that fit side by side, with the lives they give, and why others do not."""
     for law, fit in fits.items():
         if refusal := fit.get("refused"):
             paragraph(f"{law}: {refusal}", indent=2)
-            continue
-        numbers = fit["parameters"] | {name: fit[name] for name in B_LIVES}
-        heading(f"  {law}", f"fits {fit['rows']} rows, p = {fit['p_value']:.2g}")
-        grid([(name, number(one["value"]), interval(one)) for name, one in numbers.items()])
+    accepted = {law: fit for law, fit in fits.items() if "refused" not in fit}
+    if not accepted:
+        return
+    names = dict.fromkeys(name for fit in accepted.values() for name in fit["parameters"])
+    lines = [("p of the test", *(cell for fit in accepted.values() for cell in _p_value(fit)))]
+    lines += [(name, *_side_by_side(accepted, name)) for name in names]
+    for name in B_LIVES:
+        extrapolated = any(fit[name]["extrapolated"] for fit in accepted.values())
+        label = f"{name}, extrapolated" if extrapolated else name
+        lines.append((label, *_side_by_side(accepted, name)))
+    grid(lines, header=("", *(cell for law in accepted for cell in (law, "95 % interval"))))
+    assumed = next(iter(accepted.values()))["assumes"]
+    paragraph(f"The numbers of a fitted law assume {assumed}.", indent=2)
+
+
+def _p_value(fit: Entry) -> tuple[str, str]:
+    return f"{fit['p_value']:.2g}", ""
+
+
+def _side_by_side(fits: Mapping[str, Entry], name: str) -> Iterator[str]:
+    """Yield value and interval of one number of each law; nothing of a law without it."""
+    for fit in fits.values():
+        one = (fit["parameters"] | fit).get(name)
+        yield from ("", "") if one is None else (number(one["value"]), interval(one))
 
 
 def _example(ds: xr.Dataset, status: str) -> str:
@@ -123,6 +164,9 @@ def show_sensitivity(found: Entry) -> None:
         for table in (kinds, pairs):
             if table:
                 grid(_ranked(table, output.get("dummy", {})), header=_header(table))
+        if noise := output.get("noise"):
+            share = (index(noise, "value", "ST"), index_interval(noise, "ST"))
+            grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
         for note in output["notes"]:
             paragraph(note, indent=2)
 
@@ -147,3 +191,7 @@ def _ranked(table: Mapping[str, Any], dummy: Mapping[str, float]) -> Iterator[li
     if dummy:
         cells = ((index(dummy, kind, kind), "") for kind in table)
         yield ["(an input without effect)", *(text for pair in cells for text in pair)]
+    if many := {kind: dummy.get(f"{kind}_any") for kind in table if f"{kind}_any" in dummy}:
+        cells = ((index(many, kind, kind) if kind in many else "", "") for kind in table)
+        label = f"(largest of {len(last)} such inputs)"
+        yield [label, *(text for pair in cells for text in pair)]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uq.designs import seeds
 from uq.designs.curves import LEAST_POINTS, fast_curves, random_balance
 from uq.designs.sequences import halton, latin_hypercube, monte_carlo, paths, sobol
 from uq.designs.streams import Points
@@ -16,6 +17,9 @@ from uq.designs.trajectories import morris_trajectories, optimised_trajectories
 
 MAX_SAMPLES = 2**30
 """Points of one replicate: what the 30 bits of a Sobol' sequence can tell apart."""
+
+NOISE = "noise"
+"""The block of a crossed design of a random model that has the inputs of A and the seed of B."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +44,10 @@ class Design:
     independent : bool
         Whether rows are independent, which formulas for confidence and tolerance bounds need.
     crossed : bool
-        Whether each point becomes a group of rows A, AB_1 .. AB_d, (BA_1 .. BA_d,) B.
+        Whether each point becomes a group of rows A, AB_1 .. AB_d, (BA_1 .. BA_d,) B, and of a
+        random model `NOISE`.
+    shared_seeds : callable
+        Which rows of a random model share a seed; see `uq.designs.seeds`.
     labels : callable or None
         ``labels(parameters)`` -> the names of the rows of a group, where a design draws groups.
     follows_laws : bool
@@ -56,17 +63,19 @@ class Design:
     power_of_two: bool = False
     independent: bool = False
     crossed: bool = False
+    shared_seeds: seeds.Rule = seeds.own
     labels: Callable[[tuple[str, ...]], tuple[str, ...]] | None = None
     follows_laws: bool = True
     least: int = 1
 
-    def blocks(self, d: int, second_order: bool) -> int:
+    @property
+    def shares_seeds(self) -> bool:
+        """Whether rows of a random model share seeds."""
+        return self.shared_seeds is not seeds.own
+
+    def blocks(self, d: int, second_order: bool, random: bool = False) -> int:
         """Return the number of rows in a group."""
-        if self.labels is not None:
-            return len(self.labels(("",) * d))
-        if not self.crossed:
-            return 1
-        return 2 * d + 2 if second_order else d + 2
+        return len(block_names(self, ("",) * d, second_order, random))
 
     def feeds_with(self, dependent: bool) -> tuple[str, ...]:
         """Return the methods it feeds, where the inputs are dependent or not."""
@@ -82,6 +91,7 @@ class Design:
         second_order: bool,
         start: int,
         stop: int,
+        random: bool = False,
     ) -> Points:
         """Draw the groups start..stop of every replicate.
 
@@ -95,7 +105,7 @@ class Design:
             points = self.draw(seed, replicates, d, samples, start, stop)
             return points.reshape(stop - start, replicates, self.blocks(d, False), d)
         points = self.draw(seed, replicates, 2 * d, samples, start, stop)
-        return cross(points[..., :d], points[..., d:], second_order)
+        return cross(points[..., :d], points[..., d:], second_order, random)
 
     def size_problem(self, samples: int) -> str | None:
         """Say why `samples` is not a legal size, or return None."""
@@ -115,7 +125,7 @@ class Design:
         return f"cannot be extended; designs that can: {able}"
 
 
-def cross(a: Points, b: Points, second_order: bool) -> Points:
+def cross(a: Points, b: Points, second_order: bool, random: bool = False) -> Points:
     """Exchange the columns of two samples one at a time (Saltelli 2002), in SALib's order.
 
     Parameters
@@ -123,11 +133,13 @@ def cross(a: Points, b: Points, second_order: bool) -> Points:
     a, b : ndarray, shape (..., d)
     second_order : bool
         Whether to add the blocks BA_i.
+    random : bool
+        Whether to add A once more, for the noise of a random model.
 
     Returns
     -------
     ndarray, shape (..., blocks, d)
-        A; AB_i, which is A with column i of B; BA_i, the converse; B.
+        A; AB_i, which is A with column i of B; BA_i, the converse; B; A.
 
     References
     ----------
@@ -139,17 +151,20 @@ def cross(a: Points, b: Points, second_order: bool) -> Points:
     blocks = [a, np.where(one_column, b, a)]
     if second_order:
         blocks.append(np.where(one_column, a, b))
-    return np.concatenate([*blocks, b], axis=-2)
+    return np.concatenate([*blocks, b, *([a] * random)], axis=-2)
 
 
-def block_names(design: Design, parameters: tuple[str, ...], second_order: bool) -> tuple[str, ...]:
+def block_names(
+    design: Design, parameters: tuple[str, ...], second_order: bool, random: bool = False
+) -> tuple[str, ...]:
     """Return the name of each block of a group, in row order; ``("sample",)`` without groups."""
     if design.labels is not None:
         return design.labels(parameters)
     if not design.crossed:
         return ("sample",)
     mirrored = [f"BA_{name}" for name in parameters] if second_order else []
-    return ("A", *(f"AB_{name}" for name in parameters), *mirrored, "B")
+    noise = [NOISE] if random else []
+    return ("A", *(f"AB_{name}" for name in parameters), *mirrored, "B", *noise)
 
 
 def _steps(parameters: tuple[str, ...]) -> tuple[str, ...]:
@@ -187,12 +202,14 @@ DESIGNS = {
         ("sobol",),
         power_of_two=True,
         crossed=True,
+        shared_seeds=seeds.of_ends,
     ),
     "morris": Design(
         "trajectories that change one input at a time, for screening with few rows",
         morris_trajectories,
         ("morris",),
         append_only=False,
+        shared_seeds=seeds.of_groups,
         labels=_steps,
         follows_laws=False,
         least=2,
@@ -202,6 +219,7 @@ DESIGNS = {
         optimised_trajectories,
         ("morris",),
         append_only=False,
+        shared_seeds=seeds.of_groups,
         labels=_steps,
         follows_laws=False,
         least=2,
@@ -210,6 +228,7 @@ DESIGNS = {
         "paths from one independent row to another, for Shapley effects",
         paths,
         ("shapley",),
+        shared_seeds=seeds.of_groups,
         labels=_places,
     ),
     "fast": Design(
@@ -217,6 +236,7 @@ DESIGNS = {
         fast_curves,
         ("fast",),
         append_only=False,
+        shared_seeds=seeds.of_curves,
         labels=_curves,
         least=LEAST_POINTS,
     ),

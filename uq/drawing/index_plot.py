@@ -19,6 +19,7 @@ from uq.drawing.figure import (
 )
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
+from uq.indices.targets import FORMS, split_name
 from uq.rows.elements import named_elements
 from uq.time_units import time_unit
 
@@ -36,7 +37,7 @@ MEANING = {
 
 
 def _is_bar(kind: str, value: Any) -> bool:
-    return isinstance(value, dict) and kind not in ("S2", "dummy")
+    return isinstance(value, dict) and kind not in ("S2", "dummy", "noise")
 
 
 def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:
@@ -98,9 +99,10 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
         value, ends = table[:, 0], table[:, 1:].T
         axes.barh(y, value, thickness, color=COLOURS[i], label=MEANING.get(kind, kind))
         axes.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
-    for limit in entry.get("dummy", {}).values():
-        label = "largest of inputs that play no part"
-        axes.axvline(limit, color="black", ls="--", lw=0.8, label=label)
+    for kind, limit in entry.get("dummy", {}).items():
+        of_all = kind.endswith("_any")
+        label = "the largest of as many" if of_all else "largest of inputs that play no part"
+        axes.axvline(limit, color="black", ls=":" if of_all else "--", lw=0.8, label=label)
     axes.axvline(0, color="black", lw=0.6)
     # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
     shares = "mu_star" not in kinds
@@ -111,7 +113,9 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
     axes.set_ylim(0, lines.sum())
     roomy(axes, ticks=3)  # the labels take most of the width
     known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
-    axis = "Sensitivity index [1]" if shares else "Effect, in the unit of the output"
+    form, *_ = split_name(name)
+    unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect, in the unit of the output"
+    axis = "Sensitivity index [1]" if shares else unit
     axes.set_xlabel(axis + known * ",\nwith 95 % interval")
     figure.suptitle(subject(ds, name), x=0.01, ha="left", fontsize=8)
     legend(axes)
@@ -125,17 +129,16 @@ def _named(parameter: xr.DataArray) -> str:
 
 def subject(ds: xr.Dataset, name: str) -> str:
     """Return in words what the indices of a name of `uq.indices.sensitivities` are about."""
-    inside = name.removeprefix("rate(").removeprefix("P(").removesuffix(")")
+    form, inside, threshold = split_name(name)
     category, _, label = inside.partition("=")
     if category in ds and ds[category].attrs.get("kind") == "category":
         return sentence(f"whether it is {label}: {ds[category].attrs['long_name']}", width=56)
-    key, _, threshold = inside.partition("<")
-    (element,) = named_elements(ds, key)
+    (element,) = named_elements(ds, inside)
     place = place_in_words(element, ds[element.output])
     words = element.meaning + (f", {place}" if place else "")
     if threshold:
         unit = time_unit(float(threshold))
         words = f"whether it ends before {float(threshold) / unit.seconds:g} {unit.name}: {words}"
-    elif name.startswith("rate("):
-        words = f"rate, 1/time: {words}"
+    elif form:
+        words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
     return sentence(words, width=56)

@@ -37,6 +37,7 @@ from uq.indices.independent_inputs import independent_inputs
 from uq.indices.regional import ks_distances
 from uq.indices.targets import RefusedError
 from uq.rows.elements import Element, Floats, independent_rows, named_elements, replicates_of
+from uq.tails import lacks_variance
 
 _MOST_INPUTS = 3
 _MOST_POINTS = 3000
@@ -121,7 +122,7 @@ def _conditional(
     """Draw the mean within slices of the input, or the median where the mean says little."""
     present = element.present
     x, values = x[present], element.at_most / per
-    medians = wide or not np.isfinite(values).all()
+    medians = wide or not np.isfinite(values).all() or lacks_variance(values)
     count = min(_MOST_BINS, len(x) // _IN_BIN)
     if count < 2:
         return

@@ -1,6 +1,6 @@
 """Which inputs an output's scatter comes from: every method, for a result as a whole."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,13 +10,23 @@ from numpy.typing import NDArray
 from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS
 from uq.errors import InputError, nearest
 from uq.indices.fast import curves, fast_indices
+from uq.indices.few_rows import few_hits
 from uq.indices.given_data import given_data_indices
 from uq.indices.groups import whole_groups
 from uq.indices.independent_inputs import are_dependent, independent_inputs, notes_on_inputs
 from uq.indices.morris import morris_indices, trajectories
 from uq.indices.shapley import paths, shapley_indices
 from uq.indices.sobol import crossed, sobol_indices
-from uq.indices.targets import Index, Indices, RefusedError, Target, category_targets, targets
+from uq.indices.targets import (
+    Index,
+    Indices,
+    RefusedError,
+    Target,
+    all_targets,
+    category_targets,
+    split_name,
+    targets,
+)
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.in_regime import within_regime
 
@@ -27,6 +37,23 @@ _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
     "fast": (curves, fast_indices),
 }
 """Methods whose rows belong together: what finds them in a result, and the estimate from them."""
+
+
+_AT_ONE_SEED = (
+    "shares of the variance at one seed, to which noise that does not depend on the inputs adds"
+    " nothing"
+)
+_WITH_NOISE = {
+    "sobol": (
+        "the model is random, and the rows of a group share a seed: S1 holds no noise, ST holds"
+        " what noise does together with the input, and 'noise' is the share of the variance that"
+        " remains once all inputs are known"
+    ),
+    "morris": "the model is random, and the rows of a trajectory share a seed: no effect is noise",
+    "shapley": f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
+    "fast": f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
+}
+"""What a method whose rows share seeds makes of noise."""
 
 
 def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
@@ -43,7 +70,7 @@ def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
 def sensitivities(
     ds: xr.Dataset,
     method: str | None = None,
-    output: str | None = None,
+    output: str | Sequence[str] | None = None,
     regime: str | None = None,
 ) -> dict[str, Any]:
     """Estimate sensitivity indices as plain data, ready for JSON.
@@ -54,10 +81,14 @@ def sensitivities(
         A result.
     method : str, optional
         By default the first of `methods`.
-    output : str, optional
+    output : str or sequence of str, optional
         An output, one element of it, or one of the names that this function returns; by default
         the outputs that the study wants to see. Of a category, such as the regime, the targets
-        are ``P(regime=label)``: whether a row is in each that occurs.
+        are ``P(regime=label)``: whether a row is in each that occurs. Of a lifetime they are its
+        logarithm, or its rank where rows never end or are censored, and ``P(life<t)``; its rate
+        1/T is there as ``rate(life)``. A value whose tail is heavy stands by default as its
+        logarithm or rank, and under its own name as it is. Of several names those are left out
+        that mean nothing here.
     regime : str, optional
         Use the rows in this regime only. Among them the inputs depend on each other.
 
@@ -68,7 +99,8 @@ def sensitivities(
         groups) counts as dropped if any output with indices lacks it; ``outputs``: name -> ``S1``
         and the like -> parameter -> ``value``, ``low``, ``high``. Each output has its own counts
         and ``notes``, and ``dummy`` where the method has no intervals; one without indices has
-        ``refused``, a sentence.
+        ``refused``, a sentence. From a crossed design of a random model each has ``noise``, with
+        ``value``, ``low``, ``high``: the share of the variance that the inputs leave open.
 
     Raises
     ------
@@ -86,6 +118,8 @@ def sensitivities(
             continue
         for kind, values in one.indices.values.items():
             entry[kind] = {label: _plain(index) for label, index in values.items()}
+        if one.indices.noise is not None:
+            entry["noise"] = _plain(one.indices.noise)
         if one.indices.dummy:
             entry["dummy"] = dict(one.indices.dummy)
         outputs[one.target.name] = entry | {"notes": list(one.indices.notes)}
@@ -114,7 +148,8 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
     xarray.Dataset
         Each index over ``output`` and ``parameter`` (``S2`` over ``pair``), with ``_low`` and
         ``_high``; NaN where there is none. ``dummy_<index>``, ``groups_dropped`` and ``refused``
-        (why there are no indices, or "") over ``output``.
+        (why there are no indices, or "") over ``output``; so is ``noise``, with ``_low`` and
+        ``_high``, where a model is random.
 
     Raises
     ------
@@ -143,6 +178,10 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
         table = np.array([_row(one, kind, list(labels)) for one in found])
         for i, end in enumerate(("", "_low", "_high")):
             data[f"{kind}{end}"] = (("output", dim), table[:, :, i])
+    if any(one.noise for one in estimated):
+        shares = np.array([_noise(one) for one in found])
+        for i, end in enumerate(("", "_low", "_high")):
+            data[f"noise{end}"] = ("output", shares[:, i])
     for kind in estimated[0].dummy if estimated else ():
         data[f"dummy_{kind}"] = ("output", [_dummy(one, kind) for one in found])
     return xr.Dataset(data, coords, {"method": name})
@@ -166,7 +205,7 @@ class _Found(NamedTuple):
 
 
 def _estimate(
-    ds: xr.Dataset, method: str | None, output: str | None, within: bool = False
+    ds: xr.Dataset, method: str | None, output: str | Sequence[str] | None, within: bool = False
 ) -> tuple[str, list[_Found]]:
     why = (
         "within a regime the inputs depend on each other"
@@ -181,18 +220,21 @@ def _estimate(
     find, estimate = _GROUPED.get(method, (None, None))
     design = find(ds) if find else None
     inputs, notes = independent_inputs(ds), tuple(notes_on_inputs(ds))
+    if ds.attrs.get("random") and method in _WITH_NOISE:
+        notes = (*notes, _WITH_NOISE[method])
     found = []
     for target in _chosen(ds, method, output):
         indices: Indices | str
         try:
             if target.refused:
                 raise RefusedError(target.refused)
+            few = few_hits(ds, target)
             if estimate is None:
                 quantiles = _quantiles(target, asked)
                 indices = given_data_indices(method, inputs, target.values, quantiles)
             else:
                 indices = estimate(design, target.values)
-            indices = indices._replace(notes=indices.notes + notes)
+            indices = indices._replace(notes=target.notes + few + indices.notes + notes)
         except RefusedError as refusal:
             indices = str(refusal)
         alone = np.arange(target.values.size)[:, None]
@@ -204,7 +246,7 @@ def _estimate(
 def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
     """Return what quantiles of a target are called: B10 of a life is where its rate is high."""
     if target.element is not None and target.element.kind == "lifetime":
-        return {"B10": 0.9, "B50": 0.5}
+        return {"B10": 0.9 if target.name.startswith("rate(") else 0.1, "B50": 0.5}
     return {f"Q{probability!r}": probability for probability in asked}
 
 
@@ -230,7 +272,7 @@ def _check_method(ds: xr.Dataset, method: str, dependent: str) -> None:
     )
 
 
-def _chosen(ds: xr.Dataset, method: str, output: str | None) -> list[Target]:
+def _chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> list[Target]:
     """Return the targets that a user means, all that suit the method or by name."""
     if output is None:
         found = [
@@ -248,26 +290,40 @@ def _chosen(ds: xr.Dataset, method: str, output: str | None) -> list[Target]:
         if not found:
             raise InputError("none of the outputs is a number: there is nothing to apportion")
         return found
-    # rate(first_time_to_depth[depth=0.00025]) and P(life<1000.0) hold the name of an element.
-    inside = output.removeprefix("rate(").removeprefix("P(").rstrip(")").partition("<")[0]
-    name = inside if "[" in inside else inside.partition("=")[0]
-    found = _targets(ds, name)
-    if output == name:
-        if not found:
-            raise InputError(f"no row has a {name}: there is nothing to apportion")
-        return found
-    chosen = [target for target in found if target.name == output]
-    if not chosen:
-        raise InputError(f"no such output '{output}'{nearest(output, [t.name for t in found])}")
-    return chosen
+    if not isinstance(output, str):
+        return [target for name in output for target in _named(ds, name)]
+    found = _named(ds, output)
+    if not found:
+        _, inside, _ = split_name(output)
+        if output == inside:
+            raise InputError(f"no row has a {output}: there is nothing to apportion")
+        names = [target.name for target in _targets(ds, _output_in(inside), every=True)]
+        raise InputError(f"no such output '{output}'{nearest(output, names)}")
+    return found
 
 
-def _targets(ds: xr.Dataset, name: str) -> list[Target]:
+def _named(ds: xr.Dataset, name: str) -> list[Target]:
+    """Return the targets that a user means by a name; none where it means nothing."""
+    form, inside, _ = split_name(name)
+    found = _targets(ds, _output_in(inside), every=True)
+    if form:
+        return [target for target in found if target.name == name]
+    own = [target for target in found if split_name(target.name)[0] == ""]
+    return own or _targets(ds, name)
+
+
+def _output_in(inside: str) -> str:
+    """Return the output or element that the name of a target is about."""
+    return inside if "[" in inside else inside.partition("=")[0]
+
+
+def _targets(ds: xr.Dataset, name: str, every: bool = False) -> list[Target]:
     """Return the targets of an output or of one element of it."""
     if name in ds and ds[name].attrs.get("kind") == "category" and ds[name].ndim == 1:
         return list(category_targets(ds, name))
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
-    return list(targets(known, analysis_of(ds).thresholds))
+    make = all_targets if every else targets
+    return list(make(known, analysis_of(ds).thresholds))
 
 
 def _plain(index: Index) -> dict[str, float | None]:
@@ -278,6 +334,11 @@ def _row(one: _Found, kind: str, labels: list[str]) -> list[tuple[float, float, 
     if isinstance(one.indices, str):
         return [(np.nan, np.nan, np.nan)] * len(labels)
     return [one.indices.values[kind][label] for label in labels]
+
+
+def _noise(one: _Found) -> Index:
+    known = None if isinstance(one.indices, str) else one.indices.noise
+    return known or Index(np.nan)
 
 
 def _dummy(one: _Found, kind: str) -> float:

@@ -8,6 +8,8 @@ import xarray as xr
 from numpy.typing import NDArray
 from SALib.analyze.sobol import first_order, second_order, total_order
 
+from uq.designs.table import NOISE
+from uq.indices.few_rows import effective_rows, one_more_row, widened
 from uq.indices.groups import grouped_rows, whole_groups
 from uq.indices.targets import Index, Indices, RefusedError
 from uq.intervals import is_constant, scatter_interval
@@ -75,12 +77,21 @@ def sobol_indices(design: Crossed, values: Floats) -> Indices:
     Returns
     -------
     Indices
-        From all groups together; the interval from the same estimate by replicates.
+        From all groups together; the interval from the same estimate by replicates. Where the
+        variance rests on few rows, it is widened by what one more such row might do. Of a random
+        model `noise` is the total index of the seed.
 
     Raises
     ------
     RefusedError
         Too few groups, or a constant output.
+
+    Notes
+    -----
+    Of a random model A and AB_i share a seed, B and BA_i another, and `NOISE` has the inputs of A
+    and the seed of B. S1 and S2 are means of products of rows of both seeds, which noise enters
+    through the variance alone. ST is a mean square of differences at one seed: of the noise it
+    holds what it does together with the input.
 
     References
     ----------
@@ -106,14 +117,24 @@ def sobol_indices(design: Crossed, values: Floats) -> Indices:
         notes.append("no intervals: in some replicates too few rows differ")
     else:
         scatter = [_estimates(design, replicate) for replicate in replicates]
+    independent = y[whole][:, design.ends].ravel()
+    more = one_more_row(independent, kept, len(replicates))
+    if scatter and more:
+        rows = effective_rows(independent) / len(replicates)
+        notes.append(
+            f"the variance rests on some {rows:.2g} rows of each replicate: intervals are widened"
+            " by what one more such row might do, and are conservative"
+        )
     indices: dict[str, dict[str, Index]] = {}
     for (kind, label), value in values_of.items():
         interval = scatter_interval(value, np.array([found[kind, label] for found in scatter]))
+        interval = widened(value, interval, more)
         indices.setdefault(kind, {})[label] = Index(value, *interval)
+    noise = indices.pop(NOISE, {}).get("")
     inert = [name for name in design.parameters if indices["ST"][name].value == 0]
     if inert:
         notes.append(f"no effect in any row, hence no interval: {', '.join(inert)}")
-    return Indices(indices, tuple(notes))
+    return Indices(indices, tuple(notes), noise=noise)
 
 
 def _estimates(design: Crossed, y: Floats) -> dict[tuple[str, str], float]:
@@ -124,6 +145,8 @@ def _estimates(design: Crossed, y: Floats) -> dict[tuple[str, str], float]:
     for name in design.parameters:
         found["S1", name] = first_order(a, block[f"AB_{name}"], b)
         found["ST", name] = total_order(a, block[f"AB_{name}"], b)
+    if NOISE in block:
+        found[NOISE, ""] = total_order(a, block[NOISE], b)
     if any(label.startswith("BA_") for label in block):
         for one, other in combinations(design.parameters, 2):
             found["S2", f"{one},{other}"] = second_order(

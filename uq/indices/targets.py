@@ -1,6 +1,6 @@
 """What goes into every sensitivity method, a target, and what comes out of it, indices."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import NamedTuple
@@ -8,6 +8,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from uq.indices.transforms import (
+    Transformed,
+    heaviness,
+    logarithm,
+    rank,
+    rate,
+)
 from uq.rows.elements import Element, Floats, flags
 from uq.rows.results import failed
 
@@ -19,8 +26,8 @@ class Target:
     Attributes
     ----------
     name : str
-        That of the element; for lifetimes ``rate(element)`` and ``P(element<t)``; for regimes
-        ``P(regime=label)``.
+        That of the element, or ``log(element)``, ``rank(element)``; for lifetimes also
+        ``rate(element)`` and ``P(element<t)``; for regimes ``P(regime=label)``.
     element : Element or None
         None for a category.
     values : ndarray, shape (n,)
@@ -29,6 +36,8 @@ class Target:
         Why there can be no index of it, or "".
     event : bool
         Whether the values say if something happened, 1, or not, 0.
+    notes : tuple of str
+        Sentences on what stands for the output.
     """
 
     name: str
@@ -36,6 +45,7 @@ class Target:
     values: Floats
     refused: str = ""
     event: bool = False
+    notes: tuple[str, ...] = ()
 
 
 class Index(NamedTuple):
@@ -56,12 +66,16 @@ class Indices(NamedTuple):
     notes : tuple of str
         Sentences on what could not be given.
     dummy : dict of str to float
-        Name of the index -> its largest value over inputs that play no part.
+        Name of the index -> its largest value over inputs that play no part; with ``_any``, what
+        the largest of as many such inputs as there are passes once in twenty.
+    noise : Index or None
+        Share of the variance that remains once all inputs are known, where rows tell it.
     """
 
     values: dict[str, dict[str, Index]]
     notes: tuple[str, ...] = ()
     dummy: Mapping[str, float] = MappingProxyType({})
+    noise: Index | None = None
 
 
 class RefusedError(Exception):
@@ -71,7 +85,7 @@ class RefusedError(Exception):
 def targets(
     elements: Iterable[Element], thresholds: Mapping[str, tuple[float, ...]]
 ) -> Iterator[Target]:
-    """Yield the targets of some elements.
+    """Yield the targets of some elements that say most.
 
     Parameters
     ----------
@@ -82,34 +96,113 @@ def targets(
     Yields
     ------
     Target
-        A value or angle is a target as it is. A lifetime T may be infinite or censored; its rate
-        1/T and the event T < t are bounded.
+        What `number_of` gives; of a value whose tail is heavy by `heaviness` the logarithm, where
+        all rows are positive and the tail of the logarithm is not heavy, else the rank. Beside a
+        lifetime T, the events T < t.
+    """
+    for element in elements:
+        number = number_of(element)
+        why = heaviness(number.values) if element.kind == "value" else ""
+        yield _lighter(element, why) if why else number
+        yield from _events(element, thresholds)
+
+
+def number_of(element: Element) -> Target:
+    """Return one number per row that moments can be taken of.
+
+    A value or angle is such a number. A lifetime stands as its logarithm where every row's life is
+    finite, uncensored and positive, else as its rank.
+    """
+    if element.kind != "lifetime":
+        return Target(element.name, element, element.values)
+    found = _transformed(element, "log")
+    return _transformed(element, "rank") if found.refused else found
+
+
+def all_targets(
+    elements: Iterable[Element], thresholds: Mapping[str, tuple[float, ...]]
+) -> Iterator[Target]:
+    """Yield every target of some elements that can be asked for by name; see `targets`.
+
+    Yields
+    ------
+    Target
+        A value or angle as it is; the logarithm and the rank of a value or lifetime; of a lifetime
+        T also the rate 1/T and the events T < t.
     """
     for element in elements:
         if element.kind != "lifetime":
-            yield Target(element.name, element, element.values)
-            continue
-        yield _rate(element)
+            yield _plain(element)
+        if element.kind != "angle":
+            yield _transformed(element, "log")
+            yield _transformed(element, "rank")
+        if element.kind == "lifetime":
+            yield _transformed(element, "rate")
+        yield from _events(element, thresholds)
+
+
+_TRANSFORMS: dict[str, Callable[[Element], Transformed]] = {
+    "log": logarithm,
+    "rank": rank,
+    "rate": rate,
+}
+"""Name -> what it makes of an element."""
+
+FORMS = {"log": "logarithm", "rank": "rank", "rate": "inverse"}
+"""The same in words."""
+
+
+def split_name(name: str) -> tuple[str, str, str]:
+    """Split the name of a target into what is taken of an element, the element, and its threshold.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    tuple of str
+        ``("log", "life[depth=0.5]", "")`` of ``log(life[depth=0.5])``, ``("P", "life", "1000.0")``
+        of ``P(life<1000.0)``, ``("P", "regime=fast", "")`` of ``P(regime=fast)``, ``("", "y", "")``
+        of ``y``.
+    """
+    for form in (*_TRANSFORMS, "P"):
+        if name.startswith(f"{form}(") and name.endswith(")"):
+            inside, _, threshold = name[len(form) + 1 : -1].partition("<")
+            return form, inside, threshold
+    return "", name, ""
+
+
+def _transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Target:
+    values, refused = _TRANSFORMS[form](element)
+    if form == "rank" and (top := int((element.never | element.censored).sum())):
+        notes += (f"{top} rows that never end or are censored share the highest rank",)
+    return Target(f"{form}({element.name})", element, values, refused, notes=notes)
+
+
+def _lighter(element: Element, why: str) -> Target:
+    """Return the logarithm or the rank of a value whose tail is heavy."""
+    found = _transformed(element, "log")
+    light = not found.refused and not heaviness(found.values)
+    form = "log" if light else "rank"
+    note = (
+        f"{why}: these are indices of its {FORMS[form]}; name {element.name} for"
+        " those of the output itself"
+    )
+    return _transformed(element, form, (note,))
+
+
+def _plain(element: Element) -> Target:
+    notes: tuple[str, ...] = ()
+    if element.kind == "value" and (why := heaviness(element.values)):
+        notes = (f"{why}: {_lighter(element, why).name} says more",)
+    return Target(element.name, element, element.values, notes=notes)
+
+
+def _events(element: Element, thresholds: Mapping[str, tuple[float, ...]]) -> Iterator[Target]:
+    if element.kind == "lifetime":
         for threshold in thresholds.get(element.output, ()):
             yield _event(element, threshold)
-
-
-def _rate(element: Element) -> Target:
-    censored = int(element.censored.sum())
-    refused = ""
-    if censored:
-        refused = (
-            f"the rate of {censored} rows is not known because their lifetimes are censored; ask"
-            " for P(T < t) by a threshold in [analysis], or lengthen the horizon"
-        )
-    with np.errstate(divide="ignore"):
-        rate = 1 / element.values
-    if np.isinf(rate).any():
-        refused = (
-            refused
-            or f"{int(np.isinf(rate).sum())} of {rate.size} rows have lifetime zero: no rate"
-        )
-    return Target(f"rate({element.name})", element, rate, refused)
 
 
 def _event(element: Element, threshold: float) -> Target:

@@ -5,11 +5,12 @@ the same rows when the files have changed or are gone.
 """
 
 import csv
+import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,29 +143,51 @@ def _checked(values: NDArray[np.float64]) -> NDArray[np.float64]:
 def _read_csv(path: Path, column: str) -> NDArray[np.float64]:
     with path.open(newline="", encoding="utf-8-sig") as lines:
         try:
+            for mark, name in ((";", "semicolons"), ("\t", "tabs")):
+                if column in _names(lines, mark):
+                    problem = f"has cells separated by {name}; write commas, and a decimal point"
+                    raise ValueError(f"{problem} in numbers")
+            lines.seek(0)
             rows = csv.reader(lines, skipinitialspace=True, strict=True)
             names = [name.strip() for name in next(rows, [])]
             if names.count(column) != 1:
                 raise ValueError(_no_column(column, names))
             place = names.index(column)
-            return np.array(
-                [_number(row, place, column, rows.line_num) for row in rows if any(row)]
-            )
+            return np.array([_number(row, names, place, rows.line_num) for row in rows if any(row)])
         except csv.Error as error:
             raise ValueError(f"not CSV: {error}") from None
         except UnicodeDecodeError:
             raise ValueError("not a text file in UTF-8") from None
 
 
-def _number(row: list[str], place: int, column: str, line: int) -> float:
-    cell = row[place].strip() if place < len(row) else ""
+def _names(lines: TextIO, mark: str) -> list[str]:
+    """Return the names of several columns, if it is some other mark that separates them."""
+    lines.seek(0)
+    names = next(csv.reader(lines, delimiter=mark, skipinitialspace=True), [])
+    return [name.strip() for name in names] if names[1:] else []
+
+
+def _number(row: list[str], names: list[str], place: int, line: int) -> float:
+    """Return the number in one place of a row; a `ValueError` says what is wrong."""
+    if len(row) != len(names):
+        cells = "1 cell" if len(row) == 1 else f"{len(row)} cells"
+        raise ValueError(
+            f"line {line}: has {cells}, and the first line has {len(names)}; each row must have as "
+            "many, and numbers a decimal point, not a comma"
+        )
+    cell = row[place].strip()
     try:
         value = float(cell)
     except ValueError:
         value = float("nan")
     if not isfinite(value):
-        raise ValueError(f"line {line}: column '{column}' must be a finite number: '{cell}'")
+        remedy = "; write it with a decimal point" if _DECIMAL_COMMA.fullmatch(cell) else ""
+        problem = f"column '{names[place]}' must be a finite number: '{cell}'{remedy}"
+        raise ValueError(f"line {line}: {problem}")
     return value
+
+
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 
 
 def _read_netcdf(path: Path, column: str) -> NDArray[np.float64]:
@@ -181,6 +204,7 @@ def _read_netcdf(path: Path, column: str) -> NDArray[np.float64]:
 
 
 def _no_column(column: str, names: list[str]) -> str:
-    many = "several columns" if column in names else "no column"
     known = ", ".join(names) if names else "none"
-    return f"has {many} '{column}'{nearest(column, names)} (its columns: {known})"
+    if column in names:
+        return f"has several columns '{column}'; give each a name of its own (they are: {known})"
+    return f"has no column '{column}'{nearest(column, names)} (its columns: {known})"

@@ -9,6 +9,7 @@ from uq.drawing.figure import sentence, with_symbol
 from uq.drawing.index_plot import bars, subject
 from uq.errors import InputError
 from uq.indices.sensitivities import methods, sensitivities
+from uq.indices.targets import FORMS, split_name
 from uq.report.pictures import Picture, picture
 from uq.report.table import Cell, Table
 from uq.wording import index, index_interval
@@ -93,9 +94,13 @@ def _subject(ds: xr.Dataset, method: str, name: str, entry: Mapping[str, Any]) -
         (f"Second order, of {name}", pairs, {}),
     )
     tables = tuple(_table(*one) for one in told if one[1])
+    if noise := entry.get("noise"):
+        line = [(Cell("noise"), _cell(noise, "ST"))]
+        tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
     caption = f"Sensitivity indices of {name} by {method}"
     drawn = picture(bars(ds, name, entry), caption) if kinds else None
-    leading = _leading(ds, method, f"{words[:1].lower()}{words[1:]}", kinds, dummy)
+    article = "the " * (split_name(name)[0] in FORMS)
+    leading = _leading(ds, method, f"{article}{words[:1].lower()}{words[1:]}", kinds, dummy)
     return Subject(name, words, "", tables, drawn, tuple(entry["notes"]), leading)
 
 
@@ -111,7 +116,7 @@ def _leading(
     kind, (first, *others) = list(kinds)[-1], _ranking(kinds)
     entry = kinds[kind][first]
     value = entry["value"] or 0.0
-    if value <= dummy.get(kind, 0.0):
+    if value <= dummy.get(f"{kind}_any", dummy.get(kind, 0.0)):
         return ""
     told, low = kind if kind == method else f"{method}: {kind}", entry.get("low")
     size = index(entry, "value", kind)
@@ -147,6 +152,9 @@ def _table(caption: str, kinds: Mapping[str, Any], dummy: Mapping[str, float]) -
     if dummy:
         limits = (_cell({"value": dummy.get(kind)}, kind) for kind in kinds)
         rows.append((Cell("(an input without effect)"), *limits))
+    if any(f"{kind}_any" in dummy for kind in kinds):
+        limits = (_cell({"value": dummy.get(f"{kind}_any")}, kind) for kind in kinds)
+        rows.append((Cell(f"(largest of {len(rows) - 1} such inputs)"), *limits))
     return Table(caption, ("input", *kinds), rows)
 
 

@@ -7,6 +7,7 @@ import xarray as xr
 
 from uq.contract import Status
 from uq.drawing.figure import place_in_words, powers
+from uq.indices.targets import FORMS, split_name
 from uq.report.table import Cell, Table, count, estimate, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
 from uq.time_units import TimeUnit, time_unit
@@ -91,6 +92,12 @@ class Outcome:
         """Return the cell of an estimate in the unit of this element."""
         return estimate(entry, self.unit.seconds, key)
 
+    def moment(self, name: str) -> Cell:
+        """Return the cell of mean or sd, with the reason where its tail forbids one."""
+        found = {"value": self.entry[name], **self.entry[f"{name}_interval"]}
+        reason = self.entry["reasons"].get(name)
+        return self.cell(found) if reason is None else Cell("none", reason)
+
 
 def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     """Return the elements that a summary describes, in its order."""
@@ -156,11 +163,11 @@ def _statistics(one: Outcome) -> Iterator[Cell]:
     entry = one.entry
     yield one.label
     yield one.unit_cell
-    yield one.cell({"value": entry["mean"], **entry["mean_interval"]})
-    yield one.cell(entry, "sd")
+    for moment in ("mean", "sd"):
+        yield one.moment(moment)
     yield from (one.cell(quantile) for quantile in entry["quantiles"].values())
     split = entry.get("between_regimes")
-    yield estimate(split)._replace(text=variance_between(split)) if split else Cell("")
+    yield _between(split) if split else Cell("")
     yield from (count(entry[name]) for name in _COUNTS)
     yield _missed(entry.get("accuracy"))
 
@@ -169,6 +176,12 @@ def _missed(accuracy: Mapping[str, Any] | None) -> Cell:
     if not accuracy or not accuracy["missed"]:
         return Cell("")
     return count(accuracy["missed"])._replace(more=percent(accuracy["share"]))
+
+
+def _between(split: Mapping[str, Any]) -> Cell:
+    form, *_ = split_name(split["of"])
+    of = f", of the {FORMS[form]}" if form else ""
+    return estimate(split)._replace(text=variance_between(split) + of)
 
 
 def _thresholds(one: Outcome) -> Iterator[tuple[Cell, ...]]:

@@ -193,7 +193,7 @@ def _inputs_picture(ds: xr.Dataset) -> Picture | None:
 
 
 def _commands(ds: xr.Dataset, name: str, study: str, samples: int) -> list[str]:
-    more = "" if samples == ds.attrs["samples"] else f" --samples {ds.attrs['samples']}"
+    more = "" if samples in (0, ds.attrs["samples"]) else f" --samples {ds.attrs['samples']}"
     return [
         f"uq run {study}.toml{more}",
         f"uq verify {shlex.quote(name)}",

@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.columns import censored_name, lacking
-from uq.designs.table import DESIGNS
+from uq.designs.table import DESIGNS, NOISE
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.results import elements, failed
@@ -97,19 +97,25 @@ def study_file_of(ds: xr.Dataset) -> StudyFile:
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
     """Return the rows for plain statistics: A and B where a design has these, all rows of others.
 
-    The mixed blocks between repeat the numbers of A and B. Where the rows do not follow
+    The other blocks repeat the numbers of A and B. Where the rows do not follow
     the laws of the inputs there are none.
     """
     design = DESIGNS[ds.attrs["design"]]
     labels = flags(ds["block"]) if design.follows_laws else []
-    plain = [code for code, label in labels if not label.startswith(("AB_", "BA_"))]
+    plain = [c for c, label in labels if label != NOISE and not label.startswith(("AB_", "BA_"))]
     chosen = np.isin(ds["block"].values, plain)
     return ds if chosen.all() else ds.isel(sample=chosen)
 
 
 def replicates_of(rows: xr.Dataset) -> Replicates:
     """Return the replicate of each row, or None where the rows are independent."""
-    return None if rows.attrs["design"] == "monte-carlo" else rows["replicate"].values
+    return None if are_independent(rows) else rows["replicate"].values
+
+
+def are_independent(ds: xr.Dataset) -> bool:
+    """Whether the rows of a result, A and B where a design has these, are independent."""
+    design = DESIGNS[ds.attrs["design"]]
+    return design.independent or (design.draw is None and study_file_of(ds).design.independent)
 
 
 def flags(variable: xr.DataArray) -> list[tuple[int, str]]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.designs.table import DESIGNS
+from uq.designs.table import DESIGNS, block_names
 from uq.inputs.conditioning import factor_ends, ppf_between, ppf_within
 from uq.inputs.data_files import numbers
 from uq.inputs.dependence import correlated
@@ -26,7 +26,8 @@ class Rows(NamedTuple):
     x : ndarray, shape (n, d)
         All parameters of the model, uncertain or not, in declared order; C-contiguous.
     seed : ndarray of uint64, shape (n,)
-        For models that draw random numbers of their own.
+        For models that draw random numbers of their own; of these, rows that the design compares
+        share one.
     replicate : ndarray of int32, shape (n,)
     group : ndarray of int64, shape (n,)
         Base point of the replicate's design.
@@ -46,10 +47,16 @@ class Rows(NamedTuple):
         return Rows(*fields)
 
 
+def block_labels(study: "Study") -> tuple[str, ...]:
+    """Return the name of each row of a group, in order."""
+    table = study.design
+    parameters = tuple(study.uncertain)
+    return block_names(DESIGNS[table.method], parameters, table.second_order, study.random)
+
+
 def group_size(study: "Study") -> int:
     """Return how many rows stand or fall together in the indices: 1 for plain designs."""
-    design = DESIGNS[study.design.method]
-    return design.blocks(len(study.uncertain), study.design.second_order)
+    return len(block_labels(study))
 
 
 def rows(study: "Study") -> int:
@@ -79,11 +86,20 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
     x = _imported(study, start, stop) if study.imported else _drawn(study, start, stop)
     return Rows(
         x,
-        row_seeds(table.seed, replicate, group, block),
+        _seeds(study, replicate, group, block),
         replicate.astype(np.int32),
         group,
         block.astype(np.int16),
     )
+
+
+def _seeds(
+    study: "Study", replicate: NDArray[np.int64], group: NDArray[np.int64], block: NDArray[np.int64]
+) -> NDArray[np.uint64]:
+    if study.random:
+        rule = DESIGNS[study.design.method].shared_seeds
+        group, block = rule(group, block, block_labels(study))
+    return row_seeds(study.design.seed, replicate, group, block)
 
 
 def _drawn(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
@@ -99,6 +115,7 @@ def _drawn(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
         second_order=table.second_order,
         start=first,
         stop=max(first, last),
+        random=study.random,
     )
     offset = first * per_group
     unit = cube.reshape(-1, cube.shape[-1])[start - offset : stop - offset]

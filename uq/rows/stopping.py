@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from uq import intervals
-from uq.designs.table import DESIGNS
 from uq.intervals import Interval
+from uq.moments import moments
 from uq.rows.elements import Element, independent_rows, named_elements
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def look(design: "DesignTable", ds: xr.Dataset) -> Look:
     until = design.until
     assert until is not None
     rows = independent_rows(ds)
-    replicate = None if DESIGNS[design.method].independent else rows["replicate"].values
+    replicate = None if design.has_independent_rows else rows["replicate"].values
     seen = [
         _estimate(element, until, replicate, confidence(design))
         for element in named_elements(rows, until.output)
@@ -108,6 +108,9 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     seen = look(design, _first(ds, size))
     what = f"{until.estimate} of {until.output}"
     known = f"{seen.value:.6g}, {seen.interval.low:.6g} to {seen.interval.high:.6g}"
+    if np.isnan(seen.interval).all():
+        return f"the budget of {samples} samples is spent, and {what} has no interval"
+    known += _lost(design, ds)
     if not seen.reached:
         return (
             f"the budget of {samples} samples is spent: {what} is {known}, and a half-width of"
@@ -121,6 +124,14 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
         f" {confidence(design):.2%} at each look, is one of 95 % for a run that stops so; the"
         " others are for a number of rows fixed beforehand"
     )
+
+
+def _lost(design: "DesignTable", ds: xr.Dataset) -> str:
+    """Say that rows failed, of which no interval knows."""
+    assert design.until is not None
+    elements = named_elements(independent_rows(ds), design.until.output)
+    lost = max(int(element.failed.sum()) for element in elements)
+    return f" (of the rows that did not fail; {lost} did)" if lost else ""
 
 
 def _estimate(
@@ -143,4 +154,5 @@ def _estimate(
         return value, intervals.quantile_interval(values, until.quantile, within, level)
     if not len(values) or not np.isfinite(values).all():
         return np.nan, intervals.UNKNOWN
-    return float(values.mean()), intervals.mean_interval(values, within, level)
+    found = moments(values, within, level)
+    return found.mean, found.mean_interval

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from uq.columns import censored_name
 from uq.contract import Model, Status
-from uq.designs.table import DESIGNS, block_names
+from uq.rows.sampling import block_labels
 from uq.study.code import made_here
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> d
     """Return the place in the design of each row, as coordinates."""
     sample = ("sample",)
     numbers = np.arange(len(rows.x)) if numbers is None else numbers
-    block = {"long_name": "block of the design"} | _flags(_block_labels(study), np.int16)
+    block = {"long_name": "block of the design"} | _flags(block_labels(study), np.int16)
     return {
         "sample": (sample, numbers, {"long_name": "row"}),
         "replicate": (sample, rows.replicate, {"long_name": "independent scramble of the design"}),
@@ -103,11 +103,6 @@ def _flags(labels: Sequence[str], dtype: type[np.integer[Any]], first: int = 0) 
     if len(labels) == 1:
         values = values[0]  # what netCDF makes of an attribute of one number
     return {"flag_values": values, "flag_meanings": " ".join(labels)}
-
-
-def _block_labels(study: "Study") -> list[str]:
-    design = study.design
-    return list(block_names(DESIGNS[design.method], tuple(study.uncertain), design.second_order))
 
 
 def study_attributes(study: "Study") -> dict[str, Any]:
@@ -126,6 +121,7 @@ def study_attributes(study: "Study") -> dict[str, Any]:
             "second_order": int(design.second_order),
             "seed": design.seed,
         }
+        | ({"random": 1} if study.random else {})
         | made_here(study.model_reference)
     )
 

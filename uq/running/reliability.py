@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from uq.errors import InputError, nearest
-from uq.intervals import Interval, scatter_interval
+from uq.intervals import Interval, binomial_interval
 from uq.running.design_points import design_points, drawn_around
 from uq.running.evaluator import Evaluator
 from uq.running.limit_state import LimitState
 from uq.running.subset import LEVEL_SHARE, SMALLEST, subset_simulation
+from uq.running.supported import log_scatter_interval, subset_interval, with_failed_inside
 from uq.study.definition import Study, load_study
 
 METHODS = ("subset", "importance")
@@ -62,9 +63,11 @@ def rare_event(
     xarray.Dataset
         ``probability`` with its 95 % interval ``low``, ``high``; ``estimate`` of each replicate;
         ``rows`` computed, among them ``failed`` and ``undefined``, which count as outside the
-        event; subset: ``levels`` of each replicate and ``typical``, the median of each uncertain
-        parameter given the event; importance: ``reliability_index``, ``first_order`` probability
-        and ``location`` of each design point. Attribute ``notes``: what to know about them.
+        event, and ``failed_high``, the high end if the failed rows were within it; subset:
+        ``levels`` of each replicate, why it ``ended`` (``event``, ``plateau`` or ``smallest``) and
+        ``typical``, the median of each uncertain parameter given the event; importance:
+        ``reliability_index``, ``first_order`` probability and ``location`` of each design point.
+        Attribute ``notes``: what to know about them.
 
     Raises
     ------
@@ -76,7 +79,9 @@ def rare_event(
     Intervals are ``mean exp(+-t s / sqrt(R))``, s the standard deviation of the replicates'
     logarithms. Measured over 300 repetitions with 1000 samples and 8 replicates, they held
     probabilities of 1e-6 to 1e-5 on three problems of 4 to 6 inputs in 94 to 97 % of cases; the
-    mean of subset simulation was 4 to 6 % too large.
+    mean of subset simulation was 4 to 6 % too large. Where replicates never reach the event, the
+    high end is what the rows support (`uq.running.supported.subset_interval`): 8000 independent
+    rows without a hit, 4.6e-4.
 
     Examples
     --------
@@ -96,14 +101,13 @@ def rare_event(
     margin = LimitState(study, output, threshold, below, evaluator)
     generators = np.random.default_rng((study.design.seed, 1)).spawn(replicates)
     with evaluator:
-        found = _METHODS[method](margin, samples, generators)
-    estimates = found["estimate"][1]
-    interval = log_scatter_interval(estimates)
+        found, interval, worst = _METHODS[method](margin, samples, generators)
     ds = xr.Dataset(
         {
-            "probability": ((), estimates.mean()),
+            "probability": ((), found["estimate"][1].mean()),
             "low": ((), interval.low),
             "high": ((), interval.high),
+            "failed_high": ((), max(worst, float(interval.high)) if margin.failed else np.nan),
             "rows": ((), evaluator.rows),
             "failed": ((), margin.failed),
             "undefined": ((), margin.undefined),
@@ -124,64 +128,63 @@ def rare_event(
     return ds.assign_attrs(notes="\n".join(_notes(ds, margin)))
 
 
-def log_scatter_interval(estimates: Floats) -> Interval:
-    """Return the interval of a small probability from independent estimates of it.
-
-    Parameters
-    ----------
-    estimates : ndarray, shape (R,)
-        Not negative.
-
-    Returns
-    -------
-    Interval
-        Student's interval of the logarithms about the mean; where some estimates are zero, that of
-        the estimates themselves, from zero up.
-    """
-    mean = float(estimates.mean())
-    if (estimates > 0).all():
-        return Interval(*np.exp(scatter_interval(np.log(mean), np.log(estimates))))
-    low, high = scatter_interval(mean, estimates)
-    return Interval(np.maximum(low, 0.0), high)
+_Found = tuple[dict[str, Any], Interval, float]
+"""Variables of the result, the interval, and its high end if failed rows lay within the event."""
 
 
-def _subset(
-    margin: LimitState, samples: int, generators: list[np.random.Generator]
-) -> dict[str, Any]:
-    found = subset_simulation(margin, margin.dimension, samples, generators)
+def _subset(margin: LimitState, samples: int, generators: list[np.random.Generator]) -> _Found:
+    failed = []
+
+    def counting(u: Floats) -> Floats:
+        margins = margin(u)
+        failed.append(margin.failed)
+        return margins
+
+    found = subset_simulation(counting, margin.dimension, samples, generators)
+    hits, rows = sum(one.first_hits for one in found), samples * len(found)
     inside = margin.physical(np.concatenate([one.inside for one in found]))
     names = margin.study.model.parameter_names
     chosen = [names.index(name) for name in margin.study.uncertain]
     typical = np.median(inside[:, chosen], axis=0) if len(inside) else np.full(len(chosen), np.nan)
-    return {
+    variables = {
         "estimate": ("replicate", np.array([one.probability for one in found])),
         "levels": ("replicate", np.array([one.levels for one in found])),
+        "ended": ("replicate", np.array([one.ended for one in found])),
         "typical": ("parameter", typical),
     }
+    worst = with_failed_inside(hits, failed[0], rows)
+    return variables, subset_interval(found, samples), worst
 
 
-def _importance(
-    margin: LimitState, samples: int, generators: list[np.random.Generator]
-) -> dict[str, Any]:
+def _importance(margin: LimitState, samples: int, generators: list[np.random.Generator]) -> _Found:
     u = generators[0].standard_normal((samples, margin.dimension))
-    points = design_points(margin, u, margin(u))
+    first = margin(u)
+    hits, failed = int((first > 0).sum()), margin.failed
+    points = design_points(margin, u, first)
     if not len(points):
         raise InputError(
             "FORM found no design point: the output is not smooth enough, rows fail on the way, or"
             " the threshold is out of reach; use method 'subset'"
         )
     drawn = [drawn_around(points, samples, rng) for rng in generators]
-    hits = margin(np.concatenate([u for u, _ in drawn])) > 0
+    inside = margin(np.concatenate([u for u, _ in drawn])) > 0
     weights = np.concatenate([weight for _, weight in drawn])
     names = margin.study.model.parameter_names
     chosen = [names.index(name) for name in margin.study.uncertain]
     index = np.linalg.norm(points, axis=1)
-    return {
-        "estimate": ("replicate", (weights * hits).reshape(-1, samples).mean(axis=1)),
+    estimates = (weights * inside).reshape(-1, samples).mean(axis=1)
+    interval = (
+        log_scatter_interval(estimates)
+        if estimates.any()
+        else binomial_interval(hits / samples, samples)
+    )
+    variables = {
+        "estimate": ("replicate", estimates),
         "reliability_index": ("design_point", index),
         "first_order": ("design_point", ndtr(-index)),
         "location": (("design_point", "parameter"), margin.physical(points)[:, chosen]),
     }
+    return variables, interval, with_failed_inside(hits, failed, samples)
 
 
 _METHODS = {"subset": _subset, "importance": _importance}
@@ -202,21 +205,40 @@ def _check(threshold: float, method: str, samples: int, replicates: int) -> None
         raise InputError(*faults)
 
 
+def _where_it_ended(ds: xr.Dataset) -> str:
+    """Say why replicates of subset simulation ended before the event."""
+    if "ended" not in ds:
+        return ""
+    ended, count = ds["ended"].values, ds.sizes["replicate"]
+    causes = {
+        "plateau": "came to a plateau, where no row lies above the others",
+        "smallest": f"came to levels below {SMALLEST:g}: the threshold may be out of reach",
+    }
+    seen = {cause: int((ended == cause).sum()) for cause in causes}
+    return "".join(
+        f"; {number} of {count} replicates {causes[cause]}"
+        for cause, number in seen.items()
+        if number
+    )
+
+
 def _notes(ds: xr.Dataset, margin: LimitState) -> list[str]:
     """Say what the numbers do not say of themselves."""
     notes = []
-    estimates = ds["estimate"].values
-    if len(estimates) == 1:
+    estimates, most = ds["estimate"].values, float(ds["high"])
+    count = len(estimates)
+    if np.isnan(most):
         notes.append("no interval: one replicate does not show how far its estimates scatter")
-    if not estimates.any():
-        notes.append(
-            "no row lay beyond the threshold: it is out of reach, or its probability below about"
-            f" {SMALLEST:g}"
+    lost = int((estimates == 0).sum())
+    if lost:
+        seen = (
+            "no row lay beyond the threshold"
+            if lost == count
+            else f"{lost} of {count} replicates never got beyond the threshold"
         )
-    elif not estimates.all():
         notes.append(
-            f"{int((estimates == 0).sum())} of {len(estimates)} replicates never got beyond the"
-            " threshold: give more samples"
+            f"{seen}: the rows support no more than a probability below {most:.2g}"
+            f"{_where_it_ended(ds)}; more samples say more"
         )
     elif ds.attrs["method"] == "subset" and ds["probability"] > LEVEL_SHARE:
         notes.append("not a rare event: 'uq run' with this threshold says as much, and more")
@@ -229,7 +251,8 @@ def _notes(ds: xr.Dataset, margin: LimitState) -> list[str]:
         what = "".join(f"; {label}: {text}" for label, text in margin.failures.items())
         notes.append(
             f"{margin.failed} of {int(ds['rows'])} rows failed, or were censored before the"
-            f" threshold, and count as outside the event: the probability is a lower bound{what}"
+            " threshold, and count as outside the event: the probability is a lower bound; counted"
+            f" as within, the rows support no more than {float(ds['failed_high']):.2g}{what}"
         )
     if margin.undefined:
         notes.append(

@@ -37,11 +37,20 @@ class Found(NamedTuple):
         Levels sampled.
     inside : ndarray, shape (k, d)
         Its rows within the event, in standard normal space, equally likely.
+    reached : float
+        Probability of the last level, of which the event is a part.
+    first_hits : int
+        Rows within the event among the first level's, which are independent.
+    ended : {"event", "plateau", "smallest"}
+        Why it went no further.
     """
 
     probability: float
     levels: int
     inside: Floats
+    reached: float
+    first_hits: int
+    ended: str
 
 
 def subset_simulation(
@@ -70,7 +79,10 @@ def subset_simulation(
     Levels as in [1]_; chains move by conditional sampling with a step adapted to the share of moves
     accepted [2]_. A margin with random numbers of its own, drawn afresh in each call, is sampled
     rightly too: they are part of the state and proposed independently. Levels respect ties: where
-    many rows share one value, a level is what lies strictly above it.
+    so many rows share the lowest value that a level would be all of them, it is what lies strictly
+    above it. A replicate ends within the event; or on a plateau, where no row lies above the others
+    so that nothing leads further; or at a level less likely than `SMALLEST`. There is no budget: a
+    level that does not rise ends the replicate, and each that rises leaves rows behind.
 
     References
     ----------
@@ -98,17 +110,20 @@ def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, F
     """Yield the points of one replicate, be sent their margins, return what it found."""
     u = rng.standard_normal((samples, d))
     g = yield u
-    top = ceil(LEVEL_SHARE * samples)
-    probability, level, levels, step = 1.0, -np.inf, 1, _FIRST_STEP
+    top, first_hits = ceil(LEVEL_SHARE * samples), int((g > 0).sum())
+    probability, levels, step = 1.0, 1, _FIRST_STEP
     while True:
-        limit = np.partition(g, -top)[-top]
-        if limit <= level:  # a tie: go on from the few rows above it, if there are any
-            limit = g[g > level].min(initial=np.inf)
+        limit, lowest = np.partition(g, -top)[-top], g.min()
+        if limit == lowest:  # a tie: go on from the few rows above it, if there are any
+            limit = g[g > lowest].min(initial=np.inf)
         if limit > 0:
-            return Found(probability * float(np.mean(g > 0)), levels, u[g > 0])
+            hits = g > 0
+            ended = "event" if hits.any() else "plateau"
+            within = probability * float(hits.mean())
+            return Found(within, levels, u[hits], probability, first_hits, ended)
         probability *= float(np.mean(g >= limit))
         if probability < SMALLEST:
-            return Found(0.0, levels, u[:0])
+            return Found(0.0, levels, u[:0], probability, first_hits, "smallest")
         inside = np.flatnonzero(g >= limit)
         chosen = rng.choice(inside, top, replace=len(inside) < top)
         chain, margins = [u[chosen]], [g[chosen]]
@@ -120,4 +135,4 @@ def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, F
             margins.append(np.where(accepted, there, margins[-1]))
             step = min(1.0, step * np.exp((accepted.mean() - _ACCEPTED) / np.sqrt(k)))
         u, g = np.concatenate(chain), np.concatenate(margins)
-        level, levels = limit, levels + 1
+        levels += 1

@@ -1,6 +1,5 @@
 """The rows of a complete result, taken over into chunk files: how a run goes further."""
 
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from uq.columns import columns_of
 from uq.contract import Status
+from uq.literals import read_toml
 from uq.rows import results
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, row_block
@@ -82,7 +82,7 @@ def variants(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], NDArray[np.bool_]
     codes = ds["rerun"].values
     for code in np.unique(codes):
         text = ds["rerun"].attrs.get(f"changed_{code}", "{}")
-        yield tomllib.loads(f"settings = {text}")["settings"], codes == code
+        yield read_toml(f"settings = {text}")["settings"], codes == code
 
 
 def _inputs(study: "Study", part: xr.Dataset, first: int) -> Rows:

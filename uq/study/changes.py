@@ -1,11 +1,10 @@
 """What differs between a study and the one that rows were computed for."""
 
-import tomllib
 from collections.abc import Iterator
 from typing import Any
 
 from uq.designs.table import DESIGNS
-from uq.literals import shown
+from uq.literals import read_toml, shown
 from uq.study.definition import Study
 
 _FREE = {
@@ -35,10 +34,10 @@ def what_changed(text: str, model_version: str, study: Study) -> str:
         The first difference, such as ``[design] seed = 5, now 6``.
     """
     try:
-        before = dict(_entries(tomllib.loads(text)))
-    except (tomllib.TOMLDecodeError, RecursionError):
+        before = dict(_entries(read_toml(text)))
+    except (ValueError, OverflowError, RecursionError):
         before = {}
-    now = dict(_entries(tomllib.loads(study.text)))
+    now = dict(_entries(read_toml(study.text)))
     for place in (*before, *(place for place in now if place not in before)):
         if before.get(place) != now.get(place):
             *tables, name = place

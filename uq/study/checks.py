@@ -104,8 +104,13 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     if table.get("second_order") and not design.crossed:
         able = _names(name for name, other in DESIGNS.items() if other.crossed)
         yield Fault(("design", "second_order"), f"only for method = {able}", True)
-    if "tolerance" in analysis and not design.independent:
+    stated = table.get("independent") and design.draw is None
+    if table.get("independent") and not stated:
+        able = _names(name for name, other in DESIGNS.items() if other.draw is None)
+        yield Fault(("design", "independent"), f"only for method = {able}", True)
+    if "tolerance" in analysis and not design.independent and not stated:
         able = _names(name for name, other in DESIGNS.items() if other.independent)
+        able += ", independent = true if they are" * (design.draw is None)
         yield Fault(
             ("analysis", "tolerance"),
             f"refused: its confidence holds for independent rows, and those of '{method}' are not;"
@@ -120,7 +125,13 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     elif table.get("until") and not design.independent and table.get("replicates", 1) < 2:
         problem = f"nothing shows how well a '{method}' design knows anything; set replicates = 8"
         yield Fault(("design", "until"), problem, True)
-    if analysis.get("twin") and not design.independent:
+    if analysis.get("twin") and stated:
+        yield Fault(
+            ("analysis", "twin"),
+            "needs rows that can be drawn, and imported rows cannot; use method = 'monte-carlo'",
+            analysis["twin"],
+        )
+    elif analysis.get("twin") and not design.independent:
         able = _names(name for name, other in DESIGNS.items() if other.independent)
         yield Fault(
             ("analysis", "twin"),

@@ -82,9 +82,18 @@ class Study:
         return max(lows), min(highs)
 
     @property
+    def random(self) -> bool:
+        """Whether the rows depend on their seed."""
+        free = {*self.uncertain, *self.tied}
+        return self.model.random and not any(
+            name not in free and self.fixed.get(name, self.model.nominal[name]) == value
+            for name, value in self.model.random_unless.items()
+        )
+
+    @property
     def identity(self) -> str:
         """SHA-256 of what decides the rows: not how many, comments or [analysis]."""
-        design = self.design.model_dump(exclude={"samples", "file", "until"})
+        design = self.design.model_dump(exclude={"samples", "file", "until", "independent"})
         constants = {
             name: self.fixed.get(name, nominal)
             for name, nominal in self.model.nominal.items()
@@ -110,6 +119,8 @@ class Study:
             parts.append(self.dependence.model_dump(exclude={"source"}))
         if self.imported:
             parts.append(dict(self.imported))
+        if self.random and DESIGNS[self.design.method].shares_seeds:
+            parts.append("rows that are compared share a seed")
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
     def with_samples(self, samples: int) -> Self:
@@ -222,12 +233,14 @@ def study_from_text(
     file = StudyFile.model_validate(data)
     settings, _ = read_settings(found, file.settings)
     outputs = file.analysis.outputs or tuple(found.outputs)
+    imported = _imported(file, columns)
+    rows = min((len(numbers(column)) for column in imported.values()), default=0)
     return Study(
         name=file.study.name,
         model=found,
         model_reference=reference,
         description=file.study.description,
-        design=file.design,
+        design=file.design.model_copy(update={"samples": file.design.samples or rows}),
         fixed=file.fixed,
         uncertain={name: law for name, law in entries.items() if not isinstance(law, Tied)},
         settings=settings,
@@ -236,7 +249,7 @@ def study_from_text(
         path=source,
         tied={name: tied for name, tied in entries.items() if isinstance(tied, Tied)},
         dependence=file.dependence,
-        imported=_imported(file, columns),
+        imported=imported,
     )
 
 

@@ -130,7 +130,10 @@ class DesignTable(_Table):
         description="how rows are chosen", json_schema_extra={"enum": list(DESIGNS)}
     )
     samples: int = Field(
-        ge=1, le=MAX_SAMPLES, description="base size of each replicate; see 'uq check' for rows"
+        default_factory=lambda: 0,  # all rows of an imported file; other designs must say
+        ge=1,
+        le=MAX_SAMPLES,
+        description="base size of each replicate; see 'uq check' for rows",
     )
     replicates: int = Field(
         1,
@@ -143,9 +146,19 @@ class DesignTable(_Table):
     file: str | None = Field(
         None, description="imported only: CSV or netCDF with a column for each uncertain parameter"
     )
+    independent: bool = Field(
+        False,
+        description="imported only: you state that the rows are independent draws of the laws;"
+        " they then feed what a monte-carlo sample feeds",
+    )
     until: Until | None = Field(
         None, description="stop as soon as this is known well enough; samples is then the budget"
     )
+
+    @property
+    def has_independent_rows(self) -> bool:
+        """Whether rows are independent, by the design or because the study states it."""
+        return self.independent or DESIGNS[self.method].independent
 
 
 class Tied(_Table):

@@ -1,6 +1,6 @@
 """From the text of a study file to its tables: syntax and shape, every fault in a line."""
 
-import tomllib
+from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -8,7 +8,7 @@ from pydantic import BaseModel, ValidationError
 from uq.errors import InputError, nearest
 from uq.inputs.faults import Fault
 from uq.inputs.law import BaseLaw
-from uq.literals import read_number
+from uq.literals import read_toml
 from uq.study.file import LAWS, DependenceTable, StudyFile, Tied, Tolerance
 
 
@@ -41,7 +41,7 @@ def read_study_text(text: str, source: str = "study") -> StudyFile:
 def parse(text: str, source: str) -> dict[str, Any]:
     """Read TOML; raise `InputError` with the line where it goes wrong."""
     try:
-        return tomllib.loads(text, parse_float=read_number)
+        return read_toml(text)
     except (ValueError, OverflowError, RecursionError) as error:
         reason = " ".join(str(error).split())
         raise InputError(f"{source}: not valid TOML: {reason}") from error
@@ -49,12 +49,19 @@ def parse(text: str, source: str) -> dict[str, Any]:
 
 def shape_faults(data: dict[str, Any]) -> list[Fault]:
     """Return what is wrong with the shape of a parsed study file, all of it."""
+    faults = list(_size_faults(data))
     try:
         StudyFile.model_validate(data)
     except ValidationError as invalid:
-        faults = [_fault(dict(error)) for error in invalid.errors(include_url=False)]
-        return [fault for fault in faults if not any(_is_meant(fault, other) for other in faults)]
-    return []
+        faults += [_fault(dict(error)) for error in invalid.errors(include_url=False)]
+    return [fault for fault in faults if not any(_is_meant(fault, other) for other in faults)]
+
+
+def _size_faults(data: dict[str, Any]) -> Iterator[Fault]:
+    """Yield whether a design lacks its size: a file of rows has its own."""
+    design = data.get("design")
+    if isinstance(design, dict) and "samples" not in design and design.get("method") != "imported":
+        yield Fault(("design", "samples"), _MISSING)
 
 
 def _is_meant(missing: Fault, other: Fault) -> bool:

@@ -112,12 +112,15 @@ def _design_schema(design: Design) -> dict[str, Schema]:
         table["replicates"] = {"const": 1}
     else:
         table["file"] = {"not": {}}
+        table["independent"] = {"const": False}
     if not design.append_only:
         table["until"] = {"not": {}}
     if not design.independent:
-        analysis["tolerance"] = {"not": {}}
         analysis["twin"] = {"const": ""}
-    return {"design": {"properties": table}, "analysis": {"properties": analysis}}
+        if design.draw:  # that imported rows are independent may be stated
+            analysis["tolerance"] = {"not": {}}
+    needed: Schema = {"required": ["samples"]} if design.draw else {}
+    return {"design": {"properties": table} | needed, "analysis": {"properties": analysis}}
 
 
 def _table(properties: dict[str, Schema]) -> Schema:

@@ -12,6 +12,7 @@ from models.mole.lane_rows import (
     HALF,
     HIGH,
     IMPACT,
+    IMPULSE,
     LOW,
     OUTCOME,
     PROGRESS,
@@ -70,6 +71,7 @@ def test_it_moves_as_the_exact_propagator(formulation, frequency):
     np.testing.assert_allclose(record[0, :4] / SIZES, y[:4] / SIZES, atol=1e-8)
     assert record[0, CONTACTS] == motion.contacts
     assert record[0, PROGRESS] == pytest.approx(y[5], abs=1e-8)
+    assert record[0, IMPULSE] == pytest.approx(y[equations.IMPULSE], abs=1e-7)
     assert record[0, IMPACT] == pytest.approx(y[equations.IMPACT_WORK], abs=1e-6)
     assert record[0, ELECTRIC] == pytest.approx(y[equations.ELECTRICAL_WORK], abs=1e-5)
     assert record[0, LOW] == pytest.approx(motion.lowest, abs=1e-10)

@@ -1,0 +1,96 @@
+"""Chaos and quasi-periodicity both need evidence; without it a regime is undecided."""
+
+import numpy as np
+import pytest
+
+from models.mole.batch import batch
+from models.mole.parameters import (
+    CHAOTIC,
+    PERIODIC,
+    QUASI_PERIODIC,
+    REGIMES,
+    UNDECIDED,
+    Params,
+    Settings,
+)
+from models.mole.table import rows
+from models.mole.verdict import NEAR_ZERO, verdicts
+
+ALONE = Params(control_frequency=29.5 / (2 * np.pi))
+
+
+def compute(*moles, **settings):
+    x = np.array(moles)
+    outputs, status = batch(x, np.zeros(len(x), np.uint64), Settings(**settings))
+    assert not status.any()
+    return outputs
+
+
+@pytest.mark.parametrize(
+    ("exponent", "scatter", "alone", "expected"),
+    [
+        (0.1, 0.05, True, CHAOTIC),
+        (0.1, 0.05, False, CHAOTIC),
+        (0.1, 1.0, True, UNDECIDED),
+        (-0.1, 0.05, True, QUASI_PERIODIC),  # follows the phases of control and mains
+        (-0.1, 0.05, False, UNDECIDED),  # settles to something
+        (-0.1, 1.0, True, UNDECIDED),
+        (0.1 * NEAR_ZERO, 0.5 * NEAR_ZERO, False, QUASI_PERIODIC),
+        (0.1 * NEAR_ZERO, 20 * NEAR_ZERO, False, UNDECIDED),
+    ],
+)
+def test_each_verdict_needs_evidence(exponent, scatter, alone, expected):
+    """Exponent and scatter of a batch are those of a control period."""
+    sides = np.tile([1.0, -1.0, -1.0, 1.0], 5)
+    growth = 7 * (exponent + scatter * sides)[None]
+    found = verdicts(growth, np.array([140.0]), np.array([alone]))
+    assert found.tolist() == [expected]
+
+
+def test_codes_of_files_written_before_keep_their_meaning():
+    assert REGIMES[:4] == ("no-impact", "periodic", "quasi-periodic", "chaotic")
+    assert REGIMES[UNDECIDED] == "undecided"
+
+
+def test_a_short_look_at_chaos_is_lengthened():
+    """Over 100 control periods nine of ten exponents at 29.5 rad/s hide in their errors."""
+    starts = [ALONE._replace(initial_displacement=u) for u in np.linspace(-0.05, 0.005, 16)]
+    o = compute(*starts, formulation="as-printed", transient=100, duration=100)
+    assert o["regime"].tolist() == [CHAOTIC] * 16
+    assert np.all((o["progression_rate"] > 7.6e-3) & (o["progression_rate"] < 8.1e-3))
+    assert np.ptp(o["lyapunov_exponent_error"]) > 0  # each for as long as it took
+
+
+def test_near_a_torus_doubling_a_look_does_not_decide():
+    """At 47 rad/s from the second start, as printed: a steeply folded curve."""
+    second = Params._make(rows()[-1])
+    brief = compute(second, formulation="as-printed", transient=400, duration=40)
+    assert brief["regime"].tolist() == [UNDECIDED] and brief["period"].tolist() == [0]
+
+
+@pytest.mark.slow
+def test_a_long_look_decides():
+    second = Params._make(rows()[-1])
+    long = compute(second, formulation="as-printed", transient=400, duration=12_800)
+    assert long["regime"].tolist() == [QUASI_PERIODIC]
+    assert abs(long["lyapunov_exponent"] + 0.107) < 3 * long["lyapunov_exponent_error"] < 0.1
+
+
+def test_a_look_does_not_depend_on_its_neighbours():
+    some = [ALONE, Params(), ALONE._replace(initial_displacement=-0.03), Params(stop_gap=0.06)]
+    settings = {"formulation": "as-printed", "transient": 100, "duration": 20}
+    together = compute(*some, **settings)
+    for i, one in enumerate(some):
+        for name, value in compute(one, **settings).items():
+            np.testing.assert_array_equal(value[0], together[name][i], err_msg=name)
+
+
+def test_weak_chaos_is_not_called_quasi_periodic():
+    """At 2.5 Hz and this phase of the mains the exponent is 0.04 1/s, or 0.016 a period."""
+    weak = Params(control_frequency=2.5, supply_phase=2 * np.pi * 5 / 32)
+    o = compute(weak, transient=400, duration=20)
+    assert o["regime"].tolist() == [UNDECIDED]
+
+
+def test_what_repeats_is_still_periodic():
+    assert compute(Params(), transient=200)["regime"].tolist() == [PERIODIC]

@@ -1,0 +1,94 @@
+"""A quantile that the rows do not reach has no value, and a fitted one is called extrapolated."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from computed import asking, linear, with_output
+from scipy import stats
+
+import uq as api
+from uq import intervals
+from uq.analysis.comparison import comparison
+from uq.analysis.overview import summary
+from uq.analysis.statistics import summarise
+from uq.analysis.widths import expected_widths
+from uq.report.outcomes import life_table, outcomes
+from uq.store import write
+
+
+def lives(rows, **design):
+    ds = linear(samples=rows // design.get("replicates", 1), **design)
+    values = stats.gamma(2.0, scale=1e5).rvs(rows, random_state=1)
+    return asking(with_output(ds, "life", values, "lifetime"), outputs=["life"], quantiles=[0.001])
+
+
+@pytest.mark.parametrize("rows", [1, 16, 99, 999])
+def test_ranks_reach_from_one_in_n_plus_one_to_n(rows):
+    values = np.arange(rows, dtype=float)
+    least = 1 / (rows + 1)
+    for p in (least, 1 - least):
+        assert np.isfinite(intervals.quantile(values, p))
+    for p in (0.99 * least, 1 - 0.99 * least):
+        assert np.isnan(intervals.quantile(values, p))
+
+
+@pytest.mark.parametrize(
+    "design", [{}, {"method": "latin-hypercube"}, {"method": "sobol", "replicates": 8}]
+)
+def test_a_quantile_beyond_the_rows_has_a_reason_and_no_value(design):
+    output = summarise(lives(64, **design))["outputs"]["life"]
+    for entry in (output["quantiles"]["0.001"], output["b_lives"]["B1"]):
+        assert entry["value"] is None and entry["low"] is None
+        assert "64 rows" in entry["reason"]
+    assert output["quantiles"]["0.001"]["rows_needed"] == 999
+    assert output["b_lives"]["B1"]["rows_needed"] == 99
+    assert output["b_lives"]["B10"]["value"] is not None
+
+
+def test_the_rows_needed_are_enough():
+    output = summarise(lives(999))["outputs"]["life"]
+    assert output["quantiles"]["0.001"]["value"] is not None
+    assert "reason" not in output["quantiles"]["0.001"]
+
+
+def test_independent_rows_still_bound_it_from_one_side():
+    entry = summarise(lives(64))["outputs"]["life"]["quantiles"]["0.001"]
+    assert entry["high"] is not None
+
+
+def test_every_reader_says_how_many_rows_it_takes(uq, folder):
+    ds = lives(64)
+    write(ds, Path("life.nc").absolute())
+    out = uq("summary", "life.nc").out
+    assert "needs 999 rows" in out and "needs 99 rows" in out
+    assert np.isnan(summary(ds).loc["life", "B1"])
+    cells = dict(zip(*(lambda t: (t.header, t.rows[0]))(life_table(found(ds))), strict=True))
+    assert cells["B1"].text == "needs 99 rows"
+    assert comparison(ds, ds)["outputs"]["life"]["b_lives"]["B1"]["difference"]["value"] is None
+    assert expected_widths(ds)["life"]["quantiles"]["0.001"] is None
+
+
+def found(ds):
+    return outcomes(ds, summarise(ds))
+
+
+def test_a_fitted_life_beyond_the_rows_is_called_extrapolated():
+    fits = api.life_fits(lives(60), "life")["life"]
+    for law in ("weibull", "lognormal"):
+        assert "refused" not in fits[law]
+        assert fits[law]["B1"]["extrapolated"] is True
+        assert not fits[law]["B10"]["extrapolated"]
+        assert "no proof" in fits[law]["assumes"]
+    more = api.life_fits(lives(120), "life")["life"]["weibull"]
+    assert more["B1"]["extrapolated"] is False
+
+
+def test_laws_stand_side_by_side(uq, folder):
+    write(lives(60), Path("life.nc").absolute())
+    lines = uq("summary", "life.nc", "--fits").out.splitlines()
+    head = next(line for line in lines if "weibull" in line)
+    assert "lognormal" in head
+    b1 = next(line for line in lines if "B1, extrapolated" in line)
+    assert b1.count(" to ") == 2
+    assert "no proof" in " ".join(" ".join(lines).split())

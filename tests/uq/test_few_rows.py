@@ -1,0 +1,78 @@
+"""Indices of events and regimes that few rows decide."""
+
+import numpy as np
+import pytest
+from computed import linear, with_output
+
+from uq.indices.few_rows import effective_rows
+from uq.indices.sensitivities import sensitivities
+
+ATTRS = {
+    "role": "output",
+    "kind": "category",
+    "units": "1",
+    "long_name": "which regime",
+    "may_be_undefined": 0,
+    "flag_values": np.array([-1, 0, 1], np.int8),
+    "flag_meanings": "none low high",
+}
+
+
+def with_event(ds, share):
+    """Return a result whose regime is high in a corner of x1 and x2, of this probability."""
+    high = ds["x1"].values + ds["x2"].values > 2 - np.sqrt(2 * share)
+    return ds.assign(regime=("sample", high.astype(np.int8), ATTRS))
+
+
+def of_event(share, samples=128, method=None, design="saltelli"):
+    ds = with_event(linear(design, samples=samples, replicates=8), share)
+    return sensitivities(ds, method, "P(regime=high)")["outputs"]["P(regime=high)"]
+
+
+def test_an_event_with_fewer_than_five_hits_in_each_replicate_is_refused():
+    refusal = of_event(0.013)["refused"]
+    assert "hits in 2048 rows" in refusal and "5 are needed" in refusal
+    assert "times the samples" in refusal
+
+
+def test_an_event_with_fewer_than_twenty_hits_is_warned_of():
+    found = of_event(0.05)
+    assert "hits in 2048 rows, 1" in found["notes"][0] and "rough" in found["notes"][0]
+    assert found["S1"]["x1"]["value"] == pytest.approx(0.169, abs=0.15)
+    assert not any("rough" in note for note in of_event(0.3)["notes"])
+
+
+def test_few_misses_are_as_bad_as_few_hits():
+    ds = linear("saltelli", samples=128, replicates=8)
+    high = with_event(ds, 0.013)["regime"].values
+    ds = ds.assign(regime=("sample", (1 - high).astype(np.int8), ATTRS))
+    refusal = sensitivities(ds, None, "P(regime=high)")["outputs"]["P(regime=high)"]["refused"]
+    assert "misses in 2048 rows" in refusal
+
+
+def test_methods_without_replicates_count_their_hits_too():
+    ds = with_event(linear("monte-carlo", samples=512, replicates=1), 0.005)
+    refusal = sensitivities(ds, "pawn", "P(regime=high)")["outputs"]["P(regime=high)"]["refused"]
+    assert "in 512 rows: 5 are needed" in refusal
+
+
+@pytest.mark.parametrize("share", [0.05, 0.1])
+def test_s1_of_an_input_that_acts_in_a_rare_regime_alone_is_covered(share):
+    held, repetitions = 0, 40
+    mean = (1 + 29 * share) / 2
+    truth = mean**2 / 3 / ((1 + 899 * share) / 3 - mean**2)
+    for seed in range(repetitions):
+        ds = linear("saltelli", samples=128, replicates=8, seed=seed)
+        high = ds["x1"].values + ds["x2"].values > 2 - np.sqrt(2 * share)
+        ds = with_output(ds, "y", np.where(high, 30 * ds["x3"].values, ds["x3"].values))
+        entry = sensitivities(ds, None, "y")["outputs"]["y"]
+        held += entry["S1"]["x3"]["low"] <= truth <= entry["S1"]["x3"]["high"]
+        assert any("rests on some" in note for note in entry["notes"])
+    assert held >= 0.93 * repetitions
+
+
+def test_rows_that_a_variance_rests_on():
+    rng = np.random.default_rng(0)
+    assert effective_rows(rng.standard_normal(30_000)) == pytest.approx(10_000, rel=0.05)
+    event = (np.arange(10_000) < 100) - 0.01
+    assert effective_rows(event) == pytest.approx(100, rel=0.05)

@@ -1,0 +1,116 @@
+"""Means, standard deviations and their intervals, as far as they exist."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from computed import asking, linear, with_output
+from scipy import stats
+
+from uq.analysis.comparison import comparison
+from uq.analysis.convergence import enough
+from uq.analysis.overview import summary
+from uq.analysis.regime_split import between_share
+from uq.analysis.statistics import summarise
+from uq.analysis.widths import expected_widths
+from uq.moments import moments, sd_interval
+from uq.report.outcomes import outcomes, result_tables
+from uq.store import write
+
+NOTHING = {"low": None, "high": None}
+
+
+def heavy(index, rows=1000, **of_design):
+    """Return a result whose output z follows Pareto's law."""
+    ds = linear(samples=rows // of_design.get("replicates", 1), **of_design)
+    values = stats.pareto(index).rvs(rows, random_state=3)
+    return asking(with_output(ds, "z", values), outputs=["z"])
+
+
+def test_a_mean_without_variance_has_no_interval_and_no_sd():
+    entry = summarise(heavy(1.5))["outputs"]["z"]
+    assert entry["mean"] is not None and entry["mean_interval"] == NOTHING
+    assert entry["sd"] is None and entry["sd_interval"] == NOTHING
+    assert entry["tail"]["side"] == "upper" and entry["tail"]["values"] == 400
+    assert entry["tail"]["low"] < 1 / 1.5 < entry["tail"]["high"]
+    assert (
+        "no variance"
+        in entry["reasons"]["mean_interval"]
+        == entry["reasons"]["sd"].replace("; use", ", hence no interval of the mean; use")
+    )
+    assert "logarithm" in entry["reasons"]["sd"]
+
+
+def test_a_mean_that_does_not_exist_is_refused():
+    entry = summarise(heavy(0.8))["outputs"]["z"]
+    assert entry["mean"] is None and entry["mean_interval"] == NOTHING
+    assert "no mean" in entry["reasons"]["mean"]
+    assert entry["quantiles"]["0.5"]["low"] is not None
+
+
+def test_replicates_do_not_make_a_heavy_tail_light():
+    entry = summarise(heavy(1.5, method="latin-hypercube", replicates=8))["outputs"]["z"]
+    assert entry["sd"] is None and entry["mean_interval"] == NOTHING
+
+
+def test_a_light_tail_has_everything():
+    entry = summarise(asking(linear(samples=400), outputs=["y"]))["outputs"]["y"]
+    assert entry["reasons"] == {}
+    assert entry["sd_interval"]["low"] < np.sqrt(30 / 12) < entry["sd_interval"]["high"]
+    assert entry["tail"]["k"] < 0
+
+
+def test_every_reader_is_told():
+    ds, light = heavy(0.8), asking(with_output(linear(samples=1000), "z", np.arange(1000.0)))
+    line = summary(ds).loc["z"]
+    assert (
+        line["tail_k"] > 1 and np.isnan(line[["mean", "mean_low", "sd", "sd_low"]].tolist()).all()
+    )
+    assert enough(ds, "z").loc["z", "estimate"] == "median"
+    assert expected_widths(ds)["z"]["mean"] is None
+    z = comparison(ds, asking(light, outputs=["z"]))["outputs"]["z"]
+    for one in (z["mean"]["difference"], z["sd"]["difference"], z["sd"]["ratio"]):
+        assert one["low"] is None and one["high"] is None
+    value, _ = between_share(ds["z"].values, np.arange(1000) % 2)
+    assert np.isnan(value)
+
+
+def test_the_terminal_and_the_report_give_the_reason(uq, folder):
+    ds = heavy(0.8)
+    write(ds, Path("z.nc").absolute())
+    out = " ".join(uq("summary", "z.nc").out.split())
+    assert "with k above 1 there is no mean; use quantiles" in out
+    table = next(result_tables(outcomes(ds, summarise(ds)), None))
+    cells = dict(zip(table.header, table.rows[0], strict=True))
+    assert cells["mean"].text == "none" and "no mean" in cells["mean"].more
+    assert "no mean" not in cells["sd"].more and "no variance" in cells["sd"].more
+
+
+def test_the_sd_of_replicates_has_their_interval():
+    rng = np.random.default_rng(0)
+    held = 0
+    replicate = np.repeat(np.arange(8), 50)
+    for _ in range(300):
+        low, high = sd_interval(rng.standard_normal(400), replicate)
+        held += low < 1 < high
+    assert 0.91 < held / 300 < 0.98
+    assert np.isnan(sd_interval(np.append(np.zeros(50), np.ones(50)), np.repeat([0, 1], 50))).all()
+
+
+@pytest.mark.parametrize(
+    ("law", "rows"), [(stats.lognorm(1.0), 200), (stats.invgamma(3), 1000), (stats.expon(), 30)]
+)
+def test_an_interval_of_sd_is_refused_where_it_would_not_hold(law, rows):
+    rng = np.random.default_rng(0)
+    missed = 0
+    for _ in range(100):
+        found = moments(law.rvs(rows, random_state=rng))
+        given = not np.isnan(found.sd_interval.low)
+        assert given != ("sd_interval" in found.reasons)
+        missed += given and not found.sd_interval.low < law.std() < found.sd_interval.high
+    assert missed <= 10
+
+
+def test_one_row_or_equal_rows_have_no_scatter_and_no_reason():
+    assert moments(np.array([1.0])).reasons == moments(np.ones(80)).reasons == {}
+    assert moments(np.ones(80)).sd == 0

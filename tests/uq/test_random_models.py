@@ -1,0 +1,260 @@
+"""Models whose rows depend on their seed: noise is never counted as an input's."""
+
+import numpy as np
+import pytest
+from computed import UNIFORM, computed, study_of, with_seed, with_status
+
+from uq.analysis.convergence import running_estimates
+from uq.analysis.statistics import summarise
+from uq.analysis.widths import expected_widths
+from uq.designs.table import DESIGNS
+from uq.indices.sensitivities import sensitivities, sensitivity
+from uq.rows.sampling import group_size, row_block, rows
+
+DRAWN = [name for name, design in DESIGNS.items() if design.draw is not None]
+GROUPED = ["saltelli", "shapley", "morris", "morris-optimised", "fast"]
+
+
+def noisy(method="saltelli", samples=64, replicates=8, model="NOISY", fixed=None, **design):
+    inputs = dict.fromkeys(("x1", "x2"), UNIFORM)
+    return study_of(
+        {
+            "study": {"name": "noisy", "model": "linear"},
+            "design": {"method": method, "samples": samples, "replicates": replicates} | design,
+            "uncertain": {name: law for name, law in inputs.items() if name not in (fixed or {})},
+            "fixed": fixed or {},
+        },
+        f"sample_models:{model}",
+    )
+
+
+def seeds_of(study):
+    """Return the seeds of a study's rows, by replicate, group and the name of the block."""
+    block = row_block(study, 0, rows(study))
+    labels = computed(study)["block"].attrs["flag_meanings"].split()
+    found = {}
+    for replicate, group, place, seed in zip(
+        block.replicate, block.group, block.block, block.seed, strict=True
+    ):
+        found[int(replicate), int(group), labels[place]] = int(seed)
+    return found
+
+
+# The seeds
+
+
+@pytest.mark.parametrize("second_order", [False, True])
+def test_a_shares_its_seed_with_the_rows_mixed_into_it_and_b_with_the_rest(second_order):
+    study = noisy(samples=4, replicates=2, second_order=second_order)
+    seeds = seeds_of(study)
+    blocks = {label for _, _, label in seeds}
+    assert blocks == {"A", "AB_x1", "AB_x2", "B", "noise"} | (
+        {"BA_x1", "BA_x2"} if second_order else set()
+    )
+    assert group_size(study) == len(blocks)
+    distinct = set()
+    for replicate in range(2):
+        for group in range(4):
+            own = {label: seeds[replicate, group, label] for label in blocks}
+            for label, seed in own.items():
+                assert seed == own["A" if label.startswith("A") else "B"]
+            distinct |= set(own.values())
+    assert len(distinct) == 2 * 2 * 4
+
+
+def test_the_noise_block_has_the_inputs_of_a():
+    ds = computed(noisy(samples=8, replicates=1, second_order=True))
+    x = np.stack([ds["x1"].values, ds["x2"].values], axis=-1).reshape(8, 7, 2)
+    np.testing.assert_array_equal(x[:, 0], x[:, 6])
+    y = ds["y"].values.reshape(8, 7)
+    assert (y[:, 0] != y[:, 6]).all()
+
+
+@pytest.mark.parametrize("method", ["shapley", "morris", "morris-optimised"])
+def test_the_rows_of_a_path_share_a_seed(method):
+    seeds = seeds_of(noisy(method, 8, 2))
+    by_path = {}
+    for (replicate, group, _), seed in seeds.items():
+        by_path.setdefault((replicate, group), set()).add(seed)
+    assert all(len(one) == 1 for one in by_path.values())
+    assert len(set.union(*by_path.values())) == len(by_path) == 16
+
+
+def test_the_points_of_a_curve_share_a_seed():
+    by_curve = {}
+    for (replicate, _, curve), seed in seeds_of(noisy("fast", 65, 2)).items():
+        by_curve.setdefault((replicate, curve), set()).add(seed)
+    assert all(len(one) == 1 for one in by_curve.values())
+    assert len(set.union(*by_curve.values())) == len(by_curve) == 4
+
+
+@pytest.mark.parametrize("method", DRAWN)
+def test_deterministic_models_keep_their_rows_their_seeds_and_their_identity(method):
+    samples = max(16, DESIGNS[method].least)
+    random, plain = (noisy(method, samples, 2, model) for model in ("NOISY", "SLEEPING"))
+    one, other = (row_block(study, 0, rows(study)) for study in (random, plain))
+    assert len(np.unique(other.seed)) == len(other.seed)
+    grouped = method in GROUPED
+    assert (len(one.seed) != len(other.seed) or (one.seed != other.seed).any()) == grouped
+    # Nothing else than the rule tells these two apart.
+    named = with_name(random, plain)
+    assert (named.identity != plain.identity) == grouped
+
+
+def with_name(study, other):
+    from dataclasses import replace
+
+    return replace(study, model=replace(study.model, name=other.model.name))
+
+
+def test_plain_rows_of_a_random_model_are_what_they_were():
+    # A and B, of which plain statistics are made, keep their seeds.
+    random, plain = (noisy(samples=16, model=model) for model in ("NOISY", "SLEEPING"))
+    one, other = (row_block(study, 0, rows(study)) for study in (random, plain))
+    for label, block in (("A", 0), ("B", 3)):
+        mine, old = (own.seed[own.block == block] for own in (one, other))
+        np.testing.assert_array_equal(mine, old, err_msg=label)
+
+
+def test_a_study_is_random_unless_what_is_random_is_off():
+    assert noisy(model="SOMETIMES").random
+    assert noisy(model="SOMETIMES", fixed={"x2": 0.5}).random
+    off = noisy(model="SOMETIMES", fixed={"x2": 0.0})
+    assert not off.random and group_size(off) == 3
+
+
+@pytest.mark.parametrize("method", GROUPED)
+def test_any_chunking_gives_the_same_bits(method):
+    study = noisy(method, max(8, DESIGNS[method].least), 2)
+    whole, n = row_block(study, 0, rows(study)), rows(study)
+    edges = [0, 1, n // 3, n // 3 + 4, n - 3, n]
+    parts = [row_block(study, i, j) for i, j in zip(edges, edges[1:], strict=False)]
+    for one, pieces in zip(whole, zip(*parts, strict=True), strict=True):
+        assert one.tobytes() == np.concatenate(pieces).tobytes()
+
+
+@pytest.mark.parametrize("method", [name for name in GROUPED if DESIGNS[name].append_only])
+def test_more_samples_leave_the_first_rows_of_a_random_model_as_they_are(method):
+    study = noisy(method, 16, 3)
+    longer = row_block(study.with_samples(64), 0, rows(study))
+    for one, other in zip(longer, row_block(study, 0, rows(study)), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+# The indices
+
+
+def test_sobol_indices_leave_the_noise_out_and_tell_its_share():
+    # y = x1 + noise: half the variance each, and x2 idle.
+    entry = sensitivities(computed(noisy(samples=256)))["outputs"]["y"]
+    assert entry["ST"]["x2"]["value"] == entry["S1"]["x2"]["value"] == 0
+    for name, truth in (("S1", 0.5), ("ST", 0.5)):
+        one = entry[name]["x1"]
+        assert one["value"] == pytest.approx(truth, abs=0.06)
+        assert one["low"] <= truth <= one["high"]
+    noise = entry["noise"]
+    assert noise["low"] <= 0.5 <= noise["high"]
+    assert noise["high"] - noise["low"] < 0.1
+    assert any("share a seed" in note and "noise" in note for note in entry["notes"])
+
+
+def test_total_indices_hold_what_noise_does_together_with_an_input():
+    # crossed = x1 + 2 x2 e: Var x1 = 1/12; E (2 x2 e)^2 = 4/3/12, a quarter of it through x2.
+    whole = 1 + 4 / 3
+    study = noisy(samples=1024, second_order=True)
+    entry = sensitivities(computed(study), output="crossed")["outputs"]["crossed"]
+    truth = {"S1": (1 / whole, 0.0), "ST": (1 / whole, (1 / 3) / whole)}
+    for kind, values in truth.items():
+        for name, value in zip(("x1", "x2"), values, strict=True):
+            assert entry[kind][name]["value"] == pytest.approx(value, abs=0.04), (kind, name)
+    assert entry["noise"]["value"] == pytest.approx(4 / 3 / whole, abs=0.03)
+    assert entry["S2"]["x1,x2"]["value"] == pytest.approx(0.0, abs=0.04)
+
+
+def test_shapley_effects_of_an_idle_input_are_zero():
+    entry = sensitivities(computed(noisy("shapley", 256, 1)))["outputs"]["y"]
+    assert entry["shapley"]["x2"]["value"] == 0
+    assert entry["shapley"]["x1"]["value"] == pytest.approx(1)
+    assert any("share a seed" in note for note in entry["notes"])
+
+
+def test_effects_of_morris_hold_no_noise():
+    entry = sensitivities(computed(noisy("morris", 16, 4)))["outputs"]["y"]
+    assert entry["mu_star"]["x2"]["value"] == 0
+    assert entry["mu_star"]["x1"]["value"] == pytest.approx(1)
+    assert entry["sigma"]["x1"]["value"] == pytest.approx(0, abs=1e-12)
+
+
+def test_fast_leaves_the_noise_out():
+    entry = sensitivities(computed(noisy("fast", 257, 4)))["outputs"]["y"]
+    assert entry["ST"]["x2"]["value"] == pytest.approx(0, abs=0.01)
+    assert entry["S1"]["x1"]["value"] == pytest.approx(1, abs=0.01)
+
+
+def test_rows_of_their_own_have_the_noise_in_them_and_say_nothing_of_it():
+    entry = sensitivities(computed(noisy("monte-carlo", 1024, 1)))["outputs"]["y"]
+    assert entry["S1"]["x1"]["value"] == pytest.approx(0.5, abs=0.08)
+    assert "noise" not in entry and not entry["notes"]
+
+
+def test_a_model_that_is_not_random_has_no_share_of_noise():
+    ds = computed(noisy(model="SOMETIMES", fixed={"x2": 0.0}))
+    assert "noise" not in sensitivities(ds)["outputs"]["y"]
+    assert "random" not in ds.attrs and "noise" not in sensitivity(ds)
+
+
+def test_share_of_noise_covers_its_truth():
+    study = noisy(samples=32)
+    held = []
+    for seed in range(60):
+        noise = sensitivities(computed(with_seed(study, seed)))["outputs"]["y"]["noise"]
+        held.append(noise["low"] <= 0.5 <= noise["high"])
+    assert np.mean(held) >= 0.87  # three standard errors below 0.95
+
+
+# What else reads such rows
+
+
+def test_plain_statistics_use_a_and_b_alone():
+    ds = computed(noisy(samples=64, replicates=4))
+    told = summarise(ds)
+    assert (told["samples"], told["rows_used"]) == (64 * 4 * 5, 64 * 4 * 2)
+    ends = np.isin(ds["block"].values, [0, 3])
+    assert told["outputs"]["y"]["mean"] == pytest.approx(ds["y"].values[ends].mean())
+
+
+def test_a_failed_row_of_the_noise_block_drops_its_group():
+    ds = computed(noisy(samples=16, replicates=4))
+    row = int(np.flatnonzero(ds["block"].values == 4)[3])
+    y = ds["y"].copy()
+    y[row] = np.nan
+    found = sensitivities(with_status(ds.assign(y=y), [row], 2), output="y")
+    assert found["groups_dropped"] == 1 and found["rows_used"] == 63 * 5
+
+
+def test_arrays_have_the_share_of_noise():
+    found = sensitivity(computed(noisy(samples=64)))
+    share = [float(found[name].sel(output="y")) for name in ("noise_low", "noise", "noise_high")]
+    assert share == sorted(share) and share[1] == pytest.approx(0.5, abs=0.1)
+
+
+def test_widths_and_convergence_take_such_rows():
+    ds = computed(noisy(samples=64))
+    assert expected_widths(ds)["y"]["ST"] > 0
+    assert "S1 x1" in set(running_estimates(ds, "y")["estimate"])
+    assert "S1" not in expected_widths(computed(noisy("shapley", 64)))["y"]
+
+
+def test_tables_show_the_share_of_noise(uq, folder):
+    (folder / "noisy.toml").write_text(noisy(samples=16).text)
+    told = " ".join(uq("check", "noisy.toml", "--model", "sample_models:NOISY").out.split())
+    assert "5 rows each" in told and "the model is random: rows that are compared share" in told
+    run = uq("run", "noisy.toml", "-o", "noisy.nc", "--model", "sample_models:NOISY")
+    assert run.code == 0
+    more = ("--samples", "32", "--model", "sample_models:NOISY")
+    assert uq("extend", "noisy.nc", *more).code == 0
+    shown = uq("sensitivity", "noisy.nc").out
+    assert "noise" in shown and "share of variance" in shown
+    assert uq("report", "noisy.nc", "-o", "noisy.html").code == 0
+    assert "Share of noise" in (folder / "noisy.html").read_text()
+    assert uq("plot", "noisy.nc", "-o", "figures").code == 0

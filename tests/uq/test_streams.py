@@ -1,0 +1,58 @@
+"""What is printed has nowhere to go: one line, an exit code, and no harm to files."""
+
+import os
+import subprocess
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+import uq as api
+
+COMMAND = Path(sys.executable).with_name("uq")
+FULL, CLOSED = "No space left on device", "Bad file descriptor"
+
+
+@pytest.fixture(params=[True, False], ids=["buffered", "unbuffered"])
+def shell(request, folder):
+    """Return a function that has a shell run ``uq ARGUMENTS``, with redirections."""
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    if not request.param:
+        environment["PYTHONUNBUFFERED"] = "1"
+
+    def call(line):
+        ended = subprocess.run(
+            f"'{COMMAND}' {line}", shell=True, env=environment, capture_output=True, text=True
+        )
+        return ended.returncode, ended.stderr
+
+    return call
+
+
+@pytest.mark.parametrize("verb", ["schema", "models linear", "--version", "run --help"])
+def test_output_that_is_lost_is_a_line(shell, verb):
+    lost = "uq: standard output cannot be written: "
+    assert shell(f"{verb} > /dev/full") == (1, f"{lost}{FULL}\n")
+    assert shell(f"{verb} >&-") == (1, f"{lost}{CLOSED}\n")
+
+
+def test_a_mistake_keeps_its_exit_code(shell):
+    said = "no such model 'nothing'"
+    assert shell("init nothing 2>/dev/full") == (2, "")
+    assert shell("init nothing 2>&-") == (2, "")
+    code, told = shell("init nothing >&-")
+    assert (code, told[: len(said)], told.count("\n")) == (2, said, 1)
+
+
+@pytest.mark.parametrize("shell", [True], indirect=True)
+def test_a_run_without_any_stream_writes_a_sound_result(shell, write_study):
+    study = write_study(samples=8)
+    assert shell(f"run {study} --workers 0 --quiet <&- >&- 2>&-") == (0, "")
+    assert api.open_result("results/small.nc").sizes["sample"] == 8
+    code, told = shell(f"run {study} --workers 0 >&-")
+    assert (code, told) == (1, f"uq: standard output cannot be written: {CLOSED}\n")
+
+
+def test_the_version_is_that_of_the_distribution(uq):
+    assert uq("--version") == (0, f"vibrolife {version('vibrolife')}\n", "")

@@ -1,0 +1,98 @@
+"""Standard streams that are closed, full, or no longer read: said in a line, not a traceback."""
+
+import errno
+import io
+import os
+import sys
+from contextlib import suppress
+from typing import TextIO
+
+from uq.literals import plain_line
+
+_PLACES = ((0, os.O_RDONLY), (1, os.O_RDONLY), (2, os.O_WRONLY))
+
+
+class Watched(io.TextIOWrapper):
+    """A stream that remembers why it could not be written.
+
+    Attributes
+    ----------
+    failure : OSError or None
+    """
+
+    failure: OSError | None = None
+
+    def write(self, text: str) -> int:
+        """Write text, as every stream does."""
+        try:
+            return super().write(text)
+        except OSError as error:
+            self.failure = error
+            raise
+
+    def flush(self) -> None:
+        """Write what waits to be written."""
+        try:
+            super().flush()
+        except OSError as error:
+            self.failure = error
+            raise
+
+
+def watch() -> None:
+    """Watch over the standard streams, and fill the places of closed ones.
+
+    Else the next file opened would stand for one. What is then written to standard output fails;
+    what is said to standard error is lost.
+    """
+    for number, way in _PLACES:  # each opens at the lowest number that is free
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, way)
+    sys.stdout, sys.stderr = _watched(sys.stdout, 1), _watched(sys.stderr, 2)
+
+
+def _watched(stream: TextIO | None, number: int) -> TextIO:
+    if stream is None:
+        return Watched(open(number, "wb", closefd=False), "utf-8")
+    if type(stream) is not io.TextIOWrapper:  # somebody else sees to it
+        return stream
+    how = (stream.encoding, stream.errors, None, stream.line_buffering, stream.write_through)
+    return Watched(stream.detach(), *how)
+
+
+def complain(*lines: str) -> None:
+    """Print lines to standard error, if that takes any."""
+    with suppress(OSError):
+        for line in lines:
+            print(plain_line(line), file=sys.stderr)
+
+
+def are_lost() -> bool:
+    """Return whether something printed had nowhere to go: then that is what went wrong."""
+    return any(getattr(stream, "failure", None) for stream in (sys.stdout, sys.stderr))
+
+
+def finish(code: int) -> int:
+    """Write what is left to be written; return the exit code of a process that is about to end."""
+    error = _failure(sys.stdout)
+    if error is not None:
+        code = code or 1
+        if error.errno != errno.EPIPE:  # else whoever read it, such as "head", has had enough
+            complain(f"uq: standard output cannot be written: {error.strerror}")
+        _discard(sys.stdout)
+    if _failure(sys.stderr) is not None:
+        _discard(sys.stderr)
+    return code
+
+
+def _failure(stream: TextIO) -> OSError | None:
+    with suppress(OSError):
+        stream.flush()
+    return getattr(stream, "failure", None)
+
+
+def _discard(stream: TextIO) -> None:
+    """Have the interpreter lose, without a word, what it would write when it ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

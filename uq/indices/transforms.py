@@ -1,0 +1,142 @@
+"""What stands for an output whose own variance says little: its logarithm, its rank, its rate.
+
+A life may never end or be censored; and where a few rows hold most of a variance, an index of it is
+about these rows.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import stats
+
+from uq.rows.elements import Element, Floats
+from uq.tails import heavier_tail
+from uq.wording import percent
+
+LARGEST = 0.01
+"""Share of the rows that a heavy tail is judged by: those farthest from the mean."""
+
+HEAVY = 1 / 3
+"""They hold 8 % of the variance of a normal law, 22 % of an exponential one, 49 % of a lognormal
+one with sigma = 1; beyond a third the tail counts as heavy."""
+
+FEWEST = 100
+"""Of fewer rows one alone is more than `LARGEST`: nothing is judged."""
+
+
+class Transformed(NamedTuple):
+    """One number per row, NaN where there is none; and why there can be none at all, or ""."""
+
+    values: Floats
+    refused: str = ""
+
+
+def tail_share(values: Floats) -> float:
+    """Return the share of the variance that lies in the 1 % of rows farthest from the mean.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where there is none.
+
+    Returns
+    -------
+    float
+        0 where there are fewer than `FEWEST` values, or all are the same.
+    """
+    known = values[np.isfinite(values)]
+    if len(known) < FEWEST or not np.ptp(known) > 0:
+        return 0.0
+    scaled = known / np.abs(known).max()  # squares neither overflow nor vanish
+    squares = np.sort((scaled - scaled.mean()) ** 2)
+    return float(squares[-int(np.ceil(LARGEST * len(known))) :].sum() / squares.sum())
+
+
+def heaviness(values: Floats) -> str:
+    """Say why indices of the variance of these values are about a few of them.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where there is none.
+
+    Returns
+    -------
+    str
+        A clause; "" where the largest 1 % hold less than `HEAVY` of the variance, and the tail's
+        shape does not speak against a finite one (`uq.tails`).
+    """
+    share = tail_share(values)
+    if share > HEAVY:
+        return f"{100 * LARGEST:g} % of the rows hold {percent(share)} of the variance"
+    tail = heavier_tail(values[np.isfinite(values)])
+    if tail is not None and tail.no_variance:
+        return f"the {tail.side} tail speaks against a finite variance (k = {tail.k:.2g})"
+    return ""
+
+
+def logarithm(element: Element) -> Transformed:
+    """Return the natural logarithm of an output; refused where a row has none."""
+    nothing = np.full(len(element.values), np.nan)
+    counts = {
+        "never end": int(element.never.sum()),
+        "are censored": int(element.censored.sum()),
+        "are not positive": int((element.values <= 0).sum()),
+    }
+    told = [f"{count} {what}" for what, count in counts.items() if count]
+    if told:
+        rows = f"of {int(element.present.sum())} rows {' and '.join(told)}"
+        return Transformed(nothing, f"{rows}: no logarithm; ask for rank({element.name})")
+    return Transformed(np.log(element.values))
+
+
+def rank(element: Element) -> Transformed:
+    """Return the share of rows that lie below each, those that tie counted by half.
+
+    Parameters
+    ----------
+    element : Element
+        Rows of a lifetime that never end, and those censored after all others have ended, share the
+        highest rank: nothing is known, or needed, of their order.
+
+    Returns
+    -------
+    Transformed
+        Between 0 and 1. Refused where a row was censored while others still ended: its rank is not
+        known.
+
+    References
+    ----------
+    A. Saltelli, I. M. Sobol', "About the use of rank transformation in sensitivity analysis of
+    model output", Reliab. Eng. Syst. Saf. 50, 225-239 (1995).
+    """
+    values, present = element.values, element.present
+    beyond = element.never | element.censored
+    last = values[present & ~beyond].max(initial=-np.inf)
+    unknown = int((element.censored & (values < last)).sum())
+    if unknown:
+        return Transformed(
+            np.full(len(values), np.nan),
+            f"the ranks of {unknown} rows are not known: they were censored before the last life"
+            " ended; ask for P(T < t) by a threshold in [analysis], or lengthen the horizon",
+        )
+    ranks = np.full(len(values), np.nan)
+    known = np.where(beyond, np.inf, values)[present]
+    ranks[present] = (stats.rankdata(known) - 0.5) / max(len(known), 1)
+    return Transformed(ranks)
+
+
+def rate(element: Element) -> Transformed:
+    """Return the inverse of a life, 0 where it never ends; refused where a row has none."""
+    with np.errstate(divide="ignore"):
+        inverse = 1 / element.values
+    if censored := int(element.censored.sum()):
+        refused = (
+            f"the rate of {censored} rows is not known because their lifetimes are censored; ask"
+            " for P(T < t) by a threshold in [analysis], or lengthen the horizon"
+        )
+    elif zero := int(np.isinf(inverse).sum()):
+        refused = f"{zero} of {inverse.size} rows have lifetime zero: no rate"
+    else:
+        refused = ""
+    return Transformed(inverse, refused)
