@@ -62,6 +62,11 @@ class System(NamedTuple):
         return self.forcing / (2 * np.pi * self.beams.decay[:, 0])
 
     @property
+    def turn(self) -> Array:
+        """Forcing periods in a free oscillation of the first mode, shape (n,)."""
+        return self.forcing / self.beams.frequency[:, 0]
+
+    @property
     def longest(self) -> int:
         """Forcing periods in a time mean, at most."""
         return LONGEST

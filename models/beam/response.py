@@ -29,6 +29,7 @@ MOST_STEPS = 2**24  # of a look
 RANDOM_ACCURACY = 0.05  # relative standard error of a mean work-rate under a random load
 NINE_IN_TEN = 1.645  # standard errors within which nine in ten lie
 ACCURACY = NINE_IN_TEN * RANDOM_ACCURACY  # error of a mean for which a look goes on
+TURNS = 2  # of the first mode, in which a beam that does not touch shows that it no longer will
 MEMORIES = 5  # times what the beam remembers: in so long it forgets its start
 _NEAR = 0.05  # k times the distance of strobe points k periods apart, relative to the response
 _SHRINKING = 0.9  # factor of that distance from one look to the next
@@ -151,6 +152,7 @@ def look(
     n = len(state)
     never_touches = system.reach < gaps.min(axis=1)
     batches = np.zeros((n, longest, 2))
+    quiet = np.zeros(n)
     distance = np.full((n, LONGEST_PERIOD), np.inf)
     lag = np.arange(1, LONGEST_PERIOD + 1)
     tried = np.tile(_NEAR / _NEARER / lag, (n, 1))
@@ -164,7 +166,8 @@ def look(
             out.peak[left] = np.maximum(out.peak[left], record.peak)
         size = np.abs(record.strobe).max(axis=(1, 2))
         before, distance[left] = distance[left], _distances(record.strobe, size)
-        silent = never_touches[left] & (record.work == 0).all(axis=(1, 2))
+        quiet[left] = np.where((record.work == 0).all(axis=(1, 2)), quiet[left] + SEGMENT, 0)
+        silent = never_touches[left] & (quiet[left] >= np.maximum(SEGMENT, TURNS * part.turn))
         _note_silence(out, left[silent])
         guess = np.zeros(len(left), int)
         if (segment + 1) % (1 + segment // 4) == 0:  # late ones wait for company

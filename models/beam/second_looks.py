@@ -3,7 +3,8 @@
 One look, however its mean scatters, does not show that a response dwells in one state for longer
 than the look, nor that the start decides by a hair between several. Others begin a thousandth of a
 gap away: chaos takes them along other paths. Where they differ from the first by more than their
-errors, the largest difference is the error of its mean.
+errors, the largest difference, of either site, is the error of its mean: their responses may be
+each other's mirror images.
 """
 
 from types import ModuleType
@@ -50,5 +51,5 @@ def add_second_looks(
     shape = (len(rows), len(_AWAY), 2)
     apart = np.abs(found.work.reshape(shape) - out.work[rows, None])
     within = np.hypot(found.error.reshape(shape), out.error[rows, None])
-    beyond = np.where(apart > within, apart, 0.0).max(axis=1)
+    beyond = np.where(apart > within, apart, 0.0).max(axis=(1, 2))[:, None]
     out.error[rows] = np.maximum(out.error[rows], beyond)

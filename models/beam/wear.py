@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from models.beam.delay import push_off_unstable_orbits
 from models.beam.looks import WINDOW, History, regime_of
 from models.beam.modal import Array
-from models.beam.response import NO_IMPACT
+from models.beam.response import NO_IMPACT, TURNS
 from models.numerics.jit import kernel, lean
 
 LOOKS = 32  # changes of the acceleration in N periods
 OVERTIME = 4  # a run may last this many times N periods
 _MEMORY = 0.25  # weight of the newest look in the running work-rate
-_SILENCE = 64  # periods without contact after which a beam that need not touch never will
+_SILENCE = 64  # least periods without contact after which a beam that need not touch never will
 _EXTINCT = 1e-6  # of the first work-rate: what is left when the gaps approach the free amplitude
 
 
@@ -68,6 +68,8 @@ class _Life(NamedTuple):
         Growth of each gap so far [X0].
     clock, silence : ndarray, shape (n,)
         Accelerated time, and periods since the last contact.
+    silent : ndarray, shape (n,)
+        Periods without contact after which there will be none.
     """
 
     gaps: Array
@@ -79,6 +81,7 @@ class _Life(NamedTuple):
     grown: Array
     clock: Array
     silence: NDArray[np.int64]
+    silent: Array
 
 
 def run(
@@ -131,7 +134,8 @@ def run(
     rate = work * share
     reach = system.reach
     clock, grown, silence = np.zeros(n), np.zeros((n, 2)), np.zeros(n, np.int64)
-    life = _Life(gaps, share, growths, reach, rate.max(axis=1), rate, grown, clock, silence)
+    silent = np.maximum(_SILENCE, TURNS * system.turn)
+    life = _Life(gaps, share, growths, reach, rate.max(axis=1), rate, grown, clock, silence, silent)
     left, state, here, unstable = np.arange(n), state.copy(), gaps.copy(), np.zeros(n, bool)
     every = 8 if looks < LOOKS else 4  # looks from one check of stability to the next
     for look in range(looks * OVERTIME):
@@ -268,5 +272,5 @@ def _has_ended(i, life):
     """
     narrow = min(life.gaps[i, 0] + life.grown[i, 0], life.gaps[i, 1] + life.grown[i, 1])
     rate = max(life.rate[i, 0], life.rate[i, 1])
-    silent = life.silence[i] >= _SILENCE and life.reach[i] < narrow
+    silent = life.silence[i] >= life.silent[i] and life.reach[i] < narrow
     return silent or (rate <= _EXTINCT * life.first[i] and life.reach[i] < 1.01 * narrow)
