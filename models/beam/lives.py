@@ -177,7 +177,7 @@ def extrapolate(times: Array) -> tuple[Array, Array]:
     The error is made of what was added, how much it changes when the slowest life is left out, the
     differences themselves, and the scatter that all of them show where the variance of a life is
     one over its periods. Its factors are such that nine in ten lives lie within it, measured
-    against lives of eight times as many periods: see ``benchmarks/beam_lives.py``.
+    against lives ten times as slow: see ``benchmarks/beam_lives.py``.
 
     Parameters
     ----------
