@@ -13,6 +13,7 @@ from uq.analysis.overview import summary
 from uq.analysis.regime_split import between_share
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
+from uq.indices.sensitivities import sensitivities
 from uq.moments import moments, sd_interval, standard_deviation
 from uq.report.outcomes import outcomes, result_tables
 from uq.store import write
@@ -73,6 +74,17 @@ def test_every_reader_is_told():
         assert one["low"] is None and one["high"] is None
     value, _ = between_share(ds["z"].values, np.arange(1000) % 2)
     assert np.isnan(value)
+
+
+@pytest.mark.parametrize(("design", "method"), [("saltelli", "sobol"), ("monte-carlo", "hdmr")])
+def test_a_variance_that_does_not_exist_is_not_apportioned(design, method):
+    ds = linear(method=design, samples=1024)
+    share = stats.rankdata(ds["y"].values) / (ds.sizes["sample"] + 1)
+    ds = asking(with_output(ds, "z", stats.pareto(1.5).ppf(share)), outputs=["z"])
+    found = sensitivities(ds, method, "z")["outputs"]["z"]
+    assert "log(z)" in found["refused"] and "rank(z)" in found["refused"]
+    for name in ("log(z)", "rank(z)"):
+        assert "refused" not in sensitivities(ds, method, name)["outputs"][name]
 
 
 def test_the_terminal_and_the_report_give_the_reason(uq, folder):
