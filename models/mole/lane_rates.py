@@ -101,13 +101,14 @@ def slopes(columns: int) -> Callable[..., None]:
             k[ADDED * LANES + lane] = h * turn
             k[SINE * LANES + lane] = h * speed * cosine
             k[COSINE * LANES + lane] = -h * speed * y[SINE * LANES + lane]
-            part = weight * h
-            contact = m[CONTACT * LANES + lane] * (u - m[GAP * LANES + lane])
-            m[(INTEGRAL + PROGRESS) * LANES + lane] += part * x
-            m[(INTEGRAL + IMPACT) * LANES + lane] += part * contact * x
-            electric = m[RESISTANCE * LANES + lane] * i * i + magnetic * v
-            m[(INTEGRAL + ELECTRIC) * LANES + lane] += part * electric
-            m[(INTEGRAL + IMPULSE) * LANES + lane] += part * contact
+            if weight != 0.0:
+                part = weight * h
+                contact = m[CONTACT * LANES + lane] * (u - m[GAP * LANES + lane])
+                m[(INTEGRAL + PROGRESS) * LANES + lane] += part * x
+                m[(INTEGRAL + IMPACT) * LANES + lane] += part * contact * x
+                electric = m[RESISTANCE * LANES + lane] * i * i + magnetic * v
+                m[(INTEGRAL + ELECTRIC) * LANES + lane] += part * electric
+                m[(INTEGRAL + IMPULSE) * LANES + lane] += part * contact
             if columns > 0:
                 # Derivatives of F with respect to u and i, of i' with respect to u, v, i, p.
                 bend = m[SLOPE * LANES + lane] * added * (1 + m[SLOPE * LANES + lane] * u * u)
