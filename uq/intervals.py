@@ -149,7 +149,7 @@ def scattered_share_interval(
     estimates: Floats,
     scatter_at: Floats | float | None = None,
     confidence: float = CONFIDENCE,
-    rows: int | None = None,
+    rows: Floats | float | None = None,
 ) -> Interval:
     """Return the interval of a share, or of several, from estimates by replicates.
 
@@ -162,7 +162,7 @@ def scattered_share_interval(
     scatter_at : float or ndarray, optional
         The share whose scatter `estimates` show, if it is not exactly `share`.
     confidence : float, optional
-    rows : int, optional
+    rows : float or ndarray, shape (k,), optional
         Of all replicates together: where hits are few, they count for no more than these.
 
     Returns
@@ -209,13 +209,13 @@ def quantile(values: Floats, probability: float) -> float:
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Finite or +inf.
+        Finite or infinite.
     probability : float
 
     Returns
     -------
     float
-        +inf as soon as an infinite value takes part; NaN beyond what the values reach, see
+        Infinite as soon as an infinite value takes part; NaN beyond what the values reach, see
         `is_within`.
 
     References
@@ -225,13 +225,12 @@ def quantile(values: Floats, probability: float) -> float:
     """
     if not is_within(probability, len(values)):
         return np.nan
-    finite = values[np.isfinite(values)]
-    if len(finite) == 0:
-        return np.inf
     # Infinity times zero is no number: numpy interpolates towards a huge number instead.
-    huge = np.finfo(float).max / 4
-    found = np.quantile(np.minimum(values, huge), probability, method="median_unbiased")
-    return float(found) if found <= finite.max() else np.inf
+    huge, finite = np.finfo(float).max / 4, values[np.isfinite(values)]
+    found = np.quantile(np.clip(values, -huge, huge), probability, method="median_unbiased")
+    if found > finite.max(initial=-huge):
+        return np.inf
+    return float(found) if found >= finite.min(initial=huge) else -np.inf
 
 
 def quantile_interval(
@@ -242,7 +241,7 @@ def quantile_interval(
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Finite or +inf.
+        Finite or infinite.
     probability : float
     replicate : ndarray of int, shape (n,), optional
     confidence : float, optional
@@ -251,7 +250,8 @@ def quantile_interval(
     -------
     Interval
         Independent rows: order statistics, by the binomial law [1]_. Replicates: the quantiles at
-        both ends of the interval of the share of rows below the quantile [2]_. Bounds may be +inf.
+        both ends of the interval of the share of rows below the quantile [2]_. Bounds may
+        be infinite.
 
     References
     ----------
@@ -271,7 +271,7 @@ def quantile_interval(
     value = quantile(values, probability)
     if np.isnan(value):
         return UNKNOWN
-    below = values <= value if np.isfinite(value) else values < value
+    below = values < value if np.isposinf(value) else values <= value
     low, high = scattered_share_interval(
         probability, _means(below, replicate), below.mean(), confidence
     )

@@ -64,6 +64,16 @@ def interval(entry: Entry, per: float = 1.0) -> str:
     return "" if ends == ["-", "-"] or ends[0] == "never" else " to ".join(ends)
 
 
+def failed_interval(entry: Entry, per: float = 1.0) -> str:
+    """Return the bounds with failed rows at best and at worst; nothing where no row failed."""
+    if "failed_low" not in entry:
+        return ""
+    low, high = (known(entry, f"failed_{end}", per) for end in ("low", "high"))
+    if low == "-":
+        return "no bound" if high == "-" else f"up to {high}"
+    return f"from {low} on" if high == "-" else f"{low} to {high}"
+
+
 def estimated(label: str, per: float = 1.0) -> str:
     """Return what is estimated: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours."""
     if not label.startswith("P("):
@@ -111,7 +121,11 @@ def percent_with_interval(entry: Entry) -> str:
     """Return a share in per cent, with its interval where it has one."""
     ends = [entry[end] for end in ("low", "high")]
     told = percent(entry["value"])
-    return told if None in ends else f"{told} ({percent_interval(*ends)})"
+    if None in ends:
+        return told
+    bounds = [entry[end] for end in ("failed_low", "failed_high") if entry.get(end) is not None]
+    worst = f"; with failed rows {percent_interval(*bounds)}" if len(bounds) == 2 else ""
+    return f"{told} ({percent_interval(*ends)}{worst})"
 
 
 def percent_interval(low: float, high: float) -> str:

@@ -69,7 +69,8 @@ def _row(line):
     name = f"**{what}**" if by == OURS else what
     covered = f"{value:.1%} ({low:.1%} to {high:.1%})" if line.given else "none given"
     width = f"{line.width:.3g}" if math.isfinite(line.width) else ""
-    remark = line.reason if line.by != OURS or _is_off(line) else ""
+    told = line.by != OURS or not line.given or _is_off(line)
+    remark = line.reason if told else ""
     if line.given < line.repetitions:
         remark = "; ".join(filter(None, [f"{line.repetitions - line.given} not given", remark]))
     return f"| {name} | {by} | {covered} | {line.given} | {width} | {remark} |"

@@ -4,7 +4,16 @@ from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
-from benchmarks.coverage import differences, further, indices, known_indices, lives, noise, plain
+from benchmarks.coverage import (
+    differences,
+    few,
+    further,
+    indices,
+    known_indices,
+    lives,
+    noise,
+    plain,
+)
 from benchmarks.coverage.tally import Line
 
 REPETITIONS = 2000
@@ -52,6 +61,10 @@ PARTS = {
     "bootstraps": Part(indices.bootstraps, 200),
     "differences": Part(differences.differences),
     "twin": Part(further.twin),
+    "few-shares": Part(few.shares, 1000),
+    "few-indices": Part(few.indices, 1000),
+    "few-twin": Part(few.twin, 1000),
+    "failed": Part(few.failed, 1000),
     "stopped": Part(further.stopped),
     "subset": Part(further.subset),
     "subset-plateau": Part(further.plateau, 1000),

@@ -26,6 +26,7 @@ from models.beam.random_load import (
     turn_at,
 )
 from models.numerics.blocks import LANES, aligned
+from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
 from models.numerics.sincos import cosine_sine
 
@@ -166,7 +167,7 @@ def sum_lines(load, state, first, period, lines):
                 slots[k + _COSINE * LANES],
             )
             slots[k] = a * c
-            slots[k + LANES] = -2 * a * sine * (s * cosine + c * sine)
+            slots[k + LANES] = -2 * a * sine * fma(s, cosine, c * sine)
     total[:] = 0.0
     for j in range(0, COUNT, 4):
         four = slots[j * _LINE * LANES : (j + 4) * _LINE * LANES]
@@ -178,13 +179,13 @@ def sum_lines(load, state, first, period, lines):
 def _turn(u, e, slow):
     """Turn a line by four steps."""
     u0 = u + e
-    e -= slow * u0
+    e = fma(-slow, u0, e)
     u1 = u0 + e
-    e -= slow * u1
+    e = fma(-slow, u1, e)
     u2 = u1 + e
-    e -= slow * u2
+    e = fma(-slow, u2, e)
     u3 = u2 + e
-    e -= slow * u3
+    e = fma(-slow, u3, e)
     return u0, u1, u2, u3, e
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from models.beam.lane_systems import System
 from models.beam.modal import Array
 from models.numerics.blocks import LANES, aligned
+from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
 _UNROLL = 4  # modes in the straight-line body of the inner loop
@@ -24,7 +25,7 @@ _P, _X1, _X2, _SUM, _HEAD = range(5)  # slots of a block beside its modes
 def _linearise(x, x1, x2, right, left, sigma):
     """Return reply, now, then_1 and then_2 of the step that arrives at x; see `lanes._step`."""
     side, gap = (1.0, right) if x > 0.0 else (-1.0, left)
-    d0, d = side * x1 - gap, side * x - gap
+    d0, d = fma(side, x1, -gap), fma(side, x, -gap)
     stiff = 1 / (1 - sigma)
     reply, now, then_1, then_2 = 1.0, 0.0, 0.0, 0.0
     if d > 0.0:
@@ -34,8 +35,8 @@ def _linearise(x, x1, x2, right, left, sigma):
     if d0 * d < 0.0:
         travel = d - d0
         weight = 0.5 / (abs(travel) * travel)
-        now -= reply * weight * d0 * d0
-        then_1 += weight * d * d
+        now = fma(-reply * weight * d0, d0, now)
+        then_1 = fma(weight * d, d, then_1)
     return reply, now, then_1, then_2
 
 
@@ -58,25 +59,26 @@ def _step(modes, w, head, coefficients):
                 p = top[_P * LANES + lane]
                 k = g * (2 * _UNROLL * LANES) + lane
                 y = column[k]
-                y0 = column[k + LANES] + t0 * y + a0 * p
-                column[k + LANES] = b0 * p - d0 * y
+                y0 = fma(a0, p, fma(t0, y, column[k + LANES]))
+                column[k + LANES] = fma(b0, p, -d0 * y)
                 column[k] = y0
                 y = column[k + 2 * LANES]
-                y1 = column[k + 3 * LANES] + t1 * y + a1 * p
-                column[k + 3 * LANES] = b1 * p - d1 * y
+                y1 = fma(a1, p, fma(t1, y, column[k + 3 * LANES]))
+                column[k + 3 * LANES] = fma(b1, p, -d1 * y)
                 column[k + 2 * LANES] = y1
                 y = column[k + 4 * LANES]
-                y2 = column[k + 5 * LANES] + t2 * y + a2 * p
-                column[k + 5 * LANES] = b2 * p - d2 * y
+                y2 = fma(a2, p, fma(t2, y, column[k + 5 * LANES]))
+                column[k + 5 * LANES] = fma(b2, p, -d2 * y)
                 column[k + 4 * LANES] = y2
                 y = column[k + 6 * LANES]
-                y3 = column[k + 7 * LANES] + t3 * y + a3 * p
-                column[k + 7 * LANES] = b3 * p - d3 * y
+                y3 = fma(a3, p, fma(t3, y, column[k + 7 * LANES]))
+                column[k + 7 * LANES] = fma(b3, p, -d3 * y)
                 column[k + 6 * LANES] = y3
                 top[_SUM * LANES + lane] += (y0 + y1) + (y2 + y3)
         for lane in range(LANES):
             free, x1 = top[_SUM * LANES + lane], top[_X1 * LANES + lane]
-            top[_P * LANES + lane] = now * free + then_1 * x1 + then_2 * top[_X2 * LANES + lane]
+            p = fma(then_2, top[_X2 * LANES + lane], fma(now, free, then_1 * x1))
+            top[_P * LANES + lane] = p
             top[_X2 * LANES + lane] = x1
             top[_X1 * LANES + lane] = reply * free
 

@@ -25,6 +25,7 @@ from models.beam.lane_systems import System, groups, start
 from models.beam.lane_tangents import carry
 from models.beam.modal import Array, Record
 from models.numerics.blocks import LANES, aligned
+from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
 __all__ = ["advance", "groups", "monodromy", "start"]
@@ -96,38 +97,34 @@ def _step(w, head, groups, cosine, sine):
             p = head[_P * LANES + lane]
             k = g * (_UNROLL * _MODE * LANES) + lane
             y = w[k]
-            y0 = w[k + LANES] + w[k + 2 * LANES] * y + w[k + 4 * LANES] * p
-            w[k + LANES] = w[k + 5 * LANES] * p - w[k + 3 * LANES] * y
+            y0 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
             w[k] = y0
             k += _MODE * LANES
             y = w[k]
-            y1 = w[k + LANES] + w[k + 2 * LANES] * y + w[k + 4 * LANES] * p
-            w[k + LANES] = w[k + 5 * LANES] * p - w[k + 3 * LANES] * y
+            y1 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
             w[k] = y1
             k += _MODE * LANES
             y = w[k]
-            y2 = w[k + LANES] + w[k + 2 * LANES] * y + w[k + 4 * LANES] * p
-            w[k + LANES] = w[k + 5 * LANES] * p - w[k + 3 * LANES] * y
+            y2 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
             w[k] = y2
             k += _MODE * LANES
             y = w[k]
-            y3 = w[k + LANES] + w[k + 2 * LANES] * y + w[k + 4 * LANES] * p
-            w[k + LANES] = w[k + 5 * LANES] * p - w[k + 3 * LANES] * y
+            y3 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
             w[k] = y3
             head[_SUM * LANES + lane] += (y0 + y1) + (y2 + y3)
     for lane in range(LANES):
         right, left = head[_RIGHT * LANES + lane], head[_LEFT * LANES + lane]
-        free = (
-            head[_SUM * LANES + lane]
-            + head[_RE * LANES + lane] * cosine
-            - head[_IM * LANES + lane] * sine
-            + head[_RANDOM * LANES + lane]
-        )
+        free = fma(head[_RE * LANES + lane], cosine, head[_SUM * LANES + lane])
+        free = fma(-head[_IM * LANES + lane], sine, free) + head[_RANDOM * LANES + lane]
         over, under = free - right, -free - left
         p = ((over if over > 0.0 else 0.0) - (under if under > 0.0 else 0.0)) * head[
             _STIFF * LANES + lane
         ]
-        x = free + head[_SIGMA * LANES + lane] * p
+        x = fma(head[_SIGMA * LANES + lane], p, free)
         x1 = head[_X1 * LANES + lane]
         before, after = x1 - head[_X2 * LANES + lane], x - x1
         # Of the contact's corrections below, some is left in p beyond it: it does not tell contact.
@@ -135,19 +132,19 @@ def _step(w, head, groups, cosine, sine):
         # Two divisions in one: of the turning point's parabola, and of the crossing's position.
         turned = (before * after < 0.0) & (in_right | in_left)
         side, gap = (1.0, right) if x > 0.0 else (-1.0, left)
-        d0, d = side * x1 - gap, side * x - gap
+        d0, d = fma(side, x1, -gap), fma(side, x, -gap)
         crossed = d0 * d < 0.0
         curvature = after - before if turned else 1.0
         travel = abs(d - d0) if crossed else 1.0
         inverse = 1 / (curvature * travel)
         # Work (eq 8) is the sum of d^2 over the extrema of the penetration d, signed outward.
         swing = before + after
-        vertex = x1 - 0.125 * swing * swing * (inverse * travel)
+        vertex = fma(-0.125 * swing * swing, inverse * travel, x1)
         d_right = vertex - right if turned & in_right else 0.0
         d_left = -vertex - left if turned & in_left else 0.0
         outward = 1.0 if before > 0.0 else -1.0
-        head[_WORK_R * LANES + lane] += outward * d_right * d_right
-        head[_WORK_L * LANES + lane] -= outward * d_left * d_left
+        head[_WORK_R * LANES + lane] = fma(outward * d_right, d_right, head[_WORK_R * LANES + lane])
+        head[_WORK_L * LANES + lane] = fma(-outward * d_left, d_left, head[_WORK_L * LANES + lane])
         peak_r, peak_l = head[_PEAK_R * LANES + lane], head[_PEAK_L * LANES + lane]
         head[_PEAK_R * LANES + lane] = d_right if d_right > peak_r else peak_r
         head[_PEAK_L * LANES + lane] = d_left if d_left > peak_l else peak_l

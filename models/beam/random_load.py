@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.parameters import Rows
+from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
 Array = NDArray[np.float64]
@@ -197,10 +198,10 @@ def respond(lines, forcing, frequency, decay, mobility):
         w = lines[j, SPEED] * forcing
         re = im = 0.0
         for i in range(frequency.size):
-            stiff, damp = frequency[i] ** 2 - w * w, 2 * decay[i] * w
-            per = mobility[i] / (stiff * stiff + damp * damp)
-            re += stiff * per
-            im -= damp * per
+            stiff, damp = fma(-w, w, frequency[i] ** 2), 2 * decay[i] * w
+            per = mobility[i] / fma(stiff, stiff, damp * damp)
+            re = fma(stiff, per, re)
+            im = fma(-damp, per, im)
         lines[j, AMPLITUDE] *= np.sqrt(re * re + im * im)
         lines[j, TURN] += np.arctan2(im, re) / (2 * np.pi)
 
@@ -218,10 +219,10 @@ def add_modes(lines, period, sign, forcing, frequency, decay, mobility, modes):
         c = sign * lines[j, AMPLITUDE] * np.cos(angle)
         s = sign * lines[j, AMPLITUDE] * np.sin(angle)
         for i in range(frequency.size):
-            stiff, damp = frequency[i] ** 2 - w * w, 2 * decay[i] * w
-            per = mobility[i] / (stiff * stiff + damp * damp)
-            modes[0, i] += per * (stiff * c + damp * s)
-            modes[1, i] += per * w * (damp * c - stiff * s)
+            stiff, damp = fma(-w, w, frequency[i] ** 2), 2 * decay[i] * w
+            per = mobility[i] / fma(stiff, stiff, damp * damp)
+            modes[0, i] = fma(per, fma(stiff, c, damp * s), modes[0, i])
+            modes[1, i] = fma(per * w, fma(damp, c, -stiff * s), modes[1, i])
 
 
 @kernel

@@ -12,6 +12,7 @@ from models.mole.friction import bar_hold, decide, mole_hold, response
 from models.mole.lane_block import BAR, LANES, MOLE, TOUCH
 from models.mole.parameters import PHYSICAL
 from models.mole.system import Mole
+from models.numerics.fma import fma
 from models.numerics.jit import lean
 
 _LONGEST = 0.6  # step times the fastest rate
@@ -121,11 +122,12 @@ def judge(m, y, k):
         kv, kx = k[at.V * LANES + lane], k[at.X * LANES + lane]
         slope = m[at.SLOPE * LANES + lane]
         rise = slope * u * added
-        bend = slope * added * (1 + slope * u * u)
+        bend = slope * added * fma(slope * u, u, 1.0)
         stiffness, damping = m[at.STIFFNESS * LANES + lane], m[at.DAMPING * LANES + lane]
-        force = 0.5 * i * i * rise + m[at.FORCE * LANES + lane] - stiffness * u - damping * v
-        change = i * k[at.CURRENT * LANES + lane] * rise - damping * kv
-        change += (0.5 * i * i * bend - stiffness) * v * m[at.STEP * LANES + lane]
+        force = fma(0.5 * i * i, rise, m[at.FORCE * LANES + lane])
+        force = fma(-damping, v, fma(-stiffness, u, force))
+        change = fma(i * k[at.CURRENT * LANES + lane], rise, -damping * kv)
+        change = fma(fma(0.5 * i * i, bend, -stiffness) * v, m[at.STEP * LANES + lane], change)
         m[at.REACH * LANES + lane] = reach(u, v, m[at.WIDTH * LANES + lane])
         open_ = m[at.OPEN * LANES + lane]
         m[(at.END + TOUCH) * LANES + lane] = open_ * (m[at.GAP * LANES + lane] - u)
@@ -133,15 +135,15 @@ def judge(m, y, k):
         slip, hold = m[at.BAR_SLIP * LANES + lane], m[at.BAR_HOLD * LANES + lane]
         load = force + m[at.BAR_OFFSET * LANES + lane]
         side = hold if load > 0 else -hold
-        spare = m[at.BAR_LIMIT * LANES + lane] - side * load
-        m[(at.END + BAR) * LANES + lane] = slip * v + spare
-        m[(at.END_RATE + BAR) * LANES + lane] = slip * kv - side * change
+        spare = fma(-side, load, m[at.BAR_LIMIT * LANES + lane])
+        m[(at.END + BAR) * LANES + lane] = fma(slip, v, spare)
+        m[(at.END_RATE + BAR) * LANES + lane] = fma(slip, kv, -side * change)
         slip, hold = m[at.MOLE_SLIP * LANES + lane], m[at.MOLE_HOLD * LANES + lane]
         load = force + m[at.MOLE_OFFSET * LANES + lane]
         side = hold if load > 0 else -hold
-        spare = m[at.MOLE_LIMIT * LANES + lane] - side * load
-        m[(at.END + MOLE) * LANES + lane] = slip * x + spare
-        m[(at.END_RATE + MOLE) * LANES + lane] = slip * kx - side * change
+        spare = fma(-side, load, m[at.MOLE_LIMIT * LANES + lane])
+        m[(at.END + MOLE) * LANES + lane] = fma(slip, x, spare)
+        m[(at.END_RATE + MOLE) * LANES + lane] = fma(slip, kx, -side * change)
 
 
 @lean

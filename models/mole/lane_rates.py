@@ -46,6 +46,7 @@ from models.mole.lane_block import (
     X,
 )
 from models.numerics.blocks import LANES
+from models.numerics.fma import fma
 from models.numerics.jit import lean
 
 
@@ -88,33 +89,34 @@ def slopes(columns: int) -> Callable[..., None]:
             inverse = 1 / (m[COIL * LANES + lane] + added)
             magnetic = 0.5 * i * i * rise
             resisted = m[RESISTANCE * LANES + lane] + turn
-            current = (p - resisted * i) * inverse
-            force = magnetic + m[FORCE * LANES + lane] - m[STIFFNESS * LANES + lane] * u
-            force -= m[DAMPING * LANES + lane] * v
+            current = fma(-resisted, i, p) * inverse
+            force = fma(-m[STIFFNESS * LANES + lane], u, magnetic + m[FORCE * LANES + lane])
+            force = fma(-m[DAMPING * LANES + lane], v, force)
             speed, drive = m[SPEED * LANES + lane], m[DRIVE * LANES + lane]
             k[U * LANES + lane] = h * v
-            k[V * LANES + lane] = h * (m[A * LANES + lane] * force + m[B * LANES + lane])
-            k[X * LANES + lane] = h * (m[D * LANES + lane] * force + m[E * LANES + lane])
+            k[V * LANES + lane] = h * fma(m[A * LANES + lane], force, m[B * LANES + lane])
+            k[X * LANES + lane] = h * fma(m[D * LANES + lane], force, m[E * LANES + lane])
             k[CURRENT * LANES + lane] = h * current
             cosine = y[COSINE * LANES + lane]
-            k[P * LANES + lane] = h * (drive * cosine - m[ELASTANCE * LANES + lane] * i)
+            k[P * LANES + lane] = h * fma(drive, cosine, -m[ELASTANCE * LANES + lane] * i)
             k[ADDED * LANES + lane] = h * turn
             k[SINE * LANES + lane] = h * speed * cosine
             k[COSINE * LANES + lane] = -h * speed * y[SINE * LANES + lane]
             if weight != 0.0:
                 part = weight * h
                 contact = m[CONTACT * LANES + lane] * (u - m[GAP * LANES + lane])
-                m[(INTEGRAL + PROGRESS) * LANES + lane] += part * x
-                m[(INTEGRAL + IMPACT) * LANES + lane] += part * contact * x
-                electric = m[RESISTANCE * LANES + lane] * i * i + magnetic * v
-                m[(INTEGRAL + ELECTRIC) * LANES + lane] += part * electric
-                m[(INTEGRAL + IMPULSE) * LANES + lane] += part * contact
+                j = INTEGRAL * LANES + lane
+                m[j + PROGRESS * LANES] = fma(part, x, m[j + PROGRESS * LANES])
+                m[j + IMPACT * LANES] = fma(part * contact, x, m[j + IMPACT * LANES])
+                electric = fma(m[RESISTANCE * LANES + lane] * i, i, magnetic * v)
+                m[j + ELECTRIC * LANES] = fma(part, electric, m[j + ELECTRIC * LANES])
+                m[j + IMPULSE * LANES] = fma(part, contact, m[j + IMPULSE * LANES])
             if columns > 0:
                 # Derivatives of F with respect to u and i, of i' with respect to u, v, i, p.
-                bend = m[SLOPE * LANES + lane] * added * (1 + m[SLOPE * LANES + lane] * u * u)
-                m[JACOBIAN * LANES + lane] = 0.5 * i * i * bend - m[STIFFNESS * LANES + lane]
+                bend = m[SLOPE * LANES + lane] * added * fma(m[SLOPE * LANES + lane] * u, u, 1.0)
+                m[JACOBIAN * LANES + lane] = fma(0.5 * i * i, bend, -m[STIFFNESS * LANES + lane])
                 m[(JACOBIAN + 1) * LANES + lane] = i * rise
-                m[(JACOBIAN + 2) * LANES + lane] = -(i * bend * v + current * rise) * inverse
+                m[(JACOBIAN + 2) * LANES + lane] = -fma(i * bend, v, current * rise) * inverse
                 m[(JACOBIAN + 3) * LANES + lane] = -i * rise * inverse
                 m[(JACOBIAN + 4) * LANES + lane] = -resisted * inverse
                 m[(JACOBIAN + 5) * LANES + lane] = inverse
@@ -123,13 +125,13 @@ def slopes(columns: int) -> Callable[..., None]:
             for lane in range(LANES):
                 h = m[STEP * LANES + lane]
                 u, v, i = y[z + lane], y[z + LANES + lane], y[z + 3 * LANES + lane]
-                force = m[JACOBIAN * LANES + lane] * u + m[(JACOBIAN + 1) * LANES + lane] * i
-                force -= m[DAMPING * LANES + lane] * v
-                current = (
-                    m[(JACOBIAN + 2) * LANES + lane] * u + m[(JACOBIAN + 3) * LANES + lane] * v
+                force = fma(m[JACOBIAN * LANES + lane], u, m[(JACOBIAN + 1) * LANES + lane] * i)
+                force = fma(-m[DAMPING * LANES + lane], v, force)
+                current = fma(
+                    m[(JACOBIAN + 2) * LANES + lane], u, m[(JACOBIAN + 3) * LANES + lane] * v
                 )
-                current += m[(JACOBIAN + 4) * LANES + lane] * i
-                current += m[(JACOBIAN + 5) * LANES + lane] * y[z + 4 * LANES + lane]
+                current = fma(m[(JACOBIAN + 4) * LANES + lane], i, current)
+                current = fma(m[(JACOBIAN + 5) * LANES + lane], y[z + 4 * LANES + lane], current)
                 k[z + lane] = h * v
                 k[z + LANES + lane] = h * m[A * LANES + lane] * force
                 k[z + 2 * LANES + lane] = h * m[D * LANES + lane] * force

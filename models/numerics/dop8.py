@@ -11,6 +11,7 @@ from typing import Any
 from scipy.integrate._ivp import dop853_coefficients as tableau
 
 from models.numerics.blocks import LANES
+from models.numerics.fma import fma
 from models.numerics.jit import lean
 from models.numerics.tsit5 import Layout
 
@@ -60,59 +61,59 @@ def combiner(quantities: int) -> Callable[[int, Any], None]:
     def combine(stage, w):
         if stage == 1:
             for j in range(n):
-                w[out + j] = w[y + j] + _A2 * w[k1 + j]
+                w[out + j] = fma(_A2, w[k1 + j], w[y + j])
         elif stage == 2:
             for j in range(n):
-                w[out + j] = w[y + j] + (_A3_1 * w[k1 + j] + _A3_2 * w[k2 + j])
+                w[out + j] = w[y + j] + fma(_A3_1, w[k1 + j], _A3_2 * w[k2 + j])
         elif stage == 3:
             for j in range(n):
-                w[out + j] = w[y + j] + (_A4_1 * w[k1 + j] + _A4_3 * w[k3 + j])
+                w[out + j] = w[y + j] + fma(_A4_1, w[k1 + j], _A4_3 * w[k3 + j])
         elif stage == 4:
             for j in range(n):
-                rise = _A5_1 * w[k1 + j] + _A5_3 * w[k3 + j] + _A5_4 * w[k4 + j]
+                rise = fma(_A5_4, w[k4 + j], fma(_A5_1, w[k1 + j], _A5_3 * w[k3 + j]))
                 w[out + j] = w[y + j] + rise
         elif stage == 5:
             for j in range(n):
-                rise = _A6_1 * w[k1 + j] + _A6_4 * w[k4 + j] + _A6_5 * w[k5 + j]
+                rise = fma(_A6_5, w[k5 + j], fma(_A6_1, w[k1 + j], _A6_4 * w[k4 + j]))
                 w[out + j] = w[y + j] + rise
         elif stage == 6:
             for j in range(n):
-                rise = _A7_1 * w[k1 + j] + _A7_4 * w[k4 + j] + _A7_5 * w[k5 + j]
-                rise += _A7_6 * w[k6 + j]
+                rise = fma(_A7_5, w[k5 + j], fma(_A7_1, w[k1 + j], _A7_4 * w[k4 + j]))
+                rise = fma(_A7_6, w[k6 + j], rise)
                 w[out + j] = w[y + j] + rise
         elif stage == 7:
             for j in range(n):
-                rise = _A8_1 * w[k1 + j] + _A8_4 * w[k4 + j] + _A8_5 * w[k5 + j]
-                rise += _A8_6 * w[k6 + j] + _A8_7 * w[k7 + j]
+                rise = fma(_A8_5, w[k5 + j], fma(_A8_1, w[k1 + j], _A8_4 * w[k4 + j]))
+                rise += fma(_A8_6, w[k6 + j], _A8_7 * w[k7 + j])
                 w[out + j] = w[y + j] + rise
         elif stage == 8:
             for j in range(n):
-                rise = _A9_1 * w[k1 + j] + _A9_4 * w[k4 + j] + _A9_5 * w[k5 + j]
-                rise += _A9_6 * w[k6 + j] + _A9_7 * w[k7 + j] + _A9_8 * w[k8 + j]
+                rise = fma(_A9_5, w[k5 + j], fma(_A9_1, w[k1 + j], _A9_4 * w[k4 + j]))
+                rise += fma(_A9_8, w[k8 + j], fma(_A9_6, w[k6 + j], _A9_7 * w[k7 + j]))
                 w[out + j] = w[y + j] + rise
         elif stage == 9:
             for j in range(n):
-                rise = _A10_1 * w[k1 + j] + _A10_4 * w[k4 + j] + _A10_5 * w[k5 + j]
-                rise += _A10_6 * w[k6 + j] + _A10_7 * w[k7 + j] + _A10_8 * w[k8 + j]
-                rise += _A10_9 * w[k9 + j]
+                rise = fma(_A10_5, w[k5 + j], fma(_A10_1, w[k1 + j], _A10_4 * w[k4 + j]))
+                rise += fma(_A10_8, w[k8 + j], fma(_A10_6, w[k6 + j], _A10_7 * w[k7 + j]))
+                rise = fma(_A10_9, w[k9 + j], rise)
                 w[out + j] = w[y + j] + rise
         elif stage == 10:
             for j in range(n):
-                rise = _A11_1 * w[k1 + j] + _A11_4 * w[k4 + j] + _A11_5 * w[k5 + j]
-                rise += _A11_6 * w[k6 + j] + _A11_7 * w[k7 + j] + _A11_8 * w[k8 + j]
-                rise += _A11_9 * w[k9 + j] + _A11_10 * w[k10 + j]
+                rise = fma(_A11_5, w[k5 + j], fma(_A11_1, w[k1 + j], _A11_4 * w[k4 + j]))
+                rise += fma(_A11_8, w[k8 + j], fma(_A11_6, w[k6 + j], _A11_7 * w[k7 + j]))
+                rise += fma(_A11_9, w[k9 + j], _A11_10 * w[k10 + j])
                 w[out + j] = w[y + j] + rise
         elif stage == 11:
             for j in range(n):
-                rise = _A12_1 * w[k1 + j] + _A12_4 * w[k4 + j] + _A12_5 * w[k5 + j]
-                rise += _A12_6 * w[k6 + j] + _A12_7 * w[k7 + j] + _A12_8 * w[k8 + j]
-                rise += _A12_9 * w[k9 + j] + _A12_10 * w[k10 + j] + _A12_11 * w[k11 + j]
+                rise = fma(_A12_5, w[k5 + j], fma(_A12_1, w[k1 + j], _A12_4 * w[k4 + j]))
+                rise += fma(_A12_8, w[k8 + j], fma(_A12_6, w[k6 + j], _A12_7 * w[k7 + j]))
+                rise += fma(_A12_11, w[k11 + j], fma(_A12_9, w[k9 + j], _A12_10 * w[k10 + j]))
                 w[out + j] = w[y + j] + rise
         else:
             for j in range(n):
-                rise = _B1 * w[k1 + j] + _B6 * w[k6 + j] + _B7 * w[k7 + j]
-                rise += _B8 * w[k8 + j] + _B9 * w[k9 + j] + _B10 * w[k10 + j]
-                rise += _B11 * w[k11 + j] + _B12 * w[k12 + j]
+                rise = fma(_B7, w[k7 + j], fma(_B1, w[k1 + j], _B6 * w[k6 + j]))
+                rise += fma(_B10, w[k10 + j], fma(_B8, w[k8 + j], _B9 * w[k9 + j]))
+                rise += fma(_B11, w[k11 + j], _B12 * w[k12 + j])
                 w[out + j] = w[y + j] + rise
 
     return combine
@@ -146,21 +147,23 @@ def estimator(quantities: int, measured: int) -> Callable[[Any, Any, Any], None]
     @lean
     def estimate(w, share, error):
         for j in range(watched):
-            e = _T1 * w[k1 + j] + _T6 * w[k6 + j] + _T7 * w[k7 + j] + _T8 * w[k8 + j]
-            e += _T9 * w[k9 + j] + _T10 * w[k10 + j] + _T11 * w[k11 + j] + _T12 * w[k12 + j]
+            e = fma(_T8, w[k8 + j], fma(_T7, w[k7 + j], fma(_T1, w[k1 + j], _T6 * w[k6 + j])))
+            late = fma(_T9, w[k9 + j], _T10 * w[k10 + j])
+            e += fma(_T12, w[k12 + j], fma(_T11, w[k11 + j], late))
             error[third + j] = e * share[j]
         for j in range(watched):
-            e = _F1 * w[k1 + j] + _F6 * w[k6 + j] + _F7 * w[k7 + j] + _F8 * w[k8 + j]
-            e += _F9 * w[k9 + j] + _F10 * w[k10 + j] + _F11 * w[k11 + j] + _F12 * w[k12 + j]
+            e = fma(_F8, w[k8 + j], fma(_F7, w[k7 + j], fma(_F1, w[k1 + j], _F6 * w[k6 + j])))
+            late = fma(_F9, w[k9 + j], _F10 * w[k10 + j])
+            e += fma(_F12, w[k12 + j], fma(_F11, w[k11 + j], late))
             error[fifth + j] = e * share[j]
         for lane in range(LANES):
             total_3 = total_5 = 0.0
             for q in range(measured):
                 e = error[third + q * LANES + lane]
-                total_3 += e * e
+                total_3 = fma(e, e, total_3)
                 e = error[fifth + q * LANES + lane]
-                total_5 += e * e
-            both = (total_5 + 0.01 * total_3) * measured
+                total_5 = fma(e, e, total_5)
+            both = fma(0.01, total_3, total_5) * measured
             error[lane] = total_5 / math.sqrt(both + 1e-300)
 
     return estimate

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate._ivp import dop853_coefficients as tableau
 
+from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
 REACHED_END, GUARDED, OUT_OF_BUDGET, STUCK = 0, 1, 2, 3
@@ -136,9 +137,9 @@ def integrator(
                 a = _A[s, j]
                 if a != 0.0:
                     for i in range(len(y)):
-                        trial[i] += a * k[j, i]
+                        trial[i] = fma(a, k[j, i], trial[i])
             for i in range(len(y)):
-                trial[i] = y[i] + h * trial[i]
+                trial[i] = fma(h, trial[i], y[i])
             rhs(t + _C[s] * h, trial, p, k[s])
 
     @kernel
@@ -149,14 +150,14 @@ def integrator(
         for i in range(len(y)):
             rise = third = fifth = 0.0
             for j in range(_STAGES):
-                rise += _B[j] * k[j, i]
-                third += _E3[j] * k[j, i]
-                fifth += _E5[j] * k[j, i]
-            new[i] = y[i] + h * rise
-            scale = absolute[i] + relative * max(abs(y[i]), abs(new[i]))
+                rise = fma(_B[j], k[j, i], rise)
+                third = fma(_E3[j], k[j, i], third)
+                fifth = fma(_E5[j], k[j, i], fifth)
+            new[i] = fma(h, rise, y[i])
+            scale = fma(relative, max(abs(y[i]), abs(new[i])), absolute[i])
             e3 += (third / scale) ** 2
             e5 += (fifth / scale) ** 2
-        return 0.0 if e5 == 0 else h * e5 / math.sqrt((e5 + 0.01 * e3) * len(y))
+        return 0.0 if e5 == 0 else h * e5 / math.sqrt(fma(0.01, e3, e5) * len(y))
 
     @kernel
     def densify(t, h, y, p, k, new, dense, trial):
@@ -165,12 +166,12 @@ def integrator(
         for i in range(len(y)):
             rise = new[i] - y[i]
             dense[0, i] = rise
-            dense[1, i] = h * k[0, i] - rise
-            dense[2, i] = 2 * rise - h * (k[_STAGES, i] + k[0, i])
+            dense[1, i] = fma(h, k[0, i], -rise)
+            dense[2, i] = fma(2.0, rise, -h * (k[_STAGES, i] + k[0, i]))
             for q in range(3, _POWER):
                 total = 0.0
                 for j in range(_ALL_STAGES):
-                    total += _D[q - 3, j] * k[j, i]
+                    total = fma(_D[q - 3, j], k[j, i], total)
                 dense[q, i] = h * total
 
     @kernel
@@ -178,13 +179,13 @@ def integrator(
         """Set out to the state at the fraction theta of a step."""
         rest = 1 - theta
         for i in range(len(y)):
-            value = dense[6, i] * theta
-            value = (value + dense[5, i]) * rest
-            value = (value + dense[4, i]) * theta
-            value = (value + dense[3, i]) * rest
-            value = (value + dense[2, i]) * theta
-            value = (value + dense[1, i]) * rest
-            out[i] = y[i] + (value + dense[0, i]) * theta
+            value = fma(dense[6, i], theta, dense[5, i])
+            value = fma(value, rest, dense[4, i])
+            value = fma(value, theta, dense[3, i])
+            value = fma(value, rest, dense[2, i])
+            value = fma(value, theta, dense[1, i])
+            value = fma(value, rest, dense[0, i])
+            out[i] = fma(value, theta, y[i])
 
     @kernel
     def leaving(which, low, high, f_low, f_high, t, h, y, p, dense, trial, guard):

@@ -4,6 +4,9 @@ numba keys its cache on the file of the function alone, so an edit to a file tha
 into would leave stale code. Here the cache folder is named by a hash of every source file under
 ``models`` and, for a kernel defined elsewhere, of its own package: any edit takes effect at once,
 and an unedited package never compiles twice.
+
+What is compiled gives bits that are a function of source and inputs: they depend neither on what
+was compiled before, nor on the width of the vectors, nor on who calls.
 """
 
 import hashlib
@@ -132,8 +135,10 @@ def _our_cache_folder(function: Callable[..., Any]) -> Iterator[None]:
 def kernel(function: Function) -> Function:
     """Compile a function the way every kernel of this package is compiled.
 
-    ``error_model="numpy"`` drops the division check that blocks vectorisation; of fast math only
-    contraction and the sign of zero are given away, so no sum is reassociated.
+    ``error_model="numpy"`` drops the division check that blocks vectorisation. There is no fast
+    math: a compiler that may fuse or reorder does so differently in code that it inlines and in
+    code that it loads from the disk, and the last bits would depend on what was compiled before.
+    Products and sums are fused where the source says so, see `models.numerics.fma`.
     """
     return _compiled(function, "never")
 
@@ -159,7 +164,6 @@ def _compiled(function: Function, inline: Literal["never", "always"], **more: bo
             cache=True,
             nogil=True,
             error_model="numpy",
-            fastmath={"contract", "nsz"},
             inline=inline,
             **more,
         )(function)

@@ -16,6 +16,7 @@ from scipy.integrate._ivp import dop853_coefficients
 
 from models.numerics import tsit5
 from models.numerics.blocks import LANES
+from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
 ORDER_5 = tsit5.TABLEAU
@@ -80,41 +81,40 @@ def _combiner(
         for j in range(whole):
             k, v_0 = w[rise + j], w[velocity + j]
             w[newest + j] = k
-            v, q, v_2, q_2 = a_0 * k, c * v_0 + b_0 * k, 0.0, 0.0
+            v, q, v_2, q_2 = a_0 * k, fma(c, v_0, b_0 * k), 0.0, 0.0
             if n >= 1:
-                v_2 += a_1 * w[k_1 + j]
-                q_2 += b_1 * w[k_1 + j]
+                v_2, q_2 = a_1 * w[k_1 + j], b_1 * w[k_1 + j]
             if n >= 2:
-                v += a_2 * w[k_2 + j]
-                q += b_2 * w[k_2 + j]
+                v = fma(a_2, w[k_2 + j], v)
+                q = fma(b_2, w[k_2 + j], q)
             if n >= 3:
-                v_2 += a_3 * w[k_3 + j]
-                q_2 += b_3 * w[k_3 + j]
+                v_2 = fma(a_3, w[k_3 + j], v_2)
+                q_2 = fma(b_3, w[k_3 + j], q_2)
             if n >= 4:
-                v += a_4 * w[k_4 + j]
-                q += b_4 * w[k_4 + j]
+                v = fma(a_4, w[k_4 + j], v)
+                q = fma(b_4, w[k_4 + j], q)
             if n >= 5:
-                v_2 += a_5 * w[k_5 + j]
-                q_2 += b_5 * w[k_5 + j]
+                v_2 = fma(a_5, w[k_5 + j], v_2)
+                q_2 = fma(b_5, w[k_5 + j], q_2)
             if n >= 6:
-                v += a_6 * w[k_6 + j]
-                q += b_6 * w[k_6 + j]
+                v = fma(a_6, w[k_6 + j], v)
+                q = fma(b_6, w[k_6 + j], q)
             if n >= 7:
-                v_2 += a_7 * w[k_7 + j]
-                q_2 += b_7 * w[k_7 + j]
+                v_2 = fma(a_7, w[k_7 + j], v_2)
+                q_2 = fma(b_7, w[k_7 + j], q_2)
             if n >= 8:
-                v += a_8 * w[k_8 + j]
-                q += b_8 * w[k_8 + j]
+                v = fma(a_8, w[k_8 + j], v)
+                q = fma(b_8, w[k_8 + j], q)
             if n >= 9:
-                v_2 += a_9 * w[k_9 + j]
-                q_2 += b_9 * w[k_9 + j]
+                v_2 = fma(a_9, w[k_9 + j], v_2)
+                q_2 = fma(b_9, w[k_9 + j], q_2)
             if n >= 10:
-                v += a_10 * w[k_10 + j]
-                q += b_10 * w[k_10 + j]
+                v = fma(a_10, w[k_10 + j], v)
+                q = fma(b_10, w[k_10 + j], q)
             if n >= 11:
-                v_2 += a_11 * w[k_11 + j]
-                q_2 += b_11 * w[k_11 + j]
-            w[to_position + j] = w[position + j] + w[step + j] * (q + q_2)
+                v_2 = fma(a_11, w[k_11 + j], v_2)
+                q_2 = fma(b_11, w[k_11 + j], q_2)
+            w[to_position + j] = fma(w[step + j], q + q_2, w[position + j])
             w[to_velocity + j] = v_0 + (v + v_2)
 
     return combine

@@ -1,5 +1,6 @@
 """Sine and cosine without branches: a loop over lanes that calls them is vectorised."""
 
+from models.numerics.fma import fma
 from models.numerics.jit import inlined
 
 _TWO_OVER_PI = 0.6366197723675814
@@ -34,16 +35,16 @@ def cosine_sine(x):
     cosine, sine : float
     """
     quarters = nearest(x * _TWO_OVER_PI)
-    r = ((x - quarters * _PART_1) - quarters * _PART_2) - quarters * _PART_3
+    r = fma(-quarters, _PART_3, fma(-quarters, _PART_2, fma(-quarters, _PART_1, x)))
     z = r * r
-    s = z * 1.58969099521155010e-10 - 2.50507602534068634e-8
-    s = z * (z * s + 2.75573137070700677e-6) - 1.98412698298579493e-4
-    s = z * (z * s + 8.3333333333224895e-3) - 1.6666666666666632e-1
-    s = r + r * z * s
-    c = z * -1.13596475577881948e-11 + 2.08757232129817483e-9
-    c = z * (z * c - 2.75573143513906633e-7) + 2.48015872894767294e-5
-    c = z * (z * c - 1.38888888888741096e-3) + 4.16666666666666019e-2
-    c = 1.0 - 0.5 * z + z * z * c
+    s = fma(z, 1.58969099521155010e-10, -2.50507602534068634e-8)
+    s = fma(z, fma(z, s, 2.75573137070700677e-6), -1.98412698298579493e-4)
+    s = fma(z, fma(z, s, 8.3333333333224895e-3), -1.6666666666666632e-1)
+    s = fma(r * z, s, r)
+    c = fma(z, -1.13596475577881948e-11, 2.08757232129817483e-9)
+    c = fma(z, fma(z, c, -2.75573143513906633e-7), 2.48015872894767294e-5)
+    c = fma(z, fma(z, c, -1.38888888888741096e-3), 4.16666666666666019e-2)
+    c = fma(z * z, c, fma(-0.5, z, 1.0))
     turn = quarters * 0.25
     turn = turn - nearest(turn - 0.375)  # 0, 1/4, 1/2 or 3/4
     odd = (turn == 0.25) | (turn == 0.75)

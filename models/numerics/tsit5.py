@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from models.numerics.blocks import LANES
+from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
 STAGES = 6
@@ -82,26 +83,26 @@ def combiner(quantities: int) -> Callable[[int, Any], None]:
                 w[out + j] = w[y + j] + slope
         elif stage == 2:
             for j in range(whole):
-                slope = _A31 * w[k_1 + j] + _A32 * w[k_2 + j]
+                slope = fma(_A31, w[k_1 + j], _A32 * w[k_2 + j])
                 w[out + j] = w[y + j] + slope
         elif stage == 3:
             for j in range(whole):
-                slope = _A41 * w[k_1 + j] + _A42 * w[k_2 + j] + _A43 * w[k_3 + j]
+                slope = fma(_A43, w[k_3 + j], fma(_A41, w[k_1 + j], _A42 * w[k_2 + j]))
                 w[out + j] = w[y + j] + slope
         elif stage == 4:
             for j in range(whole):
-                slope = _A51 * w[k_1 + j] + _A52 * w[k_2 + j] + _A53 * w[k_3 + j]
-                slope += _A54 * w[k_4 + j]
+                slope = fma(_A53, w[k_3 + j], fma(_A51, w[k_1 + j], _A52 * w[k_2 + j]))
+                slope = fma(_A54, w[k_4 + j], slope)
                 w[out + j] = w[y + j] + slope
         elif stage == 5:
             for j in range(whole):
-                slope = _A61 * w[k_1 + j] + _A62 * w[k_2 + j] + _A63 * w[k_3 + j]
-                slope += _A64 * w[k_4 + j] + _A65 * w[k_5 + j]
+                slope = fma(_A63, w[k_3 + j], fma(_A61, w[k_1 + j], _A62 * w[k_2 + j]))
+                slope += fma(_A64, w[k_4 + j], _A65 * w[k_5 + j])
                 w[out + j] = w[y + j] + slope
         else:
             for j in range(whole):
-                slope = _B1 * w[k_1 + j] + _B2 * w[k_2 + j] + _B3 * w[k_3 + j]
-                slope += _B4 * w[k_4 + j] + _B5 * w[k_5 + j] + _B6 * w[k_6 + j]
+                slope = fma(_B3, w[k_3 + j], fma(_B1, w[k_1 + j], _B2 * w[k_2 + j]))
+                slope += fma(_B6, w[k_6 + j], fma(_B4, w[k_4 + j], _B5 * w[k_5 + j]))
                 w[out + j] = w[y + j] + slope
 
     return combine

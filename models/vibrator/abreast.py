@@ -13,6 +13,7 @@ in them.
 import numpy as np
 
 from models.numerics.blocks import LANES
+from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
 from models.numerics.nystrom import layout
 from models.numerics.sincos import cosine_sine
@@ -130,41 +131,41 @@ def accelerate(w):
         c_1, s_1, c_2, s_2 = w[_C_1 + lane], w[_S_1 + lane], w[_C_2 + lane], w[_S_2 + lane]
         alpha, va, w_1, w_2 = w[_ALPHA + lane], w[_VA + lane], w[_W_1 + lane], w[_W_2 + lane]
         lag_1, lag_2 = w[_TOP_1 + lane] - w_1, w[_TOP_2 + lane] - w_2
-        kloss_1 = w[_TORQUE_1 + lane] * lag_1 / (w[_SLIP_1 + lane] + lag_1 * lag_1)
-        kloss_2 = w[_TORQUE_2 + lane] * lag_2 / (w[_SLIP_2 + lane] + lag_2 * lag_2)
+        kloss_1 = w[_TORQUE_1 + lane] * lag_1 / fma(lag_1, lag_1, w[_SLIP_1 + lane])
+        kloss_2 = w[_TORQUE_2 + lane] * lag_2 / fma(lag_2, lag_2, w[_SLIP_2 + lane])
         square_1, square_2 = w_1 * w_1, w_2 * w_2
         loss_1, loss_2 = w[_LOSS_1 + lane] * square_1, w[_LOSS_2 + lane] * square_2
         w[_Q_1 + lane] = kloss_1 - (loss_1 if w_1 > va else -loss_1)
         w[_Q_2 + lane] = kloss_2 - (loss_2 if w_2 > -va else -loss_2)
         # Forces of the supports, and their moment about the centre of mass.
         offset = w[_OFFSET + lane]
-        p_x = w[_STIFF_X + lane] * (w[_X + lane] + offset * alpha)
-        p_x += w[_DAMP_X + lane] * (w[_VX + lane] + offset * va)
-        p_y = w[_STIFF_Y + lane] * w[_Y + lane] + w[_DAMP_Y + lane] * w[_VY + lane]
-        p_a = w[_STIFF_A + lane] * alpha + w[_DAMP_A + lane] * va
-        p_a += w[_LEVER_X + lane] * p_x + w[_LEVER_Y + lane] * p_y
+        p_x = w[_STIFF_X + lane] * fma(offset, alpha, w[_X + lane])
+        p_x = fma(w[_DAMP_X + lane], fma(offset, va, w[_VX + lane]), p_x)
+        p_y = fma(w[_STIFF_Y + lane], w[_Y + lane], w[_DAMP_Y + lane] * w[_VY + lane])
+        p_a = fma(w[_STIFF_A + lane], alpha, w[_DAMP_A + lane] * va)
+        p_a += fma(w[_LEVER_X + lane], p_x, w[_LEVER_Y + lane] * p_y)
         n_1, n_2 = w[_RADIAL_1 + lane] * square_1, w[_RADIAL_2 + lane] * square_2
-        h_1 = w[_X_1 + lane] * s_1 - w[_Y_1 + lane] * c_1
-        h_2 = w[_X_2 + lane] * s_2 - w[_Y_2 + lane] * c_2
-        w[_F_X + lane] = p_x + n_1 * c_1 + n_2 * c_2
-        w[_F_Y + lane] = p_y + n_1 * s_1 + n_2 * s_2
-        w[_F_A + lane] = p_a + n_1 * h_1 + n_2 * h_2
+        h_1 = fma(w[_X_1 + lane], s_1, -w[_Y_1 + lane] * c_1)
+        h_2 = fma(w[_X_2 + lane], s_2, -w[_Y_2 + lane] * c_2)
+        w[_F_X + lane] = fma(n_2, c_2, fma(n_1, c_1, p_x))
+        w[_F_Y + lane] = fma(n_2, s_2, fma(n_1, s_1, p_y))
+        w[_F_A + lane] = fma(n_2, h_2, fma(n_1, h_1, p_a))
     for lane in range(LANES):
         c_1, s_1, c_2, s_2 = w[_C_1 + lane], w[_S_1 + lane], w[_C_2 + lane], w[_S_2 + lane]
-        g_1 = w[_X_1 + lane] * c_1 + w[_Y_1 + lane] * s_1
-        g_2 = w[_X_2 + lane] * c_2 + w[_Y_2 + lane] * s_2
-        both = c_1 * c_2 + s_1 * s_2 + g_1 * g_2
+        g_1 = fma(w[_X_1 + lane], c_1, w[_Y_1 + lane] * s_1)
+        g_2 = fma(w[_X_2 + lane], c_2, w[_Y_2 + lane] * s_2)
+        both = fma(g_1, g_2, fma(c_1, c_2, s_1 * s_2))
         b_1, b_2 = w[_R_1_NU_2 + lane] * both, w[_R_2_NU_1 + lane] * both
-        d_1 = w[_FREE_1 + lane] - w[_PHI_1 + lane] * g_1 * g_1
-        d_2 = w[_FREE_2 + lane] - w[_PHI_2 + lane] * g_2 * g_2
-        inverse = 1 / (d_1 * d_2 - b_1 * b_2)
+        d_1 = fma(-w[_PHI_1 + lane] * g_1, g_1, w[_FREE_1 + lane])
+        d_2 = fma(-w[_PHI_2 + lane] * g_2, g_2, w[_FREE_2 + lane])
+        inverse = 1 / fma(d_1, d_2, -b_1 * b_2)
         f_x, f_y, f_a = w[_F_X + lane], w[_F_Y + lane], w[_F_A + lane]
-        q_1 = w[_Q_1 + lane] - w[_R_1 + lane] * (c_1 * f_y - s_1 * f_x + g_1 * f_a)
-        q_2 = w[_Q_2 + lane] + w[_R_2 + lane] * (c_2 * f_y - s_2 * f_x + g_2 * f_a)
-        a_1, a_2 = (d_2 * q_1 - b_1 * q_2) * inverse, (d_1 * q_2 - b_2 * q_1) * inverse
+        q_1 = fma(-w[_R_1 + lane], fma(g_1, f_a, fma(c_1, f_y, -s_1 * f_x)), w[_Q_1 + lane])
+        q_2 = fma(w[_R_2 + lane], fma(g_2, f_a, fma(c_2, f_y, -s_2 * f_x)), w[_Q_2 + lane])
+        a_1, a_2 = (fma(d_2, q_1, -b_1 * q_2) * inverse, fma(d_1, q_2, -b_2 * q_1) * inverse)
         w[_A_1 + lane], w[_A_2 + lane] = a_1, a_2
         a_1, a_2 = w[_NU_1 + lane] * a_1, w[_NU_2 + lane] * a_2
-        aa = (f_a - a_1 * g_1 + a_2 * g_2) * w[_PER_RADIUS + lane]
+        aa = fma(a_2, g_2, fma(-a_1, g_1, f_a)) * w[_PER_RADIUS + lane]
         w[_AA + lane] = aa
-        w[_AX + lane] = f_x + a_1 * s_1 - a_2 * s_2 + w[_CENTRE_Y + lane] * aa
-        w[_AY + lane] = f_y - a_1 * c_1 + a_2 * c_2 - w[_CENTRE_X + lane] * aa
+        w[_AX + lane] = fma(w[_CENTRE_Y + lane], aa, fma(-a_2, s_2, fma(a_1, s_1, f_x)))
+        w[_AY + lane] = fma(-w[_CENTRE_X + lane], aa, fma(a_2, c_2, fma(-a_1, c_1, f_y)))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from models.numerics.blocks import LANES, aligned
 from models.numerics.events import crossing, dip
+from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
 from models.numerics.nystrom import ORDER_5, ORDER_8, STAGES, layout, stepper
 from models.numerics.sincos import cosine_sine, nearest
@@ -149,8 +150,8 @@ def _begin(w, target, notes):
 def _distance(w, lane):
     """Return the squared displacement, and its rise in a step at this rate."""
     x, y = w[_X + lane], w[_Y + lane]
-    out = 2 * w[_AT.step + lane] * (x * w[_VX + lane] + y * w[_VY + lane])
-    return x * x + y * y, out
+    out = 2 * w[_AT.step + lane] * fma(x, w[_VX + lane], y * w[_VY + lane])
+    return fma(x, x, y * y), out
 
 
 @inlined
@@ -158,7 +159,7 @@ def _way(w, target, lane):
     """Return the disphasing angle less its target, on the circle, and its rise in a step."""
     off = w[_PSI_1 + lane] - w[_PSI_2 + lane] - target[lane]
     drift = w[_AT.step + lane] * (w[_W_1 + lane] - w[_W_2 + lane])
-    return off - _TURN * nearest(off * _PER_TURN), drift
+    return fma(-_TURN, nearest(off * _PER_TURN), off), drift
 
 
 @kernel
@@ -217,13 +218,13 @@ def _note(c, w, notes):
         lag_1 = c[_SYNCHRONOUS_1 * LANES + lane] - w_1
         lag_2 = c[_SYNCHRONOUS_2 * LANES + lane] - w_2
         slip_1, slip_2 = c[_SLIP_1 * LANES + lane], c[_SLIP_2 * LANES + lane]
-        power_1 = c[_TORQUE_1 * LANES + lane] * lag_1 * w_1 / (slip_1 * slip_1 + lag_1 * lag_1)
-        power_2 = c[_TORQUE_2 * LANES + lane] * lag_2 * w_2 / (slip_2 * slip_2 + lag_2 * lag_2)
+        power_1 = c[_TORQUE_1 * LANES + lane] * lag_1 * w_1 / fma(slip_1, slip_1, lag_1 * lag_1)
+        power_2 = c[_TORQUE_2 * LANES + lane] * lag_2 * w_2 / fma(slip_2, slip_2, lag_2 * lag_2)
         notes[POWER_1 * LANES + lane] += power_1
         notes[POWER_2 * LANES + lane] += power_2
         cosine, sine = c[_COS * LANES + lane], c[_SIN * LANES + lane]
         alpha = w[_ALPHA + lane]
-        along = cosine * w[_X + lane] + sine * w[_Y + lane]
+        along = fma(cosine, w[_X + lane], sine * w[_Y + lane])
         lever = c[_SPACING * LANES + lane] * sine * alpha
         left, right = along - lever, along + lever
         angle = w[_PSI_1 + lane] - w[_PSI_2 + lane]
@@ -247,8 +248,8 @@ def _note(c, w, notes):
         turned = (out_0 > 0.0) & (out < 0.0)
         part = out_0 / (out_0 - out) if turned else 1.0
         rest = 1.0 - part
-        vertex = rest * rest * ((1.0 + 2.0 * part) * far_0 + part * out_0)
-        vertex += part * part * ((1.0 + 2.0 * rest) * far - rest * out)
+        vertex = rest * rest * fma(fma(2.0, part, 1.0), far_0, part * out_0)
+        vertex = fma(part * part, fma(fma(2.0, rest, 1.0), far, -rest * out), vertex)
         peak = notes[EXCURSION * LANES + lane]
         notes[EXCURSION * LANES + lane] = vertex if vertex > peak else peak
 

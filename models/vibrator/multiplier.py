@@ -8,6 +8,7 @@ eigenvalues one by one, this is straight-line algebra.
 import numpy as np
 
 from models.numerics.blocks import LANES, aligned
+from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
 from models.vibrator.lanes import STATE, Array
 from models.vibrator.tangents import ANCHOR, COLUMNS
@@ -19,12 +20,12 @@ _WHOLE = COLUMNS * COLUMNS * LANES
 @inlined
 def _entry(w, o, row):
     """Return one entry of a row times the matrix at o."""
-    first = row[0] * w[o] + row[1] * w[o + COLUMNS * LANES]
-    first += row[2] * w[o + 2 * COLUMNS * LANES]
-    first += row[3] * w[o + 3 * COLUMNS * LANES]
-    first += row[4] * w[o + 4 * COLUMNS * LANES]
-    second = row[5] * w[o + 5 * COLUMNS * LANES] + row[6] * w[o + 6 * COLUMNS * LANES]
-    second += row[7] * w[o + 7 * COLUMNS * LANES] + row[8] * w[o + 8 * COLUMNS * LANES]
+    first = fma(row[0], w[o], row[1] * w[o + COLUMNS * LANES])
+    first = fma(row[2], w[o + 2 * COLUMNS * LANES], first)
+    first = fma(row[3], w[o + 3 * COLUMNS * LANES], first)
+    first = fma(row[4], w[o + 4 * COLUMNS * LANES], first)
+    second = fma(row[5], w[o + 5 * COLUMNS * LANES], row[6] * w[o + 6 * COLUMNS * LANES])
+    second += fma(row[7], w[o + 7 * COLUMNS * LANES], row[8] * w[o + 8 * COLUMNS * LANES])
     return first + second
 
 
@@ -52,7 +53,7 @@ def _square(a, square, out, next_square):
             for j in range(COLUMNS):
                 entry = _entry(a, j * LANES + lane, row)
                 out[o + j * LANES + lane] = entry
-                total += entry * entry
+                total = fma(entry, entry, total)
             next_square[lane] += total
 
 

@@ -8,6 +8,7 @@ column needs is in the fastest cache then, which it would not be stage by stage.
 import numpy as np
 
 from models.numerics.blocks import LANES, aligned
+from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
 from models.numerics.sincos import cosine_sine
 from models.numerics.tsit5 import (
@@ -107,10 +108,10 @@ def _linearise(c, h, y, k, jacobian):
 @inlined
 def _row(w, o, z):
     """Return one row of a Jacobian times a column, in two sums that do not wait for each other."""
-    first = w[o] * z[0] + w[o + LANES] * z[1] + w[o + 2 * LANES] * z[2]
-    first += w[o + 3 * LANES] * z[3] + w[o + 4 * LANES] * z[4]
-    second = w[o + 5 * LANES] * z[5] + w[o + 6 * LANES] * z[6] + w[o + 7 * LANES] * z[7]
-    second += w[o + 8 * LANES] * z[8] + w[o + 9 * LANES] * z[9]
+    first = fma(w[o + 2 * LANES], z[2], fma(w[o], z[0], w[o + LANES] * z[1]))
+    first += fma(w[o + 3 * LANES], z[3], w[o + 4 * LANES] * z[4])
+    second = fma(w[o + 7 * LANES], z[7], fma(w[o + 5 * LANES], z[5], w[o + 6 * LANES] * z[6]))
+    second += fma(w[o + 8 * LANES], z[8], w[o + 9 * LANES] * z[9])
     return first + second
 
 
@@ -135,16 +136,16 @@ def _slope(w, o, step, z):
 def _add(z, factor, k):
     """Return a column plus a multiple of its slopes."""
     return (
-        z[0] + factor * k[0],
-        z[1] + factor * k[1],
-        z[2] + factor * k[2],
-        z[3] + factor * k[3],
-        z[4] + factor * k[4],
-        z[5] + factor * k[5],
-        z[6] + factor * k[6],
-        z[7] + factor * k[7],
-        z[8] + factor * k[8],
-        z[9] + factor * k[9],
+        fma(factor, k[0], z[0]),
+        fma(factor, k[1], z[1]),
+        fma(factor, k[2], z[2]),
+        fma(factor, k[3], z[3]),
+        fma(factor, k[4], z[4]),
+        fma(factor, k[5], z[5]),
+        fma(factor, k[6], z[6]),
+        fma(factor, k[7], z[7]),
+        fma(factor, k[8], z[8]),
+        fma(factor, k[9], z[9]),
     )
 
 

@@ -6,15 +6,20 @@ import signal
 import time
 from collections import Counter
 from pathlib import Path
+from typing import NamedTuple
 
 import command
 import pytest
+
+from uq.store.folder import history
+from uq.store.records import RowsRecord
 
 PATIENCE = 180.0
 """How long a busy machine may take for what should take a moment [s]."""
 
 OUTCOMES = {
     "SIGKILL of a run": "goes on, same bits",
+    "SIGKILL of a run that has kept no row": "goes on, same bits",
     "SIGKILL of a run with workers": "no process is left; goes on, same bits",
     "SIGKILL during the merge": "goes on, same bits",
     "SIGKILL of a run that stops when it knows enough": "stops where it would, same bits",
@@ -123,13 +128,17 @@ def call(start):
 
 @pytest.fixture
 def under_way(start):
-    """Return a function that starts a slow run, and returns it when it has kept some more rows."""
+    """Return a function that starts a slow run, and returns it when it has kept some more rows.
 
-    def begin(study, *options, chunks=1):
-        journal = ROWS / "journal"
-        before = _lines(journal)
-        run = start("run", study, *MODEL, "--chunk-rows", "7", *options, UQ_TEST_SECONDS="0.02")
-        until(lambda: _lines(journal) > before + chunks)  # one line for the run itself
+    So many at least, in as many new chunk files: a fault that comes then finds rows to harm.
+    """
+
+    def begin(study, *options, rows=1, chunks=1, seconds=0.02):
+        old = kept()
+        options = (*MODEL, "--chunk-rows", "7", *options)
+        run = start("run", study, *options, UQ_TEST_SECONDS=str(seconds))
+        until(lambda: kept().rows >= old.rows + rows and kept().chunks >= old.chunks + chunks)
+        assert run.process.is_alive()
         return run
 
     return begin
@@ -166,8 +175,17 @@ def pytest_terminal_summary(terminalreporter):
     terminalreporter.write_line("\n".join(lines))
 
 
-def _lines(journal):
-    return journal.read_bytes().count(b"\n") if journal.exists() else 0
+class Kept(NamedTuple):
+    """What the journal says is kept."""
+
+    chunks: int
+    rows: int
+
+
+def kept():
+    """Return how many chunk files and rows the journal names."""
+    records = [record for record in history(ROWS) if isinstance(record, RowsRecord)]
+    return Kept(len(records), sum(record.rows for record in records))
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 """A study that is edited between runs: other rows are refused, more rows are appended."""
 
 import pytest
-from conftest import MODEL, OUT, ROWS, until
+from conftest import MODEL, OUT, ROWS, kept, until
 
 import uq
 
@@ -68,9 +68,10 @@ def test_an_extension_may_be_killed(study, undisturbed, start, call, injected):
     before = OUT.read_bytes()
     extend = ("extend", OUT, "--samples", "1500", *MODEL)
     run = start(*extend, UQ_TEST_SECONDS="0.01")
-    until(lambda: len(list(ROWS.glob("*.rows"))) > 1)
+    until(lambda: kept().rows > 600 + 50)
     run.kill()
     injected("SIGKILL of an extension")
+    assert kept().rows < 1500
     assert OUT.read_bytes() == before
     assert "stays" in call("status", OUT)[1]
     assert call(*extend)[0] == 0

@@ -1,6 +1,5 @@
 """A run that is stopped, by whatever, goes on and gives the bits of one that is not."""
 
-import contextlib
 import json
 import os
 import random
@@ -10,7 +9,7 @@ import signal
 
 import psutil
 import pytest
-from conftest import MODEL, OUT, PATIENCE, ROWS, until
+from conftest import MODEL, OUT, PATIENCE, ROWS, kept, until
 
 import uq
 
@@ -18,26 +17,35 @@ RANDOM = random.Random(2026)
 
 
 @pytest.mark.parametrize("kills", [2, pytest.param(30, marks=pytest.mark.slow)])
-def test_kills_at_random_moments(study, undisturbed, start, call, injected, kills):
-    done = [0]
-    while len(done) <= kills:
-        run = start("run", study, *MODEL, "--chunk-rows", "3", UQ_TEST_SECONDS="0.003")
-        until(ROWS.exists)
-        run.process.join(RANDOM.uniform(0.0, 0.6))
-        assert run.process.is_alive(), "ended before it was killed often enough"
+def test_kills_after_some_rows_were_kept(study, under_way, call, injected, kills):
+    samples = 300 + 100 * kills
+    study.write_text(study.read_text().replace("samples = 1500", f"samples = {samples}"))
+    assert call("run", study, *MODEL, "-o", "undisturbed.nc") == (0, "")
+    done = 0
+    for _ in range(kills):
+        more = RANDOM.randint(1, 40)
+        run = under_way(study, "--chunk-rows", "3", rows=more)
+        run.process.join(RANDOM.uniform(0.0, 0.1))  # between two writes, or within one
         run.kill()
         injected("SIGKILL of a run")
         assert not OUT.exists()
-        if (ROWS / "journal").exists() and (ROWS / "journal").read_bytes():
-            standing = json.loads(call("status", OUT, "--json")[1])
-            assert standing["state"] == "interrupted"
-            done.append(standing["done"])
-        else:
-            done.append(0)
-        assert done[-1] >= done[-2]  # nothing that was kept is lost
-    assert call("run", study, *MODEL)[0] == 0
-    assert OUT.read_bytes() == undisturbed
+        standing = json.loads(call("status", OUT, "--json")[1])
+        assert standing["state"] == "interrupted"
+        assert done + more <= standing["done"] == kept().rows < samples  # nothing is lost
+        done = standing["done"]
+    assert call("run", study, *MODEL) == (0, "")
+    assert OUT.read_bytes() == (OUT.parents[1] / "undisturbed.nc").read_bytes()
     assert [path.name for path in OUT.parent.iterdir()] == [OUT.name]
+
+
+def test_a_kill_before_any_row_was_kept(study, undisturbed, start, call, injected):
+    run = start("run", study, *MODEL, UQ_TEST_SECONDS="0.02")
+    until(ROWS.exists)
+    run.kill()
+    injected("SIGKILL of a run that has kept no row")
+    assert kept().rows == 0
+    assert call("run", study, *MODEL) == (0, "")
+    assert OUT.read_bytes() == undisturbed
 
 
 @pytest.mark.parametrize("kills", [1, pytest.param(10, marks=pytest.mark.slow)])
@@ -111,9 +119,8 @@ def test_another_wish_after_a_kill_changes_no_row(study, under_way, call, folder
 def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     study, undisturbed, start, call, injected, number
 ):
-    run = start("run", study, *MODEL[:-1], "--chunk-rows", "7", UQ_TEST_SECONDS="0.002")
-    until(lambda: list(ROWS.glob("*.rows")))
-    run.process.join(0.3)
+    run = start("run", study, *MODEL[:-1], "--chunk-rows", "7", UQ_TEST_SECONDS="0.01")
+    until(lambda: kept().rows > 100)
     run.send(number)
     injected("Ctrl-C" if number == signal.SIGINT else "SIGTERM")
     code, said = run.wait()
@@ -190,13 +197,13 @@ def test_kills_with_workers_and_any_chunks(
     options = (*MODEL[:2], "--workers", workers, "--quiet", "--chunk-rows", chunk_rows)
     (folder / "temporary").mkdir()
     temporary = {"TMPDIR": str(folder / "temporary")}
-    run = start("run", study, *options, UQ_TEST_SECONDS="0.002", **temporary)
-    until(lambda: list(ROWS.glob("*.rows")) or not run.process.is_alive())
-    run.process.join(0.5)
-    family = []
-    with contextlib.suppress(psutil.NoSuchProcess):  # it is done already
-        family = psutil.Process(run.process.pid).children(recursive=True)
+    run = start("run", study, *options, UQ_TEST_SECONDS="0.01", **temporary)
+    wanted = RANDOM.randint(1, 900)
+    until(lambda: kept().rows >= wanted)
+    assert run.process.is_alive()
+    family = psutil.Process(run.process.pid).children(recursive=True)
     run.kill()
+    assert wanted <= kept().rows < 1500
     injected("SIGKILL of a run with workers" if workers else "SIGKILL of a run")
     assert psutil.wait_procs(family, PATIENCE)[1] == []
     assert not list((folder / "temporary").iterdir())

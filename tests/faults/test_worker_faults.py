@@ -66,34 +66,48 @@ def undisturbed():
 
 
 class Killer:
-    """Kills processes as a run goes on; called with the run's progress."""
+    """Kills processes as rows of a run arrive; called with the run's progress.
 
-    def __init__(self, module, times, all_of_them):
-        self.module, self.times, self.all = module, times, all_of_them
+    Each time it waits for a worker that has begun to compute: there is something to lose.
+    """
+
+    def __init__(self, module, times, rows, all_of_them):
+        self.module, self.all = module, all_of_them
+        self.marks = [rows * (i + 1) // (times + 1) for i in range(times)]
 
     def __call__(self, progress):
-        found = processes(self.module)
-        if self.times and found and progress.done < progress.total:
-            self.times -= 1
-            for process in found if self.all else found[:1]:
-                process.kill()
+        if not self.marks or progress.done < self.marks[0]:
+            return
+        self.marks.pop(0)
+        wait_for(self._at_work)
+        for process in self._at_work()[: None if self.all else 1]:
+            process.kill()
+
+    def _at_work(self):
+        workers = {worker: processes(CHILD, worker) for worker in processes(WORKER)}
+        if self.module == WORKER:
+            return [worker for worker, children in workers.items() if children]
+        return [child for children in workers.values() for child in children]
+
+
+CHILD, WORKER = "uq.running.child", "uq.running.worker"
 
 
 @pytest.mark.parametrize(
     ("fault", "module", "times", "all_of_them"),
     [
-        ("worker killed", "uq.running.worker", 3, False),
-        ("all workers killed", "uq.running.worker", 2, True),
-        ("process of a worker killed", "uq.running.child", 4, True),
+        ("worker killed", WORKER, 3, False),
+        ("all workers killed", WORKER, 2, True),
+        ("process of a worker killed", CHILD, 4, True),
     ],
 )
 def test_killed_processes_leave_no_trace(
     study_of, undisturbed, injected, fault, module, times, all_of_them
 ):
     study = study_of(seconds=0.02)
-    killer = Killer(module, times, all_of_them)
+    killer = Killer(module, times, 120, all_of_them)
     ds = runner.compute(study, workers=2, chunk_rows=5, progress=killer)
-    assert killer.times == 0
+    assert killer.marks == []
     injected(fault, times)
     assert ds.identical(undisturbed(study))
 
@@ -109,12 +123,12 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monke
         lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
     )
 
-    workers = partial(processes, "uq.running.worker")
+    workers = partial(processes, WORKER)
 
     def kill_thrice():
         for _ in range(3):
             # A worker whose child is there is about to compute.
-            wait_for(lambda: [w for w in workers() if processes("uq.running.child", w)])
+            wait_for(lambda: [w for w in workers() if processes(CHILD, w)])
             time.sleep(0.5)
             for worker in workers():
                 worker.kill()

@@ -89,3 +89,19 @@ def test_replicates_are_pairs_only_where_both_results_have_as_many():
     four, eight = (linear("sobol", samples=16, replicates=count) for count in (4, 8))
     assert kinship(four, linear("halton", samples=32, replicates=4)) is Kinship.REPLICATES
     assert kinship(four, eight) is Kinship.UNKNOWN
+
+
+@pytest.mark.parametrize(("method", "replicates"), [("monte-carlo", 1), ("sobol", 4)])
+def test_identical_rows_are_said_to_be_so_and_have_no_interval_of_no_width(method, replicates):
+    ds = asking(linear(method, replicates=replicates), thresholds={"y": 5.0})
+    found = comparison(ds, ds)["outputs"]["y"]
+    same = {"value": 0.0, "low": None, "high": None, "identical": True}
+    assert found["mean"]["difference"] == found["sd"]["difference"] == same
+    assert found["sd"]["ratio"] == same | {"value": 1.0}
+    assert found["quantiles"]["0.5"]["difference"] == same
+    assert found["thresholds"]["5.0"]["above"]["difference"] == same
+    # A shift that is the same in every pair is known, but nothing shows how well.
+    moved = comparison(ds, with_output(ds, "y", ds["y"].values + 0.5))["outputs"]["y"]
+    assert moved["mean"]["difference"]["value"] == pytest.approx(0.5)
+    assert moved["mean"]["difference"]["low"] is moved["mean"]["difference"]["high"] is None
+    assert "identical" not in moved["mean"]["difference"]

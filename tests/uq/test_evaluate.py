@@ -107,6 +107,12 @@ def test_a_declared_absence_is_legal(output, value):
     assert np.all(broken(output, value).status == Status.OK)
 
 
+def test_what_is_not_a_number_has_one_pattern_of_bits():
+    """The sign of a NaN depends on the processor that made it."""
+    values = broken("angle", np.copysign(np.nan, -1.0)).columns["angle"]
+    assert values[1].tobytes() == np.float64(np.nan).tobytes()
+
+
 @pytest.mark.parametrize(
     ("model", "words"),
     [

@@ -10,7 +10,7 @@ from SALib.analyze import pawn, rbd_fast
 from SALib.analyze.delta import calc_delta
 from scipy import stats
 
-from uq.indices.given_data import DUMMIES
+from uq.indices.given_data import DUMMIES, given_data_indices
 from uq.indices.sensitivities import sensitivities
 
 
@@ -47,6 +47,21 @@ def test_dummy_is_passed_by_one_input_in_twenty_that_plays_no_part(method, index
         passed += [value > entry["dummy"][index] for value in values(entry, index)]
     assert DUMMIES == 19
     assert stats.binomtest(sum(passed), len(passed), 0.05).pvalue > 0.01
+
+
+@pytest.mark.parametrize("method", ["rbd-fast", "pawn"])
+def test_the_null_of_the_largest_is_passed_in_one_study_of_twenty_at_most(method):
+    rng, alarms, single, repetitions = np.random.default_rng(5), 0, 0, 40
+    kind = {"rbd-fast": "S1", "pawn": "pawn"}[method]
+    for _ in range(repetitions):
+        x = {f"x{i}": column for i, column in enumerate(rng.random((60, 100)))}
+        found = given_data_indices(method, x, rng.random(100), {})
+        largest = max(index.value for index in found.values[kind].values())
+        alarms += largest > found.dummy[f"{kind}_any"]
+        single += largest > found.dummy[kind]
+    assert alarms <= 5 and single > 20  # of sixty inputs some three pass that for one
+    alone = given_data_indices(method, {"x0": x["x0"]}, rng.random(100), {})
+    assert list(alone.dummy) == [kind]
 
 
 def test_given_data_values_are_those_of_salib():

@@ -39,15 +39,18 @@ def test_imported_rows_are_those_of_the_file_to_the_bit(table, file):
     folder, x = table
     text = as_text(imported(file, {"x1": UNIFORM, "x2": UNIFORM, "x4": {"equals": "x2"}}))
     study = study_from_text(text, folder=folder)
-    found = row_block(study, 0, 100).x
-    np.testing.assert_array_equal(found[:, [0, 1, 3]], x[:, [0, 1, 1]])
-    np.testing.assert_array_equal(row_block(study, 30, 31).x, found[30:31])
+    drawn = row_block(study, 0, 100).x
+    np.testing.assert_array_equal(drawn[:, [0, 1, 3]], x[:, [0, 1, 1]])
+    np.testing.assert_array_equal(row_block(study, 30, 31).x, drawn[30:31])
     ds = computed(study)
     assert sensitivities(ds)["method"] == "delta"
-    assert summarise(ds)["outputs"]["y"]["mean_interval"]["low"] is None
+    found = summarise(ds)
+    assert found["outputs"]["y"]["mean_interval"]["low"] is None
+    assert "nothing is known of how imported rows came about" in found["notes"][0]
+    assert not any("replicates" in note for note in found["notes"])
     again = study_from_text(ds.attrs["study"])
     assert again.identity == study.identity
-    np.testing.assert_array_equal(row_block(again, 0, 100).x, found)
+    np.testing.assert_array_equal(row_block(again, 0, 100).x, drawn)
     with pytest.raises(InputError, match="--samples 101: the file has 100 rows for 'imported'"):
         study.with_samples(101)
 

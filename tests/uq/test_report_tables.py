@@ -159,7 +159,10 @@ def test_indices_are_ranked_beside_an_input_without_effect():
     assert method.used.startswith(f"Of {200 - lost} rows, {lost} groups dropped")
     (table,) = method.subjects[0].tables
     names = [row[0].text for row in table.rows]
-    assert names == ["x4", "x3", "x2", "x1", "(an input without effect)"]
+    nulls = ["(an input without effect)", "(largest of 4 such inputs)"]
+    assert names == ["x4", "x3", "x2", "x1", *nulls]
+    one, largest = (float(row[1].text) for row in table.rows[-2:])
+    assert largest >= one
 
 
 def test_indices_have_their_intervals_and_no_dropped_groups_without_need():

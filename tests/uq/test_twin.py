@@ -81,7 +81,9 @@ def test_plain_estimates_are_those_of_the_summary():
     )
     above = entry["thresholds"]["2.5"]["above"]
     line = table.loc[("y", "P(>2.5)")]
-    assert tuple(line[["plain", "plain_low", "plain_high"]]) == tuple(above.values())
+    assert tuple(line[["plain", "plain_low", "plain_high"]]) == tuple(
+        above[end] for end in ("value", "low", "high")
+    )
 
 
 def series(samples=300, **analysis):

@@ -88,8 +88,9 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> dict[str, Any]:
         ``replicates``, ``strangers`` or ``unknown``. ``regime``: label -> estimate; ``outputs``:
         element -> ``mean``, ``sd``, ``quantiles``, ``b_lives``, ``thresholds``, where an estimate
         is ``a`` and ``b``, as `uq.analysis.statistics.summarise` has them, and ``difference``:
-        ``value``, ``low``, ``high`` of b less a; that of sd also has ``ratio``. ``notes``:
-        sentences.
+        ``value``, ``low``, ``high`` of b less a, and ``identical`` where the rows are pairs and
+        both of each say the same: then there is no interval; that of sd also has ``ratio``.
+        ``notes``: sentences.
     """
     _refuse(first, second)
     results = (first, second)
@@ -244,6 +245,9 @@ def _sds(pair: Pair, samples: list[Sample], entries: list[Entry]) -> Entry:
         nothing = dict.fromkeys(_ENDS)
         return {**sides, "difference": nothing, "ratio": nothing}
     known = [_known(entry) for entry in sds]
+    if pair.identical(samples):
+        same = {"low": None, "high": None, "identical": True}
+        return {**sides, "difference": {"value": 0.0} | same, "ratio": {"value": 1.0} | same}
     return {
         **sides,
         "difference": _plain(pair.difference(SD, samples, known)),
@@ -260,19 +264,25 @@ def _sides(pair: Pair, elements: list[Element], threshold: float, entries: list[
             for element, sides in zip(elements, events, strict=True)
             if sides is not None
         ]
-        ends = [entry[side] for entry in entries]
-        found[side] = (
-            _estimate(pair, SHARE, samples, ends)
-            if len(samples) == 2
-            else {"a": ends[0], "b": ends[1], "difference": dict.fromkeys(_ENDS)}
-        )
+        found[side] = _estimate(pair, SHARE, samples, [_side(entry, side) for entry in entries])
     return found
+
+
+def _side(entry: Entry, side: str) -> Entry:
+    """Return the share on one side of a threshold, after Kaplan and Meier where that is all."""
+    if "kaplan_meier" not in entry:
+        return dict(entry[side])
+    found = entry["kaplan_meier"]
+    return found[side] | {"assumes": found["assumes"]}
 
 
 def _estimate(
     pair: Pair, estimator: Estimator, samples: list[Sample], entries: list[Entry]
 ) -> Entry:
     known = [_known(entry) for entry in entries]
+    if pair.identical(samples) and not np.isnan(known[0].value):
+        difference = {"value": 0.0, "low": None, "high": None, "identical": True}
+        return {**dict(zip("ab", entries, strict=True)), "difference": difference}
     if any(np.isnan(one.value) for one in known):
         apart = NOTHING
     elif any("assumes" in entry for entry in entries):  # not a plain quantile of the rows
@@ -299,6 +309,8 @@ def _notes(
     yield pair.kinship.value
     for which, one in zip("AB", found, strict=True):
         yield from (f"{which}: {note}" for note in one["notes"])
+    if any(output["failed"] for one in found for output in one["outputs"].values()):
+        yield "differences are of the rows that did not fail"
     of_a, of_b = elements
     for which, mine, other in (("A", of_a, of_b), ("B", of_b, of_a)):
         if alone := [name for name in mine if name not in other]:

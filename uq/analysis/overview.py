@@ -28,7 +28,8 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
         was asked for, of those whose error is larger (``accuracy_missed``); ``B1``, ``B10`` and
         ``B50`` of lifetimes; and for each threshold ``P(>t)`` and ``P(<t)`` with their intervals,
         where it is one of the output's.
-        Infinity stands for never, NaN for what could not be given.
+        Where rows failed, ``_failed_low`` and ``_failed_high`` are the ends with these rows at best
+        and at worst. Infinity stands for never, NaN for what could not be given.
 
     Examples
     --------
@@ -39,6 +40,9 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     """
     lines = {name: _line(entry) for name, entry in summarise(ds)["outputs"].items()}
     return pd.DataFrame(list(lines.values()), index=pd.Index(list(lines), name="output"))
+
+
+_FAILED = ("failed_low", "failed_high")
 
 
 def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
@@ -65,7 +69,7 @@ def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
 def _cells(name: str, entry: Mapping[str, Any]) -> dict[str, float]:
     """Return the numbers of an entry of `summarise`, named after what they say."""
     cells = {}
-    for key in ("value", "low", "high", "lower", "upper", "rows_needed"):
+    for key in ("value", "low", "high", *_FAILED, "lower", "upper", "rows_needed"):
         if key in entry and not (key == "rows_needed" and "value" in entry):
             never = entry.get("never" if key == "value" else f"{key}_never")
             number = np.nan if entry[key] is None else entry[key]

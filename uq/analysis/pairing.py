@@ -206,12 +206,19 @@ class Pair:
             known = [_newcombe(sample) for sample in samples]
         found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
         wide = sum(one.high - one.low for one in known)
-        if (
-            self.kinship is Kinship.REPLICATES
-            and found.high - found.low <= _ROUNDING * wide < np.inf
-        ):
-            return found._replace(low=np.nan, high=np.nan)  # as good as the same in each replicate
+        paired = self.kinship in (Kinship.ROWS, Kinship.REPLICATES)
+        if paired and found.high - found.low <= _ROUNDING * wide < np.inf:
+            return found._replace(low=np.nan, high=np.nan)  # as good as the same in each pair
         return found
+
+    def identical(self, samples: list[Sample]) -> bool:
+        """Whether the rows are pairs, and both of each pair say the same."""
+        if self.kinship not in (Kinship.ROWS, Kinship.REPLICATES):
+            return False
+        first, second = samples
+        return np.array_equal(first.kept, second.kept) and np.array_equal(
+            first.numbers, second.numbers, equal_nan=True
+        )
 
     def ratio(self, samples: list[Sample], known: list[Estimate]) -> Estimate:
         """Return the second standard deviation over the first."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from uq import intervals
 from uq.analysis.accuracy import accuracy_missed
 from uq.analysis.b_lives import b_lives, ended_by, entry, quantile_entry
+from uq.analysis.failed_rows import failed_note, failed_share_bounds, with_failed_bounds
 from uq.analysis.life_fit import fits_of
 from uq.analysis.regime_split import between_share
 from uq.contract import Status
@@ -81,7 +82,8 @@ def summarise(
         ``accuracy``: how many rows state an error beyond the accuracy asked for, if one was,
         counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
         not be given. A number that does not exist or is not finite is None; beside it ``never``,
-        ``low_censored`` and the like say why.
+        ``low_censored`` and the like say why. Where rows failed, each probability, quantile and
+        B-life has ``failed_low`` and ``failed_high`` (`uq.analysis.failed_rows`).
     """
     analysis = analysis or analysis_of(ds)
     notes = _notes(ds)
@@ -91,19 +93,20 @@ def summarise(
     replicate = replicates_of(rows)
     outputs = shown_outputs(ds, analysis)
     codes = rows["regime"].values if "regime" in output_names(ds) else None
+    described = {
+        element.name: _describe(element, replicate, analysis)
+        | _between(element, codes, replicate)
+        | accuracy_missed(rows, element)
+        | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
+        for element in elements_of(rows, outputs)
+    }
     return {
         "samples": ds.sizes["sample"],
         "rows_used": rows.sizes["sample"],
         "status": status_counts(ds),
         "regime": {} if codes is None else regime_shares(rows),
-        "outputs": {
-            element.name: _describe(element, replicate, analysis)
-            | _between(element, codes, replicate)
-            | accuracy_missed(rows, element)
-            | ({"fits": fits_of(element, replicate is None)} if _fitted(element, fits) else {})
-            for element in elements_of(rows, outputs)
-        },
-        "notes": notes,
+        "outputs": described,
+        "notes": notes + failed_note(described.values(), rows.sizes["sample"]),
     }
 
 
@@ -125,7 +128,8 @@ def regime_shares(rows: xr.Dataset) -> dict[str, dict[str, Any]]:
     Returns
     -------
     dict
-        Label -> ``count``, ``share``, ``low``, ``high``; also for regimes that do not occur.
+        Label -> ``count``, ``share``, ``low``, ``high``, where rows failed ``failed_low`` and
+        ``failed_high``; also for regimes that do not occur.
     """
     codes = rows["regime"].values
     kept = (codes >= 0) | (rows["status"].values == Status.OK)
@@ -135,6 +139,7 @@ def regime_shares(rows: xr.Dataset) -> dict[str, dict[str, Any]]:
         if code >= 0:
             hits = codes[kept] == code
             estimate = _share(hits, replicate)
+            estimate |= failed_share_bounds(codes == code, ~kept, replicates_of(rows))
             shares[label] = {"count": int(hits.sum()), "share": estimate.pop("value")} | estimate
     return shares
 
@@ -148,17 +153,27 @@ def _describe(element: Element, replicate: Replicates, analysis: AnalysisTable) 
     return {
         "units": element.units,
         **_moments(element, within),
+        "tolerance": _tolerance(element, replicate, analysis),
+        **with_failed_bounds(element, lambda one: _points(one, replicate, analysis)),
+    } | {count: int(getattr(element, count).sum()) for count in COUNTS}
+
+
+def _points(
+    element: Element, replicate: Replicates, analysis: AnalysisTable
+) -> dict[str, dict[str, Any]]:
+    """Return the quantiles, B-lives and probabilities of an element."""
+    within = _of(replicate, element.present)
+    return {
         "quantiles": {
             repr(probability): quantile_entry(element, probability, within)
             for probability in analysis.quantiles
         },
-        "tolerance": _tolerance(element, replicate, analysis),
         "thresholds": {
             repr(threshold): _threshold(element, threshold, replicate)
             for threshold in analysis.thresholds.get(element.output, ())
         },
         "b_lives": b_lives(element, replicate) if element.kind == "lifetime" else {},
-    } | {count: int(getattr(element, count).sum()) for count in COUNTS}
+    }
 
 
 def _moments(element: Element, within: Replicates) -> dict[str, Any]:

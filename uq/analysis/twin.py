@@ -14,6 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.analysis.control_variate import FEWEST, Controlled, controlled_mean, controlled_share
+from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.statistics import event
 from uq.errors import InputError
 from uq.exact_shares import FEW
@@ -88,8 +89,9 @@ def with_twin(ds: xr.Dataset, model: str | None = None) -> dict[str, Any]:
     -------
     dict
         ``twin``, ``rows``, ``cheap_rows``, and ``outputs``: element -> estimate -> ``value``,
-        ``low``, ``high``, ``plain`` (the same three), ``reduction``, and ``note`` where few rows
-        tell. An element whose tail has no variance has no mean here.
+        ``low``, ``high``, ``plain`` (the same three), ``reduction``, ``note`` where few rows
+        tell, and where rows failed ``failed_low`` and ``failed_high``, of the plain rows. An
+        element whose tail has no variance has no mean here.
     """
     study = study_from_text(ds.attrs["study"], "study of this result", model)
     if not study.analysis.twin:
@@ -135,8 +137,9 @@ def _estimates(
         for sign, hits in zip("><", sides, strict=True):
             found = controlled_share(hits, kept, _sized(control), _sized(many))
             plain = share_interval(hits[kept])
+            lost = failed_share_bounds(hits, element.failed, None)
             few = few_hits(int(hits[kept].sum()), int(kept.sum()))
-            yield f"P({sign}{threshold!r})", _entry(found, hits[kept].mean(), plain) | few
+            yield f"P({sign}{threshold!r})", _entry(found, hits[kept].mean(), plain) | lost | few
 
 
 def few_hits(hits: int, rows: int) -> dict[str, str]:

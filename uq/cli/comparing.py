@@ -82,7 +82,8 @@ def _apart(one: Entry, per: float, nothing: float = 0.0) -> tuple[str, str, str]
     """Return value and interval of a difference, and a mark where it excludes `nothing`."""
     low, high = one["low"], one["high"]
     sure = (low is not None and low > nothing) or (high is not None and high < nothing)
-    return known(one, per=per), interval(one, per), "*" if sure else ""
+    ends = "identical rows" if one.get("identical") else interval(one, per)
+    return known(one, per=per), ends, "*" if sure else ""
 
 
 def bought(found: dict[str, Any]) -> list[str]:

@@ -11,7 +11,7 @@ from uq.cli import say_when_interrupted
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.errors import InputError
 from uq.study.definition import load_study
-from uq.wording import estimated
+from uq.wording import estimated, failed_interval
 
 _SHOWN = 6  # sizes of each estimate on a terminal
 
@@ -143,6 +143,8 @@ def twin(result: Path, model: str | None, json: bool) -> None:
         for label, entry in estimates.items():
             if note := entry.get("note"):
                 paragraph(f"{estimated(label)}: {note}", indent=2)
+            if worst := failed_interval(entry):
+                paragraph(f"{estimated(label)}, with failed rows at best and worst: {worst}", 2)
     console.print()
     per_row = 1 + found["cheap_rows"] / found["rows"]
     paragraph(

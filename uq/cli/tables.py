@@ -12,6 +12,7 @@ from uq.wording import (
     Entry,
     accuracy_not_reached,
     duration,
+    failed_interval,
     index,
     index_interval,
     interval,
@@ -34,10 +35,16 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
         shares = summary["regime"].items()
         grid(
             [
-                (label, number(one["share"]), interval(one), str(one["count"]))
+                (
+                    label,
+                    number(one["share"]),
+                    interval(one),
+                    str(one["count"]),
+                    failed_interval(one),
+                )
                 for label, one in shares
             ],
-            header=("", "share", "95 % interval", "rows"),
+            header=("", "share", "95 % interval", "rows", "with failed rows"),
         )
     for name, output in summary["outputs"].items():
         meaning = ds[name.partition("[")[0]].attrs["long_name"]
@@ -65,10 +72,17 @@ def _lines(output: Entry) -> Iterator[Line]:
 
     yield line("mean", {"value": output["mean"], **output["mean_interval"]})
     yield line("sd", {"value": output["sd"], **output["sd_interval"]})
+
+    def failed(entry: Entry) -> Iterator[Line]:
+        if worst := failed_interval(entry):
+            yield "  with failed rows", "", worst, ""
+
     for probability, entry in output["quantiles"].items():
         yield line(f"quantile {probability}", entry)
+        yield from failed(entry)
     for name, entry in output["b_lives"].items():
         yield line(name, entry)
+        yield from failed(entry)
     if any("assumes" in entry for entry in output["b_lives"].values()):
         yield "", "B-lives suppose", _ASSUMES, ""
     if bounds := output["tolerance"]:
@@ -77,12 +91,14 @@ def _lines(output: Entry) -> Iterator[Line]:
         if bounds["lower"] is None and bounds["upper"] is None:
             yield "", f"needs {bounds['rows_needed']} rows", "", ""
     for threshold, entry in output["thresholds"].items():
-        yield line(f"P(> {number(float(threshold))})", entry["above"], time=False)
-        yield line(f"P(< {number(float(threshold))})", entry["below"], time=False)
+        for sign, side in ((">", "above"), ("<", "below")):
+            yield line(f"P({sign} {number(float(threshold))})", entry[side], time=False)
+            yield from failed(entry[side])
         if reason := entry.get("reason"):
             yield "", reason, "", ""
             guess = entry["kaplan_meier"]
             yield line(f"P(< {number(float(threshold))}), if", guess["below"], time=False)
+            yield from failed(guess["below"])
             yield "", _ASSUMES, "", ""
     if split := output.get("between_regimes"):
         form, *_ = split_name(split["of"])
@@ -175,3 +191,7 @@ def _ranked(table: Mapping[str, Any], dummy: Mapping[str, float]) -> Iterator[li
     if dummy:
         cells = ((index(dummy, kind, kind), "") for kind in table)
         yield ["(an input without effect)", *(text for pair in cells for text in pair)]
+    if many := {kind: dummy.get(f"{kind}_any") for kind in table if f"{kind}_any" in dummy}:
+        cells = ((index(many, kind, kind) if kind in many else "", "") for kind in table)
+        label = f"(largest of {len(last)} such inputs)"
+        yield [label, *(text for pair in cells for text in pair)]

@@ -99,9 +99,10 @@ def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
         value, ends = table[:, 0], table[:, 1:].T
         axes.barh(y, value, thickness, color=COLOURS[i], label=MEANING.get(kind, kind))
         axes.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
-    for limit in entry.get("dummy", {}).values():
-        label = "largest of inputs that play no part"
-        axes.axvline(limit, color="black", ls="--", lw=0.8, label=label)
+    for kind, limit in entry.get("dummy", {}).items():
+        of_all = kind.endswith("_any")
+        label = "the largest of as many" if of_all else "largest of inputs that play no part"
+        axes.axvline(limit, color="black", ls=":" if of_all else "--", lw=0.8, label=label)
     axes.axvline(0, color="black", lw=0.6)
     # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
     shares = "mu_star" not in kinds

@@ -66,7 +66,8 @@ class Indices(NamedTuple):
     notes : tuple of str
         Sentences on what could not be given.
     dummy : dict of str to float
-        Name of the index -> its largest value over inputs that play no part.
+        Name of the index -> its largest value over inputs that play no part; with ``_any``, what
+        the largest of as many such inputs as there are passes once in twenty.
     noise : Index or None
         Share of the variance that remains once all inputs are known, where rows tell it.
     """

@@ -116,7 +116,7 @@ def _leading(
     kind, (first, *others) = list(kinds)[-1], _ranking(kinds)
     entry = kinds[kind][first]
     value = entry["value"] or 0.0
-    if value <= dummy.get(kind, 0.0):
+    if value <= dummy.get(f"{kind}_any", dummy.get(kind, 0.0)):
         return ""
     told, low = kind if kind == method else f"{method}: {kind}", entry.get("low")
     size = index(entry, "value", kind)
@@ -152,6 +152,9 @@ def _table(caption: str, kinds: Mapping[str, Any], dummy: Mapping[str, float]) -
     if dummy:
         limits = (_cell({"value": dummy.get(kind)}, kind) for kind in kinds)
         rows.append((Cell("(an input without effect)"), *limits))
+    if any(f"{kind}_any" in dummy for kind in kinds):
+        limits = (_cell({"value": dummy.get(f"{kind}_any")}, kind) for kind in kinds)
+        rows.append((Cell(f"(largest of {len(rows) - 1} such inputs)"), *limits))
     return Table(caption, ("input", *kinds), rows)
 
 

@@ -65,6 +65,8 @@ def estimate(entry: Mapping[str, Any], per: float = 1.0, key: str = "value") -> 
     """
     text = wording.known(entry, key, per)
     ends = wording.interval(entry, per).replace(" to ", " to\u00a0")  # breaks in two, not three
+    if worst := wording.failed_interval(entry, per) if key == "value" else "":
+        ends += f"{'; ' * bool(ends)}with failed rows {worst}"
     last = float("inf") if text in ("never", "beyond the horizon") else None
     return Cell(text, ends, last if entry[key] is None else entry[key])
 

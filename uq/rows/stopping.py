@@ -110,6 +110,7 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     known = f"{seen.value:.6g}, {seen.interval.low:.6g} to {seen.interval.high:.6g}"
     if np.isnan(seen.interval).all():
         return f"the budget of {samples} samples is spent, and {what} has no interval"
+    known += _lost(design, ds)
     if not seen.reached:
         return (
             f"the budget of {samples} samples is spent: {what} is {known}, and a half-width of"
@@ -123,6 +124,14 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
         f" {confidence(design):.2%} at each look, is one of 95 % for a run that stops so; the"
         " others are for a number of rows fixed beforehand"
     )
+
+
+def _lost(design: "DesignTable", ds: xr.Dataset) -> str:
+    """Say that rows failed, of which no interval knows."""
+    assert design.until is not None
+    elements = named_elements(independent_rows(ds), design.until.output)
+    lost = max(int(element.failed.sum()) for element in elements)
+    return f" (of the rows that did not fail; {lost} did)" if lost else ""
 
 
 def _estimate(

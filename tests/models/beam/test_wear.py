@@ -56,10 +56,11 @@ def test_the_gap_ratio_of_the_second_case_falls_as_published():
 
 @pytest.mark.slow
 def test_the_life_through_changes_of_branch_is_met_within_two_percent():
-    x = rows(forcing_frequency=32.3591)
+    """Where branches are left, a billionth of the frequency scatters a life by one percent."""
+    x = rows(16, forcing_frequency=32.3591 * (1 + 1e-9 * np.arange(16)))
     outputs, _ = compute(x, depths=Settings.depths, accuracy=Settings.accuracy)
-    assert dimensionless(outputs, x)[0, 1] == pytest.approx(0.380, rel=0.02)
-    assert outputs["lifetime_ratio"][0, 1] == pytest.approx(1 / 1.49, rel=0.02)
+    assert np.median(dimensionless(outputs, x)[:, 1]) == pytest.approx(0.380, rel=0.02)
+    assert np.median(outputs["lifetime_ratio"][:, 1]) == pytest.approx(1 / 1.49, rel=0.02)
 
 
 def test_life_scales_exactly_with_area_over_wear_coefficient_and_shares_one_simulation():

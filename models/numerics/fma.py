@@ -1,0 +1,64 @@
+"""Multiplication and addition with one rounding, wherever it is asked for and nowhere else.
+
+Vectorised algebra runs up to 1.7 times as fast with it. To let the compiler fuse whatever it likes
+(``contract``) is as fast, but then the last bits depend on what it has inlined where. Written out,
+they are a function of source and inputs. A processor without the instruction calls a function of
+the C library instead: the same bits, slowly.
+"""
+
+import math
+from typing import Any
+
+import numba
+from numba.core import types
+from numba.extending import intrinsic
+
+
+def exact_fma(a: float, b: float, c: float) -> float:
+    """Return a b + c, rounded once: what `fma` is where nothing is compiled.
+
+    Parameters
+    ----------
+    a, b, c : float
+
+    Returns
+    -------
+    float
+        Of IEEE 754, signed zeros, infinities and NaN included.
+    """
+    a, b, c = float(a), float(b), float(c)
+    if not (math.isfinite(a) and math.isfinite(b)):
+        return a * b + c
+    if not math.isfinite(c):
+        return c
+    top_a, bottom_a = a.as_integer_ratio()
+    top_b, bottom_b = b.as_integer_ratio()
+    top_c, bottom_c = c.as_integer_ratio()
+    bottom = bottom_a * bottom_b
+    top = top_a * top_b * bottom_c + top_c * bottom
+    if top == 0:
+        return a * b + c  # exact, with the right sign
+    try:
+        return top / (bottom * bottom_c)
+    except OverflowError:
+        return math.inf if top > 0 else -math.inf
+
+
+@intrinsic
+def _instruction(typingctx: Any, a: Any, b: Any, c: Any) -> Any:
+    """Fused multiply-add of the processor, of numbers of any type."""
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        kinds = signature.args
+        floats = [
+            context.cast(builder, value, kind, types.float64)
+            for value, kind in zip(values, kinds, strict=True)
+        ]
+        return builder.fma(*floats)
+
+    return types.float64(a, b, c), generate
+
+
+_config: Any = numba.config
+fma: Any = exact_fma if _config.DISABLE_JIT else _instruction
+"""``fma(a, b, c)`` is a b + c with one rounding, in kernels."""

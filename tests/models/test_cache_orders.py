@@ -1,0 +1,80 @@
+"""The bits of a result do not depend on what had been compiled before, in whichever process.
+
+Three caches of compiled code are filled in three orders: all machines in one process; single
+motions first, then each machine in a process of its own; and the other way round. A callee that is
+loaded from the disk is inlined otherwise than one just compiled, which must show nowhere.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+STUDIES = Path(__file__).parents[2] / "studies"
+ROWS = {
+    "vibrator": {"vibrator-tolerances": 64, "vibrator-feed": 2},
+    "mole": {"mole-progression": 96, "mole-circuit": 8},
+    "beam": {"beam-lifetime": 96, "beam-random-load": 1},
+}
+"""Of each machine, studies that reach both of its propagators, and rows of them."""
+
+PROGRAM = """
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from uq.rows.sampling import row_block
+from uq.study.definition import load_study
+
+kept, *asked = sys.argv[1:]
+for study, rows in zip(asked[::2], asked[1::2]):
+    study = load_study(Path(study))
+    if rows == "one":
+        motion = study.model.simulate(study.model.parameters(), study.settings)
+        assert len(motion.time)
+        continue
+    block = row_block(study, 0, int(rows))
+    outputs, status = study.model.batch(block.x, block.seed, study.settings)
+    np.savez(Path(kept) / study.name, status=status, **outputs)
+"""
+
+
+def compute(cache, kept, rows):
+    asked = [word for study, n in rows.items() for word in (STUDIES / f"{study}.toml", n)]
+    ended = subprocess.run(
+        [sys.executable, "-c", PROGRAM, kept, *map(str, asked)],
+        env=os.environ | {"XDG_CACHE_HOME": str(cache)},
+        capture_output=True,
+        text=True,
+    )
+    assert ended.returncode == 0, ended.stderr
+
+
+def first(study):
+    return {study: "one"}
+
+
+@pytest.mark.slow
+def test_three_orders_of_compilation_give_the_same_bits(tmp_path):
+    vibrator, mole, beam = ROWS["vibrator"], ROWS["mole"], ROWS["beam"]
+    orders = [
+        [vibrator | mole | beam],
+        [first("mole-progression"), first("beam-lifetime"), beam, mole, vibrator],
+        [first("vibrator-tolerances"), beam | mole | vibrator],
+    ]
+    for number, order in enumerate(orders):
+        kept = tmp_path / f"kept-{number}"
+        kept.mkdir()
+        for rows in order:
+            compute(tmp_path / f"cache-{number}", kept, rows)
+    for study in vibrator | mole | beam:
+        one, *others = [
+            np.load(tmp_path / f"kept-{number}" / f"{study}.npz") for number in range(len(orders))
+        ]
+        for other in others:
+            for name in one:
+                assert one[name].tobytes() == other[name].tobytes(), (study, name)
