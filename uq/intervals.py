@@ -17,7 +17,8 @@ from scipy import stats
 from uq.exact_shares import are_few, exact_interval
 
 CONFIDENCE = 0.95
-_ROUNDING = 64 * np.finfo(float).eps
+ROUNDING = 64 * np.finfo(float).eps
+"""Values that differ by less than this part of the largest differ by no more than rounding."""
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -36,7 +37,7 @@ UNKNOWN = Interval(np.nan, np.nan)
 
 def is_constant(values: Floats) -> bool:
     """Whether finite values differ by no more than rounding."""
-    return bool(np.ptp(values) <= _ROUNDING * np.abs(values).max())
+    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
 
 
 def scatter_interval(value: float, estimates: Floats, confidence: float = CONFIDENCE) -> Interval:
@@ -193,7 +194,7 @@ def is_within(probability: float, rows: int) -> bool:
 
     Rows of replicates count together: their designs spread as evenly, or more so.
     """
-    return bool(1 - _ROUNDING <= probability * (rows + 1) <= rows + _ROUNDING * rows)
+    return bool(1 - ROUNDING <= probability * (rows + 1) <= rows + ROUNDING * rows)
 
 
 def rows_to_reach(probability: float) -> int:

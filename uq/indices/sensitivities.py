@@ -172,7 +172,9 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
         ),
     }
     coords: dict[str, Any] = {"output": [one.target.name for one in found]}
-    for kind, labels in estimated[0].values.items() if estimated else ():
+    # Those of a quantile have other names for a lifetime.
+    kinds = {kind: labels for one in estimated for kind, labels in one.values.items()}
+    for kind, labels in kinds.items():
         dim = "pair" if kind == "S2" else "parameter"
         coords[dim] = list(labels)
         table = np.array([_row(one, kind, list(labels)) for one in found])
@@ -182,7 +184,7 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
         shares = np.array([_noise(one) for one in found])
         for i, end in enumerate(("", "_low", "_high")):
             data[f"noise{end}"] = ("output", shares[:, i])
-    for kind in estimated[0].dummy if estimated else ():
+    for kind in {kind: None for one in estimated for kind in one.dummy}:
         data[f"dummy_{kind}"] = ("output", [_dummy(one, kind) for one in found])
     return xr.Dataset(data, coords, {"method": name})
 
@@ -331,7 +333,7 @@ def _plain(index: Index) -> dict[str, float | None]:
 
 
 def _row(one: _Found, kind: str, labels: list[str]) -> list[tuple[float, float, float]]:
-    if isinstance(one.indices, str):
+    if isinstance(one.indices, str) or kind not in one.indices.values:
         return [(np.nan, np.nan, np.nan)] * len(labels)
     return [one.indices.values[kind][label] for label in labels]
 
@@ -342,4 +344,4 @@ def _noise(one: _Found) -> Index:
 
 
 def _dummy(one: _Found, kind: str) -> float:
-    return np.nan if isinstance(one.indices, str) else one.indices.dummy[kind]
+    return np.nan if isinstance(one.indices, str) else one.indices.dummy.get(kind, np.nan)
