@@ -14,10 +14,10 @@ to 4 % from twenty hits on.
 """
 
 
-def are_few(share: Floats | float, rows: Floats | float) -> NDArray[np.bool_]:
-    """Whether so many rows have few hits or few misses."""
+def are_few(share: Floats | float, rows: Floats | float, below: int = FEW) -> NDArray[np.bool_]:
+    """Whether so many rows have few hits or few misses; not where the share is not known."""
     rarer = np.minimum(share, 1 - np.asarray(share)) * rows
-    return np.asarray(np.round(rarer, 6) < FEW)
+    return np.asarray(np.round(rarer, 6) < below)
 
 
 def exact_interval(

@@ -191,7 +191,9 @@ def _sampled(margin):
     return lambda u: margin(np.asarray(u))[:, None]
 
 
+FLAT = "conservative by design: no more than the independent rows of the first level support"
 REASONS = {
+    **{f"P = {share:g}": FLAT for share in PLATEAU},
     "mean when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
     "median when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
     "P(> 2.5) when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",

@@ -7,6 +7,15 @@ import pytest
 
 from uq.errors import InputError
 from uq.study.code import code_of
+from uq.study.registry import find_model
+from uq.study.sources import fingerprint
+
+
+def anew(reference):
+    """Return what the code of a model is in a new process."""
+    fingerprint.cache_clear()
+    return code_of(reference)
+
 
 FILES = {
     "__init__.py": "",
@@ -28,7 +37,7 @@ def plant(folder, monkeypatch):
     for name, text in FILES.items():
         (folder / "plant" / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / "plant" / name).write_text(text)
-    return lambda: code_of.__wrapped__("plant.model:MODEL")
+    return lambda: anew("plant.model:MODEL")
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -49,9 +58,9 @@ def test_code_is_the_same_wherever_it_lies(plant, folder, monkeypatch):
 def test_a_module_of_one_file_is_a_model_too(folder, monkeypatch):
     monkeypatch.syspath_prepend(folder)
     (folder / "alone.py").write_text("a = 1\n")
-    before = code_of.__wrapped__("alone:MODEL")
+    before = anew("alone:MODEL")
     (folder / "alone.py").write_text("a = 2\n")
-    assert code_of.__wrapped__("alone:MODEL") != before
+    assert anew("alone:MODEL") != before
 
 
 def test_installed_machines_have_codes_of_their_own():
@@ -64,29 +73,29 @@ def test_files_beside_a_model_count_where_they_are_imported(folder, monkeypatch)
     (folder / "alone.py").write_text("from helper import a\n")
     (folder / "helper.py").write_text("a = 1\n")
     (folder / "bystander.py").write_text("a = 1\n")
-    before = code_of.__wrapped__("alone:MODEL")
+    before = anew("alone:MODEL")
     (folder / "bystander.py").write_text("a = 2\n")
-    assert code_of.__wrapped__("alone:MODEL") == before
+    assert anew("alone:MODEL") == before
     (folder / "helper.py").write_text("a = 2\n")
-    assert code_of.__wrapped__("alone:MODEL") != before
+    assert anew("alone:MODEL") != before
 
 
 def test_a_model_in_the_working_folder_has_a_code_at_once(folder, monkeypatch):
     """As in ``uq verify``, which asks for it before the model is imported."""
     monkeypatch.setattr(sys, "path", [entry for entry in sys.path if entry])
     (folder / "fresh_model.py").write_text("a = 1\n")
-    first = code_of.__wrapped__("fresh_model:MODEL")
+    first = anew("fresh_model:MODEL")
     (folder / "fresh_model.py").write_text("a = 2\n")
-    assert code_of.__wrapped__("fresh_model:MODEL") != first
+    assert anew("fresh_model:MODEL") != first
 
 
 def test_a_package_without_init_has_a_code(folder, monkeypatch):
     monkeypatch.syspath_prepend(folder)
     (folder / "open_package").mkdir()
     (folder / "open_package" / "model.py").write_text("a = 1\n")
-    before = code_of.__wrapped__("open_package.model:MODEL")
+    before = anew("open_package.model:MODEL")
     (folder / "open_package" / "model.py").write_text("a = 2\n")
-    assert code_of.__wrapped__("open_package.model:MODEL") != before
+    assert anew("open_package.model:MODEL") != before
 
 
 @pytest.mark.parametrize("reference", ["nowhere.to.be:FOUND", "..:x", ":x", "builtins:MODEL"])
@@ -95,3 +104,16 @@ def test_no_source_is_no_code(reference):
         code_of(reference)
     with pytest.raises(InputError, match="no such model 'nothing'"):
         code_of("nothing")
+
+
+def test_the_code_is_that_which_was_imported(folder, monkeypatch):
+    """In a notebook a file may be edited before a study is run."""
+    monkeypatch.syspath_prepend(folder)
+    text = "from models.analytic import LINEAR as MODEL\n"
+    (folder / "edited_later.py").write_text(text)
+    find_model("edited_later:MODEL")
+    (folder / "edited_later.py").write_text(f"{text}# edited\n")
+    imported = code_of("edited_later:MODEL")
+    assert anew("edited_later:MODEL") != imported
+    (folder / "edited_later.py").write_text(text)
+    assert anew("edited_later:MODEL") == imported

@@ -79,6 +79,9 @@ def test_values_and_angles_have_bounds_too():
     assert value["0.05"]["failed_low"] is None and value["0.05"]["failed_high"] > 2.0
     assert value["0.5"]["failed_low"] < 5.0 < value["0.5"]["failed_high"]
     assert failed_interval(value["0.05"]).startswith("up to")
+    highest = summarise(asking(ds, quantiles=[0.95]))["outputs"]["y"]["quantiles"]["0.95"]
+    assert highest["failed_high"] is None and "failed_high_never" not in highest
+    assert failed_interval(highest).startswith("from")
     truth = (whole := linear(samples=100_000)["y"].values > 7.0).mean()
     assert len(whole) and found["y"]["thresholds"]["7.0"]["above"]["failed_high"] > truth
     turn = found["turn"]["thresholds"]["2.0"]

@@ -135,3 +135,17 @@ def test_a_curve_that_ends_while_a_replicate_is_censored_has_no_band_there():
     censored[-2] = 1  # the last row of one replicate is censored, that of the other ends
     curve = survival(lives(values, censored, "latin-hypercube", replicates=2), "life")
     assert float(curve["survival"][-1]) == 0.0 and np.isnan(float(curve["high"][-1]))
+
+
+@pytest.mark.parametrize("method", ["monte-carlo", "latin-hypercube"])
+def test_survival_is_exact_where_few_have_ended(method):
+    replicates = 1 if method == "monte-carlo" else 4
+    blank = linear(method, samples=200 // replicates, replicates=replicates)
+    rng, too_low, repetitions = np.random.default_rng(2), 0, 150
+    for _ in range(repetitions):
+        life = rng.exponential(size=200)
+        ds = with_output(blank, "life", np.maximum(life, 1e-6), "lifetime")
+        curve = uq.survival(ds, "life")
+        seen = curve["high"].values[curve["time"].values <= 0.0007]  # 0.14 ends expected
+        too_low += bool(len(seen)) and bool(seen[-1] < np.exp(-0.0007))
+    assert too_low <= 0.05 * repetitions  # Greenwood's: 0.13

@@ -264,13 +264,16 @@ def _sides(pair: Pair, elements: list[Element], threshold: float, entries: list[
             for element, sides in zip(elements, events, strict=True)
             if sides is not None
         ]
-        ends = [entry[side] for entry in entries]
-        found[side] = (
-            _estimate(pair, SHARE, samples, ends)
-            if len(samples) == 2
-            else {"a": ends[0], "b": ends[1], "difference": dict.fromkeys(_ENDS)}
-        )
+        found[side] = _estimate(pair, SHARE, samples, [_side(entry, side) for entry in entries])
     return found
+
+
+def _side(entry: Entry, side: str) -> Entry:
+    """Return the share on one side of a threshold, after Kaplan and Meier where that is all."""
+    if "kaplan_meier" not in entry:
+        return dict(entry[side])
+    found = entry["kaplan_meier"]
+    return found[side] | {"assumes": found["assumes"]}
 
 
 def _estimate(

@@ -52,11 +52,12 @@ def with_failed_bounds(
     found = describe(element)
     if not element.failed.any():
         return found
-    least = 0.0 if element.kind == "lifetime" else -np.inf
+    is_life = element.kind == "lifetime"
+    least = 0.0 if is_life else -np.inf
     lowest, highest = (describe(with_failed_at(element, end)) for end in (least, np.inf))
     for part in ("quantiles", "b_lives"):
         for name, entry in found[part].items():
-            entry |= _ends(lowest[part][name], highest[part][name], entry)
+            entry |= _ends(lowest[part][name], highest[part][name], entry, is_life)
     if element.kind == "angle":  # thresholds are of the magnitude
         lowest = describe(with_failed_at(element, 0.0))
     for name, entry in found["thresholds"].items():
@@ -72,7 +73,7 @@ def _sides(entry: Entry, lowest: Entry, highest: Entry) -> None:
     entry["below"] |= _ends(highest["below"], lowest["below"], entry["below"])
 
 
-def _ends(lowest: Entry, highest: Entry, plain: Entry) -> Entry:
+def _ends(lowest: Entry, highest: Entry, plain: Entry, is_life: bool = False) -> Entry:
     """Return both bounds; of an estimate without interval the estimates themselves."""
     alone = plain["low"] is None and plain["high"] is None
     found = {}
@@ -80,7 +81,7 @@ def _ends(lowest: Entry, highest: Entry, plain: Entry) -> Entry:
         end, reasons = ("value", "") if alone else (end, f"{end}_")
         found[key] = entry[end]
         for reason in ("never", "censored"):
-            if entry.get(f"{reasons}{reason}"):
+            if is_life and entry.get(f"{reasons}{reason}"):
                 found[f"{key}_{reason}"] = True
     return found
 

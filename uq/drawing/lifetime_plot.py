@@ -17,7 +17,9 @@ from uq.time_units import TimeUnit, time_unit
 
 @styled
 def lifetime(ds: xr.Dataset, output: str) -> Figure:
-    """Draw the probability that a life has ended against time, with its pointwise 95 % band.
+    """Draw the probability that a life has ended against time, with its 95 % bands.
+
+    The dark band holds each point, the light one the whole curve, where there is one.
 
     Marks stand at B1, B10 and B50, the times by which 1, 10 and 50 % have ended, with their
     intervals. On the right the same curve is the probability of a longer life.
@@ -38,7 +40,7 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = time_unit(float(np.median(ends)) if len(ends) else 0.0)
     figure, (axes,) = new_figure(2.3, entries=len(chosen))
-    band = False
+    bands = ["", ""]
     for i, element in enumerate(chosen):
         curve = survival(ds, element.name)
         curve = curve.isel(time=thinned(curve.sizes["time"]))
@@ -49,7 +51,11 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
         low, high = 1 - curve["high"], 1 - curve["low"]
         if np.isfinite(low).any():
             axes.fill_between(time, low, high, step="post", color=colour, alpha=0.2, lw=0)
-            band = True
+            bands[0] = "pointwise 95 % band"
+        low, high = 1 - curve["band_high"], 1 - curve["band_low"]
+        if np.isfinite(low).any():
+            axes.fill_between(time, low, high, step="post", color=colour, alpha=0.1, lw=0)
+            bands[1] = "light: of the whole curve"
         _mark(axes, element, replicates_of(rows), unit, colour)
     axes.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
     axes.set_xlabel(sentence(chosen[0].meaning, unit.name))
@@ -57,7 +63,7 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
     other.set_ylabel("Probability of\na longer life")
     if is_wide(ends):
         logarithmic(axes)
-    explain(axes, chosen, *["pointwise 95 % band"] * band)
+    explain(axes, chosen, *filter(None, bands))
     return figure
 
 

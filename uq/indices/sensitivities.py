@@ -29,6 +29,7 @@ from uq.indices.targets import (
 )
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.in_regime import within_regime
+from uq.tails import lacks_variance
 
 _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
     "sobol": (crossed, sobol_indices),
@@ -54,6 +55,10 @@ _WITH_NOISE = {
     "fast": f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
 }
 """What a method whose rows share seeds makes of noise."""
+
+
+_OF_VARIANCE = ("sobol", "shapley", "fast", "rbd-fast", "hdmr")
+"""Methods whose indices are shares of the variance."""
 
 
 def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
@@ -172,7 +177,9 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
         ),
     }
     coords: dict[str, Any] = {"output": [one.target.name for one in found]}
-    for kind, labels in estimated[0].values.items() if estimated else ():
+    # Those of a quantile have other names for a lifetime.
+    kinds = {kind: labels for one in estimated for kind, labels in one.values.items()}
+    for kind, labels in kinds.items():
         dim = "pair" if kind == "S2" else "parameter"
         coords[dim] = list(labels)
         table = np.array([_row(one, kind, list(labels)) for one in found])
@@ -182,7 +189,7 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
         shares = np.array([_noise(one) for one in found])
         for i, end in enumerate(("", "_low", "_high")):
             data[f"noise{end}"] = ("output", shares[:, i])
-    for kind in estimated[0].dummy if estimated else ():
+    for kind in {kind: None for one in estimated for kind in one.dummy}:
         data[f"dummy_{kind}"] = ("output", [_dummy(one, kind) for one in found])
     return xr.Dataset(data, coords, {"method": name})
 
@@ -228,6 +235,8 @@ def _estimate(
         try:
             if target.refused:
                 raise RefusedError(target.refused)
+            if method in _OF_VARIANCE and not target.event and lacks_variance(target.values):
+                raise RefusedError(_no_variance(target))
             few = few_hits(ds, target)
             if estimate is None:
                 quantiles = _quantiles(target, asked)
@@ -241,6 +250,14 @@ def _estimate(
         whole = whole_groups(target.values, alone if design is None else design.order)
         found.append(_Found(target, indices, whole, ds.sizes["sample"] // whole.size))
     return method, found
+
+
+def _no_variance(target: Target) -> str:
+    name = target.element.name if target.element else target.name
+    return (
+        f"the tail of {target.name} is too heavy for a variance to apportion; ask for"
+        f" log({name}), where all rows are positive, or rank({name})"
+    )
 
 
 def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
@@ -331,7 +348,7 @@ def _plain(index: Index) -> dict[str, float | None]:
 
 
 def _row(one: _Found, kind: str, labels: list[str]) -> list[tuple[float, float, float]]:
-    if isinstance(one.indices, str):
+    if isinstance(one.indices, str) or kind not in one.indices.values:
         return [(np.nan, np.nan, np.nan)] * len(labels)
     return [one.indices.values[kind][label] for label in labels]
 
@@ -342,4 +359,4 @@ def _noise(one: _Found) -> Index:
 
 
 def _dummy(one: _Found, kind: str) -> float:
-    return np.nan if isinstance(one.indices, str) else one.indices.dummy[kind]
+    return np.nan if isinstance(one.indices, str) else one.indices.dummy.get(kind, np.nan)

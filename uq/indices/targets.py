@@ -82,6 +82,10 @@ class RefusedError(Exception):
     """A target has no indices; the message is the sentence that says why."""
 
 
+ALL_NOISE = "no input changes it at one seed: all of its variance is noise"
+"""Why an output of a random model has no shares where rows that are compared share a seed."""
+
+
 def targets(
     elements: Iterable[Element], thresholds: Mapping[str, tuple[float, ...]]
 ) -> Iterator[Target]:

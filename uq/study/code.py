@@ -3,14 +3,12 @@
 A model's version is its author's promise; this is what the files say.
 """
 
-import hashlib
 from collections.abc import Mapping
-from functools import cache
 
 from uq.errors import InputError
 from uq.provenance import provenance
 from uq.study.registry import module_of
-from uq.study.sources import sources_of
+from uq.study.sources import fingerprint
 
 
 def made_here(reference: str) -> dict[str, str]:
@@ -38,7 +36,6 @@ def is_other_code(made: Mapping[str, object], reference: str) -> bool:
     return made.get("code", here) != here
 
 
-@cache
 def code_of(reference: str) -> str:
     """Return a hash of the sources of a model: its module, and what that imports.
 
@@ -60,14 +57,9 @@ def code_of(reference: str) -> str:
         When no source is found.
     """
     module = module_of(reference)
-    sources = sources_of(module).own
-    if not sources:
+    if not (found := fingerprint(module)):
         raise InputError(
-            f"model '{reference}': no source file of module '{module}' was found, so it cannot be "
-            "known which code computes its rows; install it, or name its folder in PYTHONPATH"
+            f"model '{reference}': no source file of module '{module}' was found, so its code "
+            "cannot be identified; install it, or name its folder in PYTHONPATH"
         )
-    whole = hashlib.sha256()
-    for name, source in sorted(sources.items()):
-        whole.update(b"%s %d\n" % (name.encode(), len(source)))
-        whole.update(source)
-    return whole.hexdigest()[:16]
+    return found

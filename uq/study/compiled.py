@@ -5,7 +5,6 @@ calls into, code made from the old one would come back. Here a folder is named b
 function can come from.
 """
 
-import hashlib
 import os
 import sys
 import tempfile
@@ -18,7 +17,7 @@ from typing import Any, Self
 from platformdirs import user_cache_path
 
 from uq.compilation import when_imported
-from uq.study.sources import is_installed, signature, sources_of
+from uq.study.sources import digest, is_installed, signature, sources_of
 
 _DISTRIBUTION = "vibrolife"
 
@@ -78,7 +77,7 @@ class SourcesLocator:
         if module == "__main__" or not os.path.isfile(file):
             return None
         package = module.partition(".")[0]
-        if package in _own() or (package not in _models and is_installed(package)):
+        if package in own_packages() or (package not in _models and is_installed(package)):
             return None
         if not sources_of(module).own:
             return None
@@ -119,18 +118,15 @@ def key_of(module: str) -> str:
         Its full name.
     """
     sources = sources_of(module)
-    whole = hashlib.sha256()
-    for name, source in sorted(sources.own.items()):
-        whole.update(b"%s %d\n" % (name.encode(), len(source)))
-        whole.update(source)
+    whole = digest(sources.own)
     for package in sorted(sources.others):
         whole.update(repr(signature(package)).encode())
     return whole.hexdigest()[:16]
 
 
 @cache
-def _own() -> set[str]:
-    """Return the packages of our own models, which see to this themselves."""
+def own_packages() -> set[str]:
+    """Return the packages of our own models, which see to their compiled code themselves."""
     points = entry_points(group="vibrolife.models")
     names = ((point.dist.name if point.dist else "", point.value) for point in points)
     return {value.partition(".")[0] for name, value in names if name == _DISTRIBUTION}

@@ -7,7 +7,8 @@ from importlib.metadata import EntryPoint, entry_points
 
 from uq.contract import Model
 from uq.errors import InputError, nearest
-from uq.study.compiled import keep_apart
+from uq.study.compiled import keep_apart, own_packages
+from uq.study.sources import fingerprint
 
 GROUP = "vibrolife.models"
 
@@ -81,6 +82,8 @@ def _load(point: EntryPoint, label: str) -> Model:
             f"{label} cannot be imported from {point.value}: {type(error).__name__}: {reason}"
             f"{remedy}"
         ) from error
+    if module_name.partition(".")[0] not in own_packages():
+        fingerprint(module_name)  # of what was imported, not of what it is edited to afterwards
     if not isinstance(found, Model):
         raise InputError(
             f"{label}: {point.value} is a {type(found).__name__}, not a uq.contract.Model"

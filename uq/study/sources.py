@@ -5,10 +5,11 @@ packages has a version; `uq` itself is no part of any model.
 """
 
 import ast
+import hashlib
 import os
 import sys
-from collections.abc import Iterator
-from functools import lru_cache
+from collections.abc import Iterator, Mapping
+from functools import cache, lru_cache
 from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.util import find_spec, resolve_name
 from pathlib import Path
@@ -70,6 +71,30 @@ def sources_of(module: str) -> Sources:
                 todo |= {above or name, *inside} - seen
         todo = {name for name in todo if name.partition(".")[0] != _PLATFORM}
     return Sources(found, root, others)
+
+
+@cache
+def fingerprint(module: str) -> str:
+    """Return a hash of the sources of a module, see `sources_of`; "" if none was found.
+
+    Once asked for it stays, as does what was imported: an edit counts in the next process.
+
+    Parameters
+    ----------
+    module : str
+        Its full name.
+    """
+    found = sources_of(module).own
+    return digest(found).hexdigest()[:16] if found else ""
+
+
+def digest(sources: Mapping[str, bytes]) -> "hashlib._Hash":
+    """Return a hash of some sources by name, to which more may be added."""
+    whole = hashlib.sha256()
+    for name, source in sorted(sources.items()):
+        whole.update(b"%s %d\n" % (name.encode(), len(source)))
+        whole.update(source)
+    return whole
 
 
 def signature(package: str) -> list[tuple[str, int, int]]:
