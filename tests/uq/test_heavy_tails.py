@@ -61,6 +61,16 @@ def test_a_positive_output_with_a_heavy_tail_stands_as_its_logarithm():
     assert only(ds, output="log(work)")[0] == "log(work)"
 
 
+def test_methods_that_compare_distributions_take_it_as_it_is():
+    ds = linear(samples=256)
+    ds = asking(with_output(ds, "work", np.exp(2 * ds["y"].values)), outputs=["work"])
+    for method in ("delta", "pawn"):
+        for asked in ({}, {"output": "work"}):
+            name, entry = only(ds, method=method, **asked)
+            assert name == "work" and not any("variance" in note for note in entry["notes"])
+    assert only(ds, method="rbd-fast")[0] == "log(work)"
+
+
 def test_one_that_is_not_positive_stands_as_its_rank():
     for ds in (heavy(sign=-1), heavy(shift=-100.0)):
         name, entry = only(ds)
