@@ -31,6 +31,7 @@ from uq.indices.targets import (
 )
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.in_regime import within_regime
+from uq.tails import lacks_variance
 
 _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
     "sobol": (crossed, sobol_indices),
@@ -60,6 +61,9 @@ _WITH_NOISE = {
 
 SCALE_FREE = ("delta", "pawn", "regional")
 """Methods that compare distributions: no increasing function of an output changes what they say."""
+
+_OF_VARIANCE = ("sobol", "shapley", "fast", "rbd-fast", "hdmr")
+"""Methods whose indices are shares of the variance."""
 
 
 def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
@@ -236,6 +240,8 @@ def _estimate(
         try:
             if target.refused:
                 raise RefusedError(target.refused)
+            if method in _OF_VARIANCE and not target.event and lacks_variance(target.values):
+                raise RefusedError(_no_variance(target))
             few = few_hits(ds, target)
             if estimate is None:
                 quantiles = _quantiles(target, asked)
@@ -249,6 +255,14 @@ def _estimate(
         whole = whole_groups(target.values, alone if design is None else design.order)
         found.append(_Found(target, indices, whole, ds.sizes["sample"] // whole.size))
     return method, found
+
+
+def _no_variance(target: Target) -> str:
+    name = target.element.name if target.element else target.name
+    return (
+        f"the tail of {target.name} is too heavy for a variance to apportion; ask for"
+        f" log({name}), where all rows are positive, or rank({name})"
+    )
 
 
 def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
