@@ -58,6 +58,7 @@ def mean_and_bound(batches: Array) -> tuple[Array, Array]:
         number = count // length
         joined = batches[:, count - number * length :].reshape(n, number, length, *rest)
         spread = joined.mean(axis=2).std(axis=1, ddof=1)
-        error = np.maximum(error, stdtrit(number - 1, _NINE_IN_TEN) / np.sqrt(number) * spread)
+        student = round(float(stdtrit(number - 1, _NINE_IN_TEN)), 9)  # the same on every processor
+        error = np.maximum(error, student / np.sqrt(number) * spread)
         length *= 2
     return batches.mean(axis=1), error
