@@ -17,7 +17,8 @@ from scipy import stats
 from uq.exact_shares import are_few, exact_interval
 
 CONFIDENCE = 0.95
-_ROUNDING = 64 * np.finfo(float).eps
+ROUNDING = 64 * np.finfo(float).eps
+"""Values that differ by less than this part of the largest differ by no more than rounding."""
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -36,7 +37,7 @@ UNKNOWN = Interval(np.nan, np.nan)
 
 def is_constant(values: Floats) -> bool:
     """Whether finite values differ by no more than rounding."""
-    return bool(np.ptp(values) <= _ROUNDING * np.abs(values).max())
+    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
 
 
 def scatter_interval(value: float, estimates: Floats, confidence: float = CONFIDENCE) -> Interval:
@@ -79,7 +80,7 @@ def mean_interval(
     """
     if len(values) < 2 or is_constant(values):
         return UNKNOWN
-    estimates = values if replicate is None else _means(values, replicate)
+    estimates = values if replicate is None else by_replicate(values, replicate)
     return scatter_interval(values.mean(), estimates, confidence)
 
 
@@ -115,7 +116,7 @@ def share_interval(
         return binomial_interval(hits.mean(), len(hits), confidence)
     return _floats(
         scattered_share_interval(
-            hits.mean(), _means(hits, replicate), confidence=confidence, rows=len(hits)
+            hits.mean(), by_replicate(hits, replicate), confidence=confidence, rows=len(hits)
         )
     )
 
@@ -193,7 +194,7 @@ def is_within(probability: float, rows: int) -> bool:
 
     Rows of replicates count together: their designs spread as evenly, or more so.
     """
-    return bool(1 - _ROUNDING <= probability * (rows + 1) <= rows + _ROUNDING * rows)
+    return bool(1 - ROUNDING <= probability * (rows + 1) <= rows + ROUNDING * rows)
 
 
 def rows_to_reach(probability: float) -> int:
@@ -273,7 +274,7 @@ def quantile_interval(
         return UNKNOWN
     below = values < value if np.isposinf(value) else values <= value
     low, high = scattered_share_interval(
-        probability, _means(below, replicate), below.mean(), confidence
+        probability, by_replicate(below, replicate), below.mean(), confidence
     )
     return Interval(
         quantile(values, low) if low * n >= 1 else np.nan,
@@ -323,7 +324,7 @@ def rows_needed(coverage: float, confidence: float, failed: int = 0) -> int:
     return beyond + int(stats.nbinom.ppf(confidence, beyond, 1 - coverage))
 
 
-def _means(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:
+def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:
     """Return the mean of each replicate that has rows."""
     counts = np.bincount(replicate)
     sums = np.bincount(replicate, weights=values.astype(float))

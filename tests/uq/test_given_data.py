@@ -8,7 +8,7 @@ from scipy import stats
 
 from uq.errors import InputError
 from uq.indices import sensitivities as module
-from uq.indices.sensitivities import sensitivities
+from uq.indices.sensitivities import sensitivities, sensitivity
 
 ISHIGAMI = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 CASES = {
@@ -176,6 +176,22 @@ def test_quantile_indices_of_a_lifetime_are_those_of_the_rows_that_end_first():
         whole = contrast(p, deviation)
         expected = [1 - contrast(p, rest) / whole for rest in (spread, sigma)]
         assert values(entry, kind) == pytest.approx(expected, abs=0.04)
+
+
+def test_arrays_hold_indices_of_other_names_side_by_side():
+    ds = linear(samples=2000)
+    ds = with_output(ds, "life", 1.0 + ds["x1"].values, kind="lifetime")
+    ds = with_output(ds, "late", np.where(ds["x2"] > 0.9, np.inf, 1 + ds["x2"]), kind="lifetime")
+    found = sensitivity(asking(ds, quantiles=[0.5]), "quantile")
+    plain = sensitivities(asking(ds, quantiles=[0.5]), "quantile")["outputs"]
+    assert {"Q0.5", "B10", "B50"} <= {kind for entry in plain.values() for kind in entry}
+    for name, entry in plain.items():
+        for kind in ("Q0.5", "B10", "B50"):
+            row = found[kind].sel(output=name)
+            expected = values(entry, kind) if kind in entry else np.full(4, np.nan)
+            np.testing.assert_array_equal(row, expected)
+            dummy = entry["dummy"].get(kind, np.nan)
+            np.testing.assert_array_equal(found[f"dummy_{kind}"].sel(output=name), dummy)
 
 
 def test_quantiles_without_rows_enough_are_left_out_with_a_note():

@@ -172,10 +172,13 @@ def test_total_indices_hold_what_noise_does_together_with_an_input():
 
 
 def test_shapley_effects_of_an_idle_input_are_zero():
-    entry = sensitivities(computed(noisy("shapley", 256, 1)))["outputs"]["y"]
-    assert entry["shapley"]["x2"]["value"] == 0
-    assert entry["shapley"]["x1"]["value"] == pytest.approx(1)
-    assert any("share a seed" in note for note in entry["notes"])
+    for seed in (0, 1, 2):
+        ds = computed(with_seed(noisy("shapley", 256, 1), seed))
+        entry = sensitivities(ds)["outputs"]["y"]
+        assert entry["shapley"]["x2"]["value"] == 0
+        assert entry["shapley"]["x1"]["value"] == pytest.approx(1)
+        assert entry["shapley"]["x1"]["low"] is None  # the whole of it, but for rounding
+        assert any("share a seed" in note for note in entry["notes"])
 
 
 def test_effects_of_morris_hold_no_noise():
@@ -188,6 +191,31 @@ def test_effects_of_morris_hold_no_noise():
 def test_fast_leaves_the_noise_out():
     entry = sensitivities(computed(noisy("fast", 257, 4)))["outputs"]["y"]
     assert entry["ST"]["x2"]["value"] == pytest.approx(0, abs=0.01)
+    assert entry["S1"]["x1"]["value"] == pytest.approx(1, abs=0.01)
+
+
+def test_shares_of_fast_are_those_of_the_mean_variance_at_one_seed():
+    # x1 + 20 x2 e at one seed: 1 and 400 e^2 twelfths, on average 1 and 33.3. The mean of the
+    # shares at each seed would be 0.147 and 0.853.
+    ds = computed(noisy("fast", 65, 200))
+    ds["crossed"].values[:] += 9 * (ds["crossed"] - ds["x1"]).values
+    entry = sensitivities(ds, output="crossed")["outputs"]["crossed"]
+    assert entry["S1"]["x1"]["value"] == pytest.approx(0.029, abs=0.02)
+    assert entry["S1"]["x2"]["value"] == pytest.approx(0.971, abs=0.05)
+
+
+def test_what_only_the_seed_moves_has_no_shares():
+    for method in ("shapley", "fast"):
+        ds = computed(noisy(method, 65, 4))
+        y = ds["y"].copy(data=ds["y"].values - ds["x1"].values)
+        moved = sensitivities(ds.assign(y=np.round(y, 6)), output="y")["outputs"]["y"]
+        assert moved["refused"] == "no input changes it at one seed: all of its variance is noise"
+
+
+def test_a_curve_at_whose_seed_nothing_moves_leaves_fast_the_others():
+    ds = computed(noisy("fast", 65, 8))
+    still = (ds["replicate"] == 3) & (ds["block"] == 0)
+    entry = sensitivities(ds.assign(y=ds["y"].where(~still, 7.0)), output="y")["outputs"]["y"]
     assert entry["S1"]["x1"]["value"] == pytest.approx(1, abs=0.01)
 
 

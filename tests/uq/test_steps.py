@@ -48,6 +48,13 @@ def test_effects_of_an_input_that_varies_by_a_tiny_part_of_its_size_are_seen():
     assert found["mu_star"]["c"]["value"] == pytest.approx(1e-10, rel=0.02)
 
 
+def test_no_interval_is_made_of_rounding():
+    # The sum is rounded, so that equal effects differ by 1e-14.
+    found = entry_of(result("morris", 50, 4, factor=A))
+    assert found["sigma"]["c"] == {"value": 0.0, "low": None, "high": None}
+    assert found["mu"]["c"]["low"] is None
+
+
 def test_steps_of_a_factor_are_counted_once_each():
     # Steps of the factor alone move b by a, by half of b's range and down where a is negative.
     below = {"distribution": "uniform", "lower": -12.0, "upper": -8.0}

@@ -1,8 +1,10 @@
 """What is printed has nowhere to go: one line, an exit code, and no harm to files."""
 
 import os
+import pty
 import subprocess
 import sys
+import termios
 from importlib.metadata import version
 from pathlib import Path
 
@@ -56,3 +58,15 @@ def test_a_run_without_any_stream_writes_a_sound_result(shell, write_study):
 
 def test_the_version_is_that_of_the_distribution(uq):
     assert uq("--version") == (0, f"vibrolife {version('vibrolife')}\n", "")
+
+
+def test_a_narrow_terminal_is_seen_as_narrow():
+    environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
+    ours, theirs = pty.openpty()
+    termios.tcsetwinsize(theirs, (24, 60))
+    # Its own environment: readline, if it is loaded, has the widths of this one in the C library's.
+    subprocess.run([COMMAND, "run", "--help"], stdout=theirs, env=environment, check=True)
+    os.close(theirs)
+    lines = os.read(ours, 10_000).decode().splitlines()
+    os.close(ours)
+    assert 50 < max(map(len, lines)) <= 60

@@ -57,12 +57,36 @@ def test_delta_of_a_binary_input_is_the_area_between_its_two_laws():
 
 @pytest.mark.parametrize("method", ["pawn", "delta", "quantile"])
 def test_a_rare_value_without_effect_is_told_by_its_own_shuffled_rows(method):
-    binary, x1, _ = rows(0.01)
+    binary, x1, _ = rows(0.02)
     found, indices_ = estimated(method, x1, x1=x1, x2=binary)
     (note,) = indices_.notes
     assert note.startswith("x2 has many equal values: shuffled")
     reached = float(note.partition(" = ")[2].split()[0])
     assert found["x2"] < max(3 * reached, 0.02)
+
+
+@pytest.mark.parametrize("method", ["pawn", "delta", "quantile"])
+def test_an_input_whose_rare_values_fill_no_slice_has_no_index(method):
+    _, x1, _ = rows()
+    rare = np.zeros(N)
+    rare[::500] = 1.0  # six rows, which hold nearly all the variance
+    found, indices_ = estimated(method, x1 + 100 * rare, x1=x1, x2=rare)
+    assert np.isnan(found["x2"]) and found["x1"] > 0.1
+    kind = next(iter(indices_.values))
+    assert indices_.notes == (f"x2 has too few rows of any value but one: no {kind}",)
+    with pytest.raises(RefusedError, match="x2 has too few rows of any value but one"):
+        given_data_indices(method, {"x2": rare}, x1, QUANTILES)
+
+
+def test_regional_distance_of_a_choice_is_the_same_whatever_its_values_are():
+    rng = np.random.default_rng(5)
+    choice, happens = rng.integers(0, 4, N), rng.random(N)
+    event = (happens < np.array([0.2, 0.7, 0.1, 0.5])[choice]).astype(float)
+    with_, without = (np.bincount(choice[event == side], minlength=4) for side in (1, 0))
+    apart = np.abs(with_ / with_.sum() - without / without.sum()).sum() / 2
+    for labels in ([0.0, 1.0, 2.0, 3.0], [3.0, 0.0, 2.0, 1.0], [10.0, -5.0, 1e3, 0.1]):
+        found, _ = estimated("regional", event, x1=rng.random(N), x2=np.array(labels)[choice])
+        assert found["x2"] == pytest.approx(apart), labels
 
 
 def test_quantile_indices_of_few_values_are_not_corrected_for_many_slices():

@@ -50,14 +50,17 @@ def watch() -> None:
             os.fstat(number)
         except OSError:
             os.open(os.devnull, way)
-    sys.stdout, sys.stderr = _watched(sys.stdout, 1), _watched(sys.stderr, 2)
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        stream = getattr(sys, name)
+        if stream is None or type(stream) is io.TextIOWrapper:  # else somebody else sees to it
+            watched = _watched(stream, number)
+            setattr(sys, name, watched)
+            setattr(sys, f"__{name}__", watched)  # of which the terminal's width is asked
 
 
-def _watched(stream: TextIO | None, number: int) -> TextIO:
+def _watched(stream: io.TextIOWrapper | None, number: int) -> Watched:
     if stream is None:
         return Watched(open(number, "wb", closefd=False), "utf-8")
-    if type(stream) is not io.TextIOWrapper:  # somebody else sees to it
-        return stream
     how = (stream.encoding, stream.errors, None, stream.line_buffering, stream.write_through)
     return Watched(stream.detach(), *how)
 

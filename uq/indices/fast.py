@@ -10,7 +10,7 @@ from SALib.analyze.fast import compute_orders
 
 from uq.designs.curves import HARMONICS
 from uq.indices.groups import grouped_rows, whole_groups
-from uq.indices.targets import Index, Indices, RefusedError
+from uq.indices.targets import ALL_NOISE, Index, Indices, RefusedError
 from uq.intervals import is_constant
 from uq.rows.elements import Floats
 
@@ -24,10 +24,13 @@ class Curves(NamedTuple):
         Row of each replicate, curve and point on it.
     parameters : tuple of str
         The input that each of the d curves is for.
+    random : bool
+        Whether curves differ in their seed, and so in the function that they are curves of.
     """
 
     order: NDArray[np.intp]
     parameters: tuple[str, ...]
+    random: bool
 
 
 def curves(ds: xr.Dataset) -> Curves:
@@ -48,7 +51,8 @@ def curves(ds: xr.Dataset) -> Curves:
         When rows are missing.
     """
     order, labels = grouped_rows(ds)
-    return Curves(order.transpose(0, 2, 1), tuple(label[len("curve_") :] for label in labels))
+    names = tuple(label[len("curve_") :] for label in labels)
+    return Curves(order.transpose(0, 2, 1), names, bool(ds.attrs.get("random")))
 
 
 def fast_indices(design: Curves, values: Floats) -> Indices:
@@ -65,7 +69,8 @@ def fast_indices(design: Curves, values: Floats) -> Indices:
     Indices
         ``S1`` and ``ST``, means over replicates, without intervals: replicates show how far they
         scatter, not how far they are off because an input is told by a few harmonics only, which
-        on the Ishigami function is many times more. The notes give the scatter.
+        on the Ishigami function is many times more. The notes give the scatter. Of a random model
+        they are shares of the mean variance at one seed: each curve counts by its variance.
 
     Raises
     ------
@@ -81,7 +86,10 @@ def fast_indices(design: Curves, values: Floats) -> Indices:
     for name, own in zip(design.parameters, whole.T, strict=True):
         if not own.any():
             raise RefusedError(f"none of {len(whole)} curves for {name} has a value in each row")
-    if any(is_constant(curve) for curve in y[whole]):
+    moves = np.array([[not is_constant(curve) for curve in own] for own in y])
+    if design.random and not (moves & whole).any(axis=0).all():
+        raise RefusedError(ALL_NOISE)
+    if not design.random and not moves[whole].all():
         raise RefusedError("the same value along a whole curve: there is no variance to apportion")
     points = y.shape[2]
     omega = floor((points - 1) / (2 * HARMONICS))
@@ -90,9 +98,11 @@ def fast_indices(design: Curves, values: Floats) -> Indices:
     indices: dict[str, dict[str, Index]] = {"S1": {}, "ST": {}}
     scatter = dict.fromkeys(indices, 0.0)
     for i, name in enumerate(design.parameters):
-        own = np.array([compute_orders(c, points, HARMONICS, omega) for c in y[whole[:, i], i]])
+        moving = y[whole[:, i] & moves[:, i], i]
+        own = np.array([compute_orders(curve, points, HARMONICS, omega) for curve in moving])
+        weights = moving.var(axis=1) if design.random else None
         for kind, column in zip(indices, own.T, strict=True):
-            indices[kind][name] = Index(float(column.mean()))
+            indices[kind][name] = Index(float(np.average(column, weights=weights)))
             if len(column) > 1:
                 scatter[kind] = max(scatter[kind], float(column.std(ddof=1)))
     return Indices(indices, (_why_no_intervals(scatter), *_too_coarse(design, omega)))

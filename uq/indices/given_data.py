@@ -87,12 +87,14 @@ def given_data_indices(
     raw, notes = _raw(method, columns, y, quantiles)
     idle = {kind: one[len(x) :] for kind, one in raw.items()}
     values_of: dict[str, dict[str, Index]] = {kind: {} for kind in raw}
+    notes = (*notes, *_no_slices(list(x), raw))
     tied = [name for name, column in x.items() if _is_tied(column)]
     if method == "rbd-fast" and tied:
         notes = (*notes, _no_order(tied, len(x)))
     for i, (name, column) in enumerate(x.items()):
         own = idle
-        if name in tied and method != "rbd-fast":
+        sliced = not all(np.isnan(one[i]) for one in raw.values())
+        if name in tied and sliced and method != "rbd-fast":
             shuffled = np.column_stack([rng.permutation(column) for _ in range(DUMMIES)])
             own, _ = _raw(method, shuffled, y, quantiles)
             notes = (*notes, _own_null(name, {k: _index(method, v, v) for k, v in own.items()}))
@@ -161,8 +163,20 @@ def _no_order(tied: list[str], inputs: int) -> str:
     return said
 
 
+def _no_slices(names: list[str], raw: Mapping[str, Floats]) -> list[str]:
+    """Say of which inputs all rows are in one slice; refuse where that is all of them."""
+    said = []
+    for i, name in enumerate(names):
+        if lost := [kind for kind, one in raw.items() if np.isnan(one[i])]:
+            said.append(f"{name} has too few rows of any value but one: no {' or '.join(lost)}")
+    if all(np.isnan(one[: len(names)]).all() for one in raw.values()):
+        raise RefusedError("; ".join(said))
+    return said
+
+
 def _own_null(name: str, own: Mapping[str, Floats]) -> str:
-    reached = ", ".join(f"{kind} = {one.max():.2g}" for kind, one in own.items())
+    known = {kind: one.max() for kind, one in own.items() if np.isfinite(one).all()}
+    reached = ", ".join(f"{kind} = {one:.2g}" for kind, one in known.items())
     return (
         f"{name} has many equal values: shuffled {DUMMIES} times, and so without effect, it"
         f" reaches {reached}"

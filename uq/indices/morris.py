@@ -10,7 +10,7 @@ from uq.designs.trajectories import STEP
 from uq.indices.groups import whole_groups
 from uq.indices.steps import steps
 from uq.indices.targets import Index, Indices, RefusedError
-from uq.intervals import is_constant, scatter_interval
+from uq.intervals import ROUNDING, is_constant, scatter_interval
 from uq.rows.elements import Floats
 
 MIN_TRAJECTORIES = 4
@@ -109,6 +109,7 @@ def morris_indices(design: Trajectories, values: Floats) -> Indices:
     effects = np.einsum("rns,rnsp->rnp", np.diff(y, axis=2), design.direction) / STEP
 
     replicates = [own[rows] for own, rows in zip(effects, whole, strict=True)]
+    rounding = ROUNDING * np.abs(y[whole]).max()
     scatter: list[dict[str, Floats]] = []
     notes = [_CORNERS] if design.optimised else []
     if len(replicates) == 1:
@@ -116,9 +117,9 @@ def morris_indices(design: Trajectories, values: Floats) -> Indices:
     elif any(len(own) < 2 for own in replicates):
         notes.append("no intervals: some replicates have fewer than two whole trajectories")
     else:
-        scatter = [_estimates(own) for own in replicates]
+        scatter = [_estimates(own, rounding) for own in replicates]
     indices: dict[str, dict[str, Index]] = {}
-    for kind, found in _estimates(effects[whole]).items():
+    for kind, found in _estimates(effects[whole], rounding).items():
         indices[kind] = {
             name: Index(
                 float(value),
@@ -129,10 +130,11 @@ def morris_indices(design: Trajectories, values: Floats) -> Indices:
     return Indices(indices, tuple(notes))
 
 
-def _estimates(effects: Floats) -> dict[str, Floats]:
-    """Return each measure, shape (d,), from effects of shape (n, d)."""
+def _estimates(effects: Floats, rounding: float) -> dict[str, Floats]:
+    """Return each measure, shape (d,), from effects of shape (n, d); no sigma below rounding."""
+    sigma = effects.std(axis=0, ddof=1)
     return {
         "mu": effects.mean(axis=0),
-        "sigma": effects.std(axis=0, ddof=1),
+        "sigma": np.where(sigma > rounding, sigma, 0.0),
         "mu_star": np.abs(effects).mean(axis=0),
     }

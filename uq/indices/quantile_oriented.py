@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.indices.slices import even_cuts, slice_of
+from uq.indices.slices import even_cuts, slice_of, tells_nothing
 from uq.indices.targets import RefusedError
 from uq.rows.elements import Floats
 
@@ -36,7 +36,7 @@ def quantile_indices(
     indices : dict
         Name -> raw indices, shape (d,), from slices of equally many rows, or by value where an
         input has few. They are too large, as each slice has its quantile fitted to it: those of
-        inputs without effect show by how much.
+        inputs without effect show by how much. NaN where an input varies within one slice only.
     notes : tuple of str
         Why some quantiles have none.
 
@@ -63,7 +63,11 @@ def quantile_indices(
         else:
             slices = min(len(y) // rows, MOST_SLICES)
             cuts = even_cuts(len(y), slices)
-            rest = [_remains(y, p, slice_of(column, cuts, rows)) for column in x.T]
+            number = [slice_of(column, cuts, rows) for column in x.T]
+            rest = [
+                np.nan if tells_nothing(column, own) else _remains(y, p, own)
+                for column, own in zip(x.T, number, strict=True)
+            ]
             found[name] = 1 - np.array(rest) / whole
     if not found:
         raise RefusedError("; ".join(notes))

@@ -1,8 +1,10 @@
-"""Regional sensitivity: where in each input's range the rows lie in which something happens."""
+"""Regional sensitivity: which values of each input the rows have in which something happens."""
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import stats
 
+from uq.indices.slices import MOST_CATEGORIES
 from uq.indices.targets import RefusedError
 from uq.rows.elements import Floats
 
@@ -22,8 +24,9 @@ def ks_distances(x: Floats, event: Floats) -> Floats:
     Returns
     -------
     ndarray, shape (d,)
-        The distance of Kolmogorov and Smirnov [1]_. An input that plays no part has one too; it
-        depends on the numbers of rows alone.
+        The distance of Kolmogorov and Smirnov [1]_; of an input with few values the largest over
+        all orders of them, which is the distance in total variation and does not depend on what
+        the values are called. An input that plays no part has one too.
 
     Raises
     ------
@@ -44,10 +47,15 @@ def ks_distances(x: Floats, event: Floats) -> Floats:
     least = int(min(happens.sum(), (~happens).sum()))
     if least < MIN_SIDE:
         raise RefusedError(f"only {least} rows on one side of the event; {MIN_SIDE} are needed")
-    inside, outside = x[happens], x[~happens]
-    return np.array(
-        [
-            stats.ks_2samp(one, other, method="asymp").statistic
-            for one, other in zip(inside.T, outside.T, strict=True)
-        ]
+    return np.array([_distance(column, happens) for column in x.T])
+
+
+def _distance(column: Floats, happens: NDArray[np.bool_]) -> float:
+    values, place = np.unique(column, return_inverse=True)
+    if len(values) > MOST_CATEGORIES:
+        found = stats.ks_2samp(column[happens], column[~happens], method="asymp")
+        return float(found.statistic)
+    inside, outside = (
+        np.bincount(place[side], minlength=len(values)) / side.sum() for side in (happens, ~happens)
     )
+    return float(np.abs(inside - outside).sum() / 2)

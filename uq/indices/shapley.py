@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from uq.indices.groups import whole_groups
 from uq.indices.steps import steps
-from uq.indices.targets import Index, Indices, RefusedError
-from uq.intervals import is_constant, scatter_interval
+from uq.indices.targets import ALL_NOISE, Index, Indices, RefusedError
+from uq.intervals import UNKNOWN, Interval, is_constant, scatter_interval
 from uq.rows.elements import Floats
 
 MIN_PATHS = 32
@@ -73,7 +73,7 @@ def shapley_indices(design: Paths, values: Floats) -> Indices:
     Raises
     ------
     RefusedError
-        Too few paths, or a constant output.
+        Too few paths, a constant output, or one that is constant along each path.
 
     Notes
     -----
@@ -98,13 +98,20 @@ def shapley_indices(design: Paths, values: Floats) -> Indices:
     steps = (y[:, :1] - (before + after) / 2) * (before - after)
     parts = np.einsum("ns,nsp->np", steps, design.changed[whole])
     total = parts.sum(axis=1)
+    if is_constant(y - y[:, :1]):
+        raise RefusedError(ALL_NOISE)
     shares = parts.mean(axis=0) / total.mean()
     errors = (parts - shares * total[:, None]) / total.mean()
     return Indices(
         {
             "shapley": {
-                name: Index(float(share), *scatter_interval(float(share), error))
+                name: Index(float(share), *_interval(float(share), error))
                 for name, share, error in zip(design.parameters, shares, errors.T, strict=True)
             }
         }
     )
+
+
+def _interval(share: float, errors: Floats) -> Interval:
+    """Return the interval of a share from the errors of its paths, none of rounding alone."""
+    return UNKNOWN if is_constant(share + errors) else scatter_interval(share, errors)

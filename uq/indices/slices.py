@@ -56,6 +56,11 @@ def _categories(counts: NDArray[np.intp], least: int) -> NDArray[np.intp]:
     return number
 
 
+def tells_nothing(column: Floats, number: NDArray[np.intp]) -> bool:
+    """Whether rows of an input that varies are all in one slice."""
+    return not number.any() and bool(np.ptp(column))
+
+
 def even_cuts(rows: int, slices: int) -> NDArray[np.intp]:
     """Return where slices of equally many rows begin, but the first."""
     return np.linspace(0, rows, slices + 1)[1:-1].astype(np.intp)
@@ -74,7 +79,7 @@ def delta(x: Floats, y: Floats) -> Floats:
     ndarray, shape (d,)
         The estimate of eq. 26 in [1]_, of normal scores of `y`: delta is the same for any
         increasing function of `y`, but its estimate is useless where one grid must serve a long
-        tail, and normal scores have none.
+        tail, and normal scores have none. NaN where an input varies within one slice only.
 
     Raises
     ------
@@ -101,6 +106,9 @@ def delta(x: Floats, y: Floats) -> Floats:
     found = []
     for column in x.T:
         number = slice_of(column, even_cuts(n, slices))
+        if tells_nothing(column, number):
+            found.append(np.nan)
+            continue
         parts = [scores[number == k] for k in range(number.max() + 1)]
         areas = [np.trapezoid(np.abs(_density(one, grid) - anywhere), grid) for one in parts]
         found.append(np.dot([len(one) for one in parts], areas) / (2 * n))
@@ -126,7 +134,8 @@ def pawn(x: Floats, y: Floats) -> Floats:
     -------
     ndarray, shape (d,)
         The distance is that of Kolmogorov, the slices are ten between quantiles of the input [1]_,
-        or one for each of its values where they are few.
+        or one for each of its values where they are few. NaN where an input varies within one
+        slice only.
 
     References
     ----------
@@ -141,6 +150,9 @@ def pawn(x: Floats, y: Floats) -> Floats:
     found = []
     for column in x.T:
         number = slice_of(column, cuts)[order]
+        if tells_nothing(column, number):
+            found.append(np.nan)
+            continue
         count = np.cumsum(number[:, None] == np.arange(number.max() + 1), axis=0)
         found.append(np.median(np.abs(count[last] / count[-1] - anywhere).max(axis=0)))
     return np.array(found)

@@ -59,7 +59,7 @@ def code_of(reference: str) -> str:
     module = module_of(reference)
     if not (found := fingerprint(module)):
         raise InputError(
-            f"model '{reference}': no source file of module '{module}' was found, so it cannot be "
-            "known which code computes its rows; install it, or name its folder in PYTHONPATH"
+            f"model '{reference}': no source file of module '{module}' was found, so its code "
+            "cannot be identified; install it, or name its folder in PYTHONPATH"
         )
     return found
