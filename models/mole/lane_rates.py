@@ -102,14 +102,15 @@ def slopes(columns: int) -> Callable[..., None]:
             k[ADDED * LANES + lane] = h * turn
             k[SINE * LANES + lane] = h * speed * cosine
             k[COSINE * LANES + lane] = -h * speed * y[SINE * LANES + lane]
-            part = weight * h
-            contact = m[CONTACT * LANES + lane] * (u - m[GAP * LANES + lane])
-            j = INTEGRAL * LANES + lane
-            m[j + PROGRESS * LANES] = fma(part, x, m[j + PROGRESS * LANES])
-            m[j + IMPACT * LANES] = fma(part * contact, x, m[j + IMPACT * LANES])
-            electric = fma(m[RESISTANCE * LANES + lane] * i, i, magnetic * v)
-            m[j + ELECTRIC * LANES] = fma(part, electric, m[j + ELECTRIC * LANES])
-            m[j + IMPULSE * LANES] = fma(part, contact, m[j + IMPULSE * LANES])
+            if weight != 0.0:
+                part = weight * h
+                contact = m[CONTACT * LANES + lane] * (u - m[GAP * LANES + lane])
+                j = INTEGRAL * LANES + lane
+                m[j + PROGRESS * LANES] = fma(part, x, m[j + PROGRESS * LANES])
+                m[j + IMPACT * LANES] = fma(part * contact, x, m[j + IMPACT * LANES])
+                electric = fma(m[RESISTANCE * LANES + lane] * i, i, magnetic * v)
+                m[j + ELECTRIC * LANES] = fma(part, electric, m[j + ELECTRIC * LANES])
+                m[j + IMPULSE * LANES] = fma(part, contact, m[j + IMPULSE * LANES])
             if columns > 0:
                 # Derivatives of F with respect to u and i, of i' with respect to u, v, i, p.
                 bend = m[SLOPE * LANES + lane] * added * fma(m[SLOPE * LANES + lane] * u, u, 1.0)
