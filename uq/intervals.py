@@ -80,7 +80,7 @@ def mean_interval(
     """
     if len(values) < 2 or is_constant(values):
         return UNKNOWN
-    estimates = values if replicate is None else _means(values, replicate)
+    estimates = values if replicate is None else by_replicate(values, replicate)
     return scatter_interval(values.mean(), estimates, confidence)
 
 
@@ -116,7 +116,7 @@ def share_interval(
         return binomial_interval(hits.mean(), len(hits), confidence)
     return _floats(
         scattered_share_interval(
-            hits.mean(), _means(hits, replicate), confidence=confidence, rows=len(hits)
+            hits.mean(), by_replicate(hits, replicate), confidence=confidence, rows=len(hits)
         )
     )
 
@@ -274,7 +274,7 @@ def quantile_interval(
         return UNKNOWN
     below = values < value if np.isposinf(value) else values <= value
     low, high = scattered_share_interval(
-        probability, _means(below, replicate), below.mean(), confidence
+        probability, by_replicate(below, replicate), below.mean(), confidence
     )
     return Interval(
         quantile(values, low) if low * n >= 1 else np.nan,
@@ -324,7 +324,7 @@ def rows_needed(coverage: float, confidence: float, failed: int = 0) -> int:
     return beyond + int(stats.nbinom.ppf(confidence, beyond, 1 - coverage))
 
 
-def _means(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:
+def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:
     """Return the mean of each replicate that has rows."""
     counts = np.bincount(replicate)
     sums = np.bincount(replicate, weights=values.astype(float))

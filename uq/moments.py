@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import stats
 
 from uq.intervals import (
@@ -11,6 +12,7 @@ from uq.intervals import (
     Floats,
     Interval,
     Replicates,
+    by_replicate,
     is_constant,
     mean_interval,
     scatter_interval,
@@ -70,7 +72,7 @@ def moments(
     return Moments(
         np.nan if "mean" in reasons else float(values.mean()),
         UNKNOWN if "mean_interval" in reasons else mean_interval(values, replicate, confidence),
-        np.nan if "sd" in reasons or len(values) < 2 else float(values.std(ddof=1)),
+        np.nan if "sd" in reasons else standard_deviation(values, replicate),
         UNKNOWN if "sd_interval" in reasons else sd_interval(values, replicate, confidence),
         tail,
         reasons,
@@ -110,7 +112,8 @@ def sd_interval(
     -------
     Interval
         Independent rows: after [1]_, which takes the kurtosis from the rows. Replicates: Student's
-        t of the logarithms of their standard deviations.
+        t of the logarithms of their variances, whose high end is raised by what one more row, as
+        far out as the farthest, would add: a few replicates with few such rows scatter too little.
 
     References
     ----------
@@ -121,11 +124,7 @@ def sd_interval(
     if n < _FEWEST or is_constant(values):
         return UNKNOWN
     if replicate is not None:
-        found = np.array([_sd(values[replicate == r]) for r in np.unique(replicate)])
-        if not (found > 0).all():
-            return UNKNOWN
-        ends = scatter_interval(float(np.log(_sd(values))), np.log(found), confidence)
-        return Interval(*np.exp(ends).tolist())
+        return _from_replicates(values, replicate, confidence)
     z = stats.norm.ppf(0.5 + confidence / 2)
     middle = stats.trim_mean(values, 1 / (2 * np.sqrt(n - 4)))
     squares = (values - values.mean()) ** 2
@@ -133,8 +132,36 @@ def sd_interval(
     c = n / (n - z)
     error = c * np.sqrt(max(kurtosis - (n - 3) / n, 0.0) / (n - 1))
     sides = np.exp((np.log(c) + z * error * np.array([-1, 1])) / 2)
-    return Interval(*(_sd(values) * sides).tolist())
+    return Interval(*(values.std(ddof=1) * sides).tolist())
 
 
-def _sd(values: Floats) -> float:
+def _from_replicates(values: Floats, replicate: NDArray[np.integer], level: float) -> Interval:
+    deviation = (values - values.mean()) ** 2
+    found = by_replicate(deviation, replicate)
+    variance = standard_deviation(values, replicate) ** 2
+    if not (found > 0).all():
+        return UNKNOWN
+    low, high = scatter_interval(float(np.log(variance)), np.log(found), level)
+    more = deviation.max() / len(values) / variance
+    return Interval(float(np.exp(low / 2)), float(np.exp(high / 2) * np.sqrt(1 + more)))
+
+
+def standard_deviation(values: Floats, replicate: Replicates = None) -> float:
+    """Return the root of the unbiased variance, NaN of a single row.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+    replicate : ndarray of int, shape (n,), optional
+
+    Returns
+    -------
+    float
+        The mean square about the mean is too small by the variance of that mean: an n-th of the
+        variance for independent rows, much less for designs that spread evenly, where the means of
+        the replicates tell it.
+    """
+    means = values[:1] if replicate is None else by_replicate(values, replicate)
+    if len(means) > 1:
+        return float(np.sqrt(values.var() + np.var(means, ddof=1) / len(means)))
     return float(values.std(ddof=1)) if len(values) > 1 else np.nan

@@ -1,12 +1,13 @@
 """Lifetimes that never end or are censored: survival, B-lives, shares, fitted laws."""
 
 import warnings
+from functools import cache
 
 import numpy as np
 import openturns as ot
 from scipy import stats
 
-from benchmarks.coverage.problems import ENDS, LIFE, MIXED, never_cdf, repeated, study_of
+from benchmarks.coverage.problems import ENDS, LIFE, MIXED, computed, never_cdf, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.analysis.life_fit import life_fits
 from uq.analysis.lifetime import survival
@@ -171,6 +172,22 @@ def fits(law, censored, repetitions):
         if not censored:
             _asymptotic(tally, law, ds["life"].values, parameters)
     return tally.lines()
+
+
+@cache
+def _blank(rows, replicates):
+    method = "monte-carlo" if replicates == 1 else "latin-hypercube"
+    return computed(study_of(method, rows, replicates, analysis={"outputs": ["life"]}))
+
+
+def with_life(values, censored=None, replicates=1, kind="lifetime"):
+    """Return a result whose output `life` has other values, in the order of its rows."""
+    ds = _blank(len(values) // replicates, replicates)
+    ds = ds.assign(life=("sample", values, ds["life"].attrs | {"kind": kind}))
+    if censored is None or not censored.any():
+        return ds
+    flag = {"role": "censored", "long_name": "whether life is only a lower bound"}
+    return ds.assign(life_censored=("sample", censored.astype(np.int8), flag))
 
 
 def _cut(ds, horizon):

@@ -5,6 +5,7 @@ from functools import partial
 from typing import NamedTuple
 
 from benchmarks.coverage import (
+    curves,
     differences,
     few,
     further,
@@ -13,6 +14,7 @@ from benchmarks.coverage import (
     lives,
     noise,
     plain,
+    tails,
 )
 from benchmarks.coverage.tally import Line
 
@@ -38,6 +40,8 @@ NULLS = ("rbd-fast", "delta", "pawn", "regional", "quantile", "hdmr")
 
 PARTS = {
     **{f"plain-{name}": Part(partial(plain.plain, name)) for name in plain.DESIGNS},
+    "tails": Part(tails.means, 1000),
+    "sd": Part(tails.scatters, 1000),
     "lives": Part(partial(lives.lives, "monte-carlo")),
     "lives-replicates": Part(partial(lives.lives, "latin-hypercube")),
     "lives-mixed": Part(partial(lives.mixed, "monte-carlo", 500)),
@@ -48,6 +52,8 @@ PARTS = {
         for law in lives.FITTED
         for censored in (False, True)
     },
+    "fit-wrong": Part(curves.wrong_fits, 1000),
+    "bands": Part(curves.bands, 1000),
     "sobol": Part(indices.sobol),
     "sobol-jump": Part(indices.sobol_of_jump),
     "sobol-others": Part(indices.sobol_of_others, 500),

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.modal import Array, Record
-from models.numerics.linear import inverse
+from models.numerics.linear import inverse, product
 from models.numerics.multipliers import largest_multiplier
 
 _FARTHEST = 0.3  # longest first step, relative to the response
@@ -133,7 +133,7 @@ def _fixed_points(strobed: _Map, state: Array, size: Array) -> NDArray[np.intp]:
             break
         image, _ = strobed.take(left).advance(state[left])
         residual = (image - state[left])[:, :, None]
-        step = (by_residual[left] @ residual)[:, :, 0]
+        step = product(by_residual[left], residual)[:, :, 0]
         state[left] += step
         length = np.abs(step).max(axis=1)
         shrinking = length <= longest[left]

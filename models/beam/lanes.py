@@ -25,6 +25,7 @@ from models.beam.lane_systems import System, groups, start
 from models.beam.lane_tangents import carry
 from models.beam.modal import Array, Record
 from models.numerics.blocks import LANES, aligned
+from models.numerics.elementary import cos, sin
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
@@ -248,8 +249,8 @@ def advance(
         state,
         gaps,
         growth,
-        np.cos(phase),
-        np.sin(phase),
+        cos(phase),
+        sin(phase),
         aligned(groups * _UNROLL * _MODE * LANES),
         aligned(_HEAD * LANES),
         Lines.room(bool(system.is_random.any()), system.steps, system.oscillators.shape[2]),

@@ -24,8 +24,8 @@ LONGEST = 330  # over the accuracy: N of the last run at most, unless they are t
 def _fit_of_constant_and_inverse() -> Array:
     """Return the weights with which four lives at N to 8 N enter the constant of their fit."""
     periods = 2.0 ** np.arange(4)
-    basis = np.stack([np.ones(4), 1 / periods])
-    return np.linalg.solve(basis * periods @ basis.T, basis * periods)[0]
+    sum_, count, inverses = periods.sum(), len(periods), (1 / periods).sum()
+    return (inverses * periods - count) / (sum_ * inverses - count * count)
 
 
 _FIT = _fit_of_constant_and_inverse()

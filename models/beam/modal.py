@@ -127,7 +127,8 @@ def reach(b: Beams) -> Array:
         In initial gaps. A random force has no such bound, but one that no life is long enough to
         see exceeded.
     """
-    harmonic = np.abs(steady_response(b).sum(axis=1))
+    response = steady_response(b).sum(axis=1)
+    harmonic = np.hypot(response.real, response.imag)
     if not b.load["power"].any():
         return harmonic
     random = tip_deviation(b.load, b.forcing, b.frequency, b.decay, b.mobility)

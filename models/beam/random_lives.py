@@ -18,6 +18,8 @@ import numpy as np
 from models.beam.averages import SHORTEST, time_mean
 from models.beam.lives import Lives
 from models.beam.modal import Array
+from models.numerics.elementary import exp, expm1, log, log1p
+from models.numerics.linear import inverse, product
 
 INCREMENTS = 12  # in which the faster gap grows to the last depth
 _OVERTIME = 3  # times as many for the slower one
@@ -97,13 +99,13 @@ def _step(grown: Array, rate: Array, growths: Array) -> Array:
     growth, with the last depth, no more than doubles.
     """
     head_start = growths[:, :1] / 2
-    whole = np.log1p(growths[:, -1:] / head_start)
+    whole = log1p(growths[:, -1:] / head_start)
     unfinished = grown < growths[:, -1:] * (1 - 1e-9)
     control = np.where(unfinished, rate, 0.0)
     fast = control.argmax(axis=1)[:, None]
     here, top = (np.take_along_axis(a, fast, axis=1) for a in (grown, control))
-    point = np.log1p(here / head_start) / whole * INCREMENTS
-    goal = head_start * np.expm1((np.floor(point + 1e-6) + 1) / INCREMENTS * whole)
+    point = log1p(here / head_start) / whole * INCREMENTS
+    goal = head_start * expm1((np.floor(point + 1e-6) + 1) / INCREMENTS * whole)
     with np.errstate(invalid="ignore", divide="ignore"):
         step = (goal - here) * rate / top
         most = grown.max(axis=1, keepdims=True) + growths[:, -1:]
@@ -159,7 +161,7 @@ class _Wear:
         relative = error[worn] / rate[worn]
         self.x, self.interpolated = x, bool(worn.all() and np.sqrt((relative**2).mean()) < _GOOD)
         if self.interpolated:
-            self.log, self.relative = np.log(rate), relative
+            self.log, self.relative = log(rate), relative
         else:
             self.coefficient, self.covariance = _fit(x / x[-1], rate)
 
@@ -167,11 +169,11 @@ class _Wear:
         """Return the integral of dx over the rate up to an end, and its standard error."""
         if self.interpolated:
             inside = np.append(self.x[self.x < end], end)
-            log = np.interp(inside, self.x, self.log)
-            piece = np.diff(inside) * np.exp(-log[:-1]) * _mean_exponential(-np.diff(log))
+            level = np.interp(inside, self.x, self.log)
+            piece = np.diff(inside) * exp(-level[:-1]) * _mean_exponential(-np.diff(level))
             coarse = np.append(inside[:-1:2], end)
-            log = np.interp(coarse, self.x, self.log)
-            other = np.diff(coarse) * np.exp(-log[:-1]) * _mean_exponential(-np.diff(log))
+            level = np.interp(coarse, self.x, self.log)
+            other = np.diff(coarse) * exp(-level[:-1]) * _mean_exponential(-np.diff(level))
             weight = (np.append(piece, 0.0) + np.append(0.0, piece)) / 2
             noise = weight * np.interp(inside, self.x, self.relative)
             change = (other.sum() - piece.sum()) / 3
@@ -179,10 +181,10 @@ class _Wear:
         grid = np.linspace(0.0, end, _GRID)
         basis = np.vander(grid / self.x[-1], len(self.coefficient), increasing=True)
         with np.errstate(over="ignore", invalid="ignore"):
-            inverse = np.exp(-basis @ self.coefficient)
+            inverse = exp(-_values(basis, self.coefficient))
             slope = -np.trapezoid(basis * inverse[:, None], grid, axis=0)
             life = np.trapezoid(inverse, grid)
-            return float(life), float(np.sqrt(slope @ self.covariance @ slope))
+            return float(life), float(np.sqrt((slope[:, None] * self.covariance * slope).sum()))
 
 
 def _fit(t: Array, rate: Array) -> tuple[Array, Array]:
@@ -190,20 +192,25 @@ def _fit(t: Array, rate: Array) -> tuple[Array, Array]:
     degree = min(_CUBIC, (len(t) - 1) // 3)
     basis = np.vander(t, degree + 1, increasing=True)
     coefficient = np.zeros(degree + 1)
-    coefficient[0] = np.log(rate.mean())
-    normal = np.linalg.inv(basis.T @ basis)
+    coefficient[0] = log(rate.mean())
+    normal = inverse(product(basis.T[None], basis[None]))[0][0]
     for _ in range(_ITERATIONS):
-        residual = rate * np.exp(np.minimum(-basis @ coefficient, _STEEPEST)) - 1
+        residual = rate * exp(np.minimum(-_values(basis, coefficient), _STEEPEST)) - 1
         # Steps are kept where the fit changes by no more than a factor e: fits of noise run away.
-        change = normal @ (basis.T @ residual)
-        coefficient += change / max(1.0, np.abs(basis @ change).max())
-    residual = rate * np.exp(np.minimum(-basis @ coefficient, _STEEPEST)) - 1
+        change = _values(normal, _values(basis.T, residual))
+        coefficient += change / max(1.0, np.abs(_values(basis, change)).max())
+    residual = rate * exp(np.minimum(-_values(basis, coefficient), _STEEPEST)) - 1
     scatter = (residual**2).sum() / max(1, len(t) - degree - 1)
     return coefficient, scatter * normal
+
+
+def _values(basis: Array, coefficient: Array) -> Array:
+    """Return the product of a matrix and a vector."""
+    return product(basis[None], coefficient[None, :, None])[0, :, 0]
 
 
 def _mean_exponential(a: Array) -> Array:
     """Return the mean of exp over [0, a]."""
     small = np.abs(a) < 1e-6
     safe = np.where(small, 1.0, a)
-    return np.where(small, 1 + a / 2, np.expm1(safe) / safe)
+    return np.where(small, 1 + a / 2, expm1(safe) / safe)

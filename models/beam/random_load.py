@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.parameters import Rows
+from models.numerics.elementary import arctan, tan
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
@@ -126,8 +127,8 @@ def _divide(low: Array, high: Array, frequency: Array, decay: Array, mobility: A
     """
     half = COUNT // 2
     even = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, half + 1)
-    first = np.arctan((low[:, None] - frequency) / decay)
-    power = mobility * (np.arctan((high[:, None] - frequency) / decay) - first)
+    first = arctan((low[:, None] - frequency) / decay)
+    power = mobility * (arctan((high[:, None] - frequency) / decay) - first)
     below = np.cumsum(power, axis=1)
     goal = below[:, -1:] * (np.arange(half) + 0.5) / half
     mode = (goal[:, :, None] >= below[:, None, :-1]).sum(axis=2)
@@ -135,7 +136,7 @@ def _divide(low: Array, high: Array, frequency: Array, decay: Array, mobility: A
         np.take_along_axis(a, mode, axis=1)
         for a in (frequency, decay, mobility, first, below, power)
     )
-    uneven = w + d * np.tan(angle + (goal - (total - own)) / b)
+    uneven = w + d * tan(angle + (goal - (total - own)) / b)
     return np.sort(np.hstack([even, np.clip(uneven, low[:, None], high[:, None])]), axis=1)
 
 

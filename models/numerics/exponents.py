@@ -5,8 +5,13 @@ largest exponent. On a periodic orbit a full set of tangents through one period 
 the largest multiplier. Either way tangents must be brought back to size now and then.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
+
+from models.numerics.elementary import log
+from models.numerics.multipliers import log_radius
 
 Array = NDArray[np.float64]
 
@@ -28,7 +33,7 @@ def grown(tangents: Array) -> Array:
     """
     size = np.abs(tangents).max(axis=1)
     tangents /= np.where(size > 0, size, 1.0)[:, None]
-    return np.log(np.maximum(size, _LEAST))
+    return np.asarray(log(np.maximum(size, _LEAST)))
 
 
 def log_multiplier(flow: Array) -> Array:
@@ -43,5 +48,4 @@ def log_multiplier(flow: Array) -> Array:
     -------
     ndarray, shape (n,)
     """
-    multiplier = np.abs(np.linalg.eigvals(flow)).max(axis=1, initial=0.0)
-    return np.log(np.maximum(multiplier, _LEAST))
+    return np.maximum(log_radius(flow), math.log(_LEAST))

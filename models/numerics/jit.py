@@ -47,6 +47,7 @@ def _ask_for_full_width_vectors() -> None:
 
 
 _ask_for_full_width_vectors()
+os.environ.setdefault("NUMBA_DISABLE_INTEL_SVML", "1")  # where installed, it has bits of its own
 
 import numba  # noqa: E402  (reads the environment set above)
 from numba.core.bytecode import FunctionIdentity  # noqa: E402

@@ -1,10 +1,12 @@
-"""Many small systems of linear equations, each on its own: a singular one harms no other."""
+"""Many small systems of linear equations, each on its own: a singular one harms no other.
 
-from typing import Any
+What is compiled here has the same bits everywhere, which no LAPACK has.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
 Array = NDArray[np.float64]
@@ -30,16 +32,8 @@ def solve(matrix: Array, right: Array) -> tuple[Array, NDArray[np.bool_]]:
     """
     scale = np.abs(matrix).max(axis=2, keepdims=True)
     scale[scale == 0] = 1.0
-    matrix, right = matrix / scale, right / scale
-    solution: Any
-    try:
-        solution = np.linalg.solve(matrix, right)
-    except np.linalg.LinAlgError:  # one of them is singular: only then is it worth asking which
-        with np.errstate(invalid="ignore"):
-            singular: Any = np.linalg.det(matrix) == 0
-        matrix[singular] = np.eye(matrix.shape[1])
-        solution = np.linalg.solve(matrix, right)
-        solution[singular] = np.nan
+    solution = np.ascontiguousarray(right / scale)
+    _eliminate(np.ascontiguousarray(matrix / scale), solution)
     regular: NDArray[np.bool_] = np.isfinite(solution).all(axis=(1, 2))
     solution[~regular] = 0.0
     return solution, regular
@@ -61,10 +55,75 @@ def inverse(matrix: Array) -> tuple[Array, NDArray[np.bool_]]:
     """
     n, k, _ = matrix.shape
     out = np.empty((n, k, k))
-    _invert(matrix, out, np.zeros((k, -(-k // _VECTOR) * _VECTOR)), np.empty(k, np.int64))
+    _invert(
+        np.ascontiguousarray(matrix),
+        out,
+        np.zeros((k, -(-k // _VECTOR) * _VECTOR)),
+        np.empty(k, np.int64),
+    )
     regular = np.asarray(np.isfinite(out).all(axis=(1, 2)), bool)
     out[~regular] = 0.0
     return out, regular
+
+
+def product(matrix: Array, right: Array) -> Array:
+    """Multiply n matrices by as many.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (n, k, l)
+    right : ndarray, shape (n, l, m)
+
+    Returns
+    -------
+    ndarray, shape (n, k, m)
+    """
+    out = np.zeros((*matrix.shape[:2], right.shape[2]))
+    _multiply(np.ascontiguousarray(matrix), np.ascontiguousarray(right), out)
+    return out
+
+
+@kernel
+def _multiply(matrix, right, out):
+    n, k, inner = matrix.shape
+    for system in range(n):
+        for i in range(k):
+            for r in range(inner):
+                factor = matrix[system, i, r]
+                for j in range(out.shape[2]):
+                    out[system, i, j] = fma(factor, right[system, r, j], out[system, i, j])
+
+
+@kernel
+def _eliminate(matrix, right):
+    """Solve in place, by Gauss's elimination with the largest pivot of each column."""
+    n, k, width = right.shape
+    for system in range(n):
+        a, b = matrix[system], right[system]
+        for c in range(k):
+            pivot = c
+            for i in range(c + 1, k):
+                if abs(a[i, c]) > abs(a[pivot, c]):
+                    pivot = i
+            if pivot != c:
+                for j in range(c, k):
+                    a[c, j], a[pivot, j] = a[pivot, j], a[c, j]
+                for j in range(width):
+                    b[c, j], b[pivot, j] = b[pivot, j], b[c, j]
+            scale = 1 / a[c, c]
+            for i in range(c + 1, k):
+                factor = -a[i, c] * scale
+                for j in range(c + 1, k):
+                    a[i, j] = fma(factor, a[c, j], a[i, j])
+                for j in range(width):
+                    b[i, j] = fma(factor, b[c, j], b[i, j])
+        for c in range(k - 1, -1, -1):
+            scale = 1 / a[c, c]
+            for j in range(width):
+                b[c, j] *= scale
+            for i in range(c):
+                for j in range(width):
+                    b[i, j] = fma(-a[i, c], b[c, j], b[i, j])
 
 
 @kernel
@@ -91,7 +150,7 @@ def _invert(matrix, out, rows, pivots):
                     factor = rows[i, c]
                     rows[i, c] = 0.0
                     for j in range(rows.shape[1]):
-                        rows[i, j] -= factor * rows[c, j]
+                        rows[i, j] = fma(-factor, rows[c, j], rows[i, j])
         out[system] = rows[:, :k]
         for c in range(k - 1, -1, -1):  # rows exchanged before are columns of the inverse
             for i in range(k if pivots[c] != c else 0):

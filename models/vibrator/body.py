@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics.elementary import cos, sin
 from models.vibrator.feed import apparent_mass
 from models.vibrator.parameters import Rows
 
@@ -80,8 +81,8 @@ def machines(p: Rows) -> np.recarray[Any, Any]:
         Each a record with the fields of `Machine`.
     """
     m = p.unbalanced_mass
-    along = p.shaft_distance * np.cos(p.shaft_half_angle)
-    half = p.shaft_distance * np.sin(p.shaft_half_angle)
+    along = p.shaft_distance * cos(p.shaft_half_angle)
+    half = p.shaft_distance * sin(p.shaft_half_angle)
     set_mass, set_inertia = p.mount_mass + 2 * m, p.mount_inertia + 2 * m * half**2
     sprung = p.body_mass + 2 * m
     loaded = p.feed_mass > 0
@@ -89,8 +90,8 @@ def machines(p: Rows) -> np.recarray[Any, Any]:
     feed[loaded] = p.feed_mass[loaded] * apparent_mass(p.throw_coefficient[loaded])
     return np.rec.fromarrays(
         Machine(
-            c=np.cos(p.working_angle),
-            s=np.sin(p.working_angle),
+            c=cos(p.working_angle),
+            s=sin(p.working_angle),
             along=along,
             across=p.axis_offset,
             half=half,
@@ -104,8 +105,8 @@ def machines(p: Rows) -> np.recarray[Any, Any]:
             damping_y=_damping(p.damping_ratio, sprung, p.stiffness_y),
             offset=p.support_offset,
             spacing=p.support_half_spacing,
-            slide_xi=np.cos(p.mount_angle),
-            slide_eta=np.sin(p.mount_angle),
+            slide_xi=cos(p.mount_angle),
+            slide_eta=sin(p.mount_angle),
             slide_stiffness=p.mount_stiffness,
             slide_damping=_damping(p.mount_damping_ratio, set_mass, p.mount_stiffness),
             turn_stiffness=p.mount_rotational_stiffness,

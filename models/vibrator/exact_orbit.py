@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics.dop853 import GUARDED
+from models.numerics.linear import solve
+from models.numerics.multipliers import log_radius
 from models.vibrator import theory
 from models.vibrator.machine import PSI_1, PSI_2, Machine
 from models.vibrator.measures import Measures, first_harmonic, measure
@@ -171,13 +173,12 @@ def _fixed_point(
             if matrix is None:
                 return None
             before = math.inf
-        try:
-            step = np.linalg.solve(np.eye(len(free)) - matrix, (end - state)[free] / scales)
-        except np.linalg.LinAlgError:
+        left = np.eye(len(free)) - matrix
+        steps, regular = solve(left[None], ((end - state)[free] / scales)[None, :, None])
+        if not regular[0]:
             return None
+        step = steps[0, :, 0]
         size = float(np.abs(step).max())
-        if not math.isfinite(size):
-            return None
         bold = np.abs(step[np.isin(free, [PSI_2, machine.degrees + PSI_1])]).sum()
         state = state.copy()
         state[free] += step * scales * min(1.0, _BOLDEST / max(bold, _CLOSE))
@@ -207,7 +208,7 @@ def _describe(machine: Machine, state: NDArray[np.float64], tolerance: float) ->
     return Orbit(
         state,
         period,
-        float(np.abs(np.linalg.eigvals(matrix)).max()),
+        math.exp(log_radius(matrix[None])[0]),
         measures._replace(
             disphasing=np.pi if mean == -np.pi else mean,
             angular_amplitude=first_harmonic(samples[:-1, 2]),

@@ -94,7 +94,8 @@ def run_last_second(
     turn = 2 * np.pi / part.synchronous_speed.max(axis=1)
     per_turn = settings.steps_per_turn or STEPS
     needed = LAST * np.maximum(per_turn / turn, part.fastest / lanes.STABLE)
-    steps = 2 ** np.ceil(np.log2(np.minimum(needed, _LONGEST))).astype(np.int64)
+    part_of_two, power = np.frexp(np.minimum(needed, _LONGEST))
+    steps = 2 ** (power - (part_of_two == 0.5)).astype(np.int64)
     again = np.zeros(len(rows), bool)
     for count in np.unique(steps).tolist():
         i = np.flatnonzero(steps == count)

@@ -6,7 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics import elementary
 from models.numerics.jit import kernel
+from models.numerics.linear import product
 from models.vibrator.system import System
 
 _FRACTIONS = np.linspace(0.0, 1.0, 65)
@@ -60,7 +62,8 @@ def refine(
     ndarray, shape (k, 65)
         At equal steps from end to end of each gap.
     """
-    return value.T @ _CUBICS[:2] + interval * (rate.T @ _CUBICS[2:])
+    ends = np.stack([value.T, interval * rate.T])
+    return product(ends, np.stack([_CUBICS[:2], _CUBICS[2:]])).sum(axis=0)
 
 
 def extremes(
@@ -126,8 +129,8 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
     turned = m.exact * alpha
     cos, sin = math.cos(m.working_angle), math.sin(m.working_angle)
     # How a unit of `half_spacing` to the right of C moves along xi.
-    arm = cos * (np.cos(turned) - 1) + sin * (np.sin(turned) if m.exact else alpha)
-    arm_rate = spin * (sin * np.cos(turned) - cos * np.sin(turned))
+    arm = cos * (elementary.cos(turned) - 1) + sin * (elementary.sin(turned) if m.exact else alpha)
+    arm_rate = spin * (sin * elementary.cos(turned) - cos * elementary.sin(turned))
 
     def stroke(end: float) -> float:
         shift, rate = cos * x + sin * y + end * arm, cos * vx + sin * vy + end * arm_rate

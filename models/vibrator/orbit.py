@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
-from models.numerics.linear import solve
+from models.numerics.linear import product, solve
 from models.numerics.tsit5 import combiner, layout
 from models.vibrator.lanes import CONSTANTS, STATE, Array, load, slopes, store
 from models.vibrator.multiplier import largest_multiplier
@@ -169,7 +169,7 @@ def _approach(constants: Array, state: Array, period: Array, steps: int) -> None
     c, start, time, inverse = constants[rows], state[rows], period[rows], inverse[rows]
     arrived, last = end[rows, :, 0], np.full(len(rows), _NEAR / _SHRINKING)
     for _ in range(1 + _CHORDS):
-        step = inverse @ _miss(start, arrived)
+        step = product(inverse, _miss(start, arrived))
         size = _size(step, time) + np.abs(step[:, 7:9, 0]).sum(axis=1) * time / (2 * np.pi)
         start[:, FREE] += step[:, :-1, 0]
         time += step[:, -1, 0]

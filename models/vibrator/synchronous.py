@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics import elementary
 from models.vibrator import lanes, theory
 from models.vibrator.lanes import Array
 from models.vibrator.measures import kloss
@@ -181,10 +182,12 @@ def describe(machines: Machines, known: Known, out: Outcome, rows: NDArray[np.in
         some, part, orbits = rows[i], machines.take(i), known.take(i).orbits
         trace = follow(part.constants, orbits.state, orbits.period, count)
         alpha, speed = trace[:, :, 2], trace[:, :, 8:10]
-        phase = np.exp(-2j * np.pi * np.arange(1, count + 1) / count)
+        turn = 2 * np.pi * np.arange(1, count + 1) / count
+        phase = elementary.cos(turn) - 1j * elementary.sin(turn)
         out.disphasing[some] = known.disphasing[i]
         out.multiplier[some] = orbits.multiplier
-        out.angular_amplitude[some] = np.abs(2 * (alpha * phase).mean(axis=1))
+        harmonic = 2 * (alpha * phase).mean(axis=1)
+        out.angular_amplitude[some] = np.hypot(harmonic.real, harmonic.imag)
         left, right = deck_ends(part.system, trace)
         out.stroke_left[some], out.stroke_right[some] = _half_range(left), _half_range(right)
         out.speed[some] = 2 * np.pi / orbits.period
@@ -211,7 +214,8 @@ def deck_ends(m: System, trace: Array) -> tuple[Array, Array]:
     -------
     left, right : ndarray, shape (n, k)
     """
-    cos, sin = np.cos(m.working_angle)[:, None], np.sin(m.working_angle)[:, None]
+    cos = elementary.cos(m.working_angle)[:, None]
+    sin = elementary.sin(m.working_angle)[:, None]
     along = cos * trace[:, :, 0] + sin * trace[:, :, 1]
     lever = sin * m.half_spacing[:, None] * trace[:, :, 2]
     return along - lever, along + lever

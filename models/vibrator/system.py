@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics import elementary
 from models.vibrator.parameters import Params, Rows
 from models.vibrator.theory import feed_gravity
 
@@ -129,9 +130,9 @@ def systems(p: Rows, kinematics: str = "small") -> System:
     System
         Each field an ndarray of shape (n,).
     """
-    cos, sin = np.cos(p.working_angle), np.sin(p.working_angle)
-    along = p.shaft_distance * np.cos(p.shaft_half_angle)
-    half = p.shaft_distance * np.sin(p.shaft_half_angle)
+    cos, sin = elementary.cos(p.working_angle), elementary.sin(p.working_angle)
+    along = p.shaft_distance * elementary.cos(p.shaft_half_angle)
+    half = p.shaft_distance * elementary.sin(p.shaft_half_angle)
     levers = [
         (along * cos - across * sin, along * sin + across * cos)
         for across in (p.axis_offset + half, p.axis_offset - half, p.axis_offset)
@@ -182,8 +183,8 @@ def systems(p: Rows, kinematics: str = "small") -> System:
         mount_y=y_0,
         slides=slides.astype(float),
         rocks=rocks.astype(float),
-        slide_x=slides * np.cos(direction),
-        slide_y=slides * np.sin(direction),
+        slide_x=slides * elementary.cos(direction),
+        slide_y=slides * elementary.sin(direction),
         mount_mass=p.mount_mass,
         mount_inertia=p.mount_inertia,
         slide_stiffness=slide_stiffness,

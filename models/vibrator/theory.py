@@ -289,4 +289,5 @@ def feed_gravity(p: Rows) -> NDArray[np.float64]:
     p, _ = _rows(p)
     speed = (p.synchronous_speed_1 + p.synchronous_speed_2) / 2
     deck = steady_motion(p._replace(feed_mass=0.0), speed, 0.0)
-    return abs(deck.y + p.feed_position * deck.alpha) * speed**2 / p.throw_coefficient
+    moved = deck.y + p.feed_position * deck.alpha
+    return np.hypot(moved.real, moved.imag) * speed**2 / p.throw_coefficient

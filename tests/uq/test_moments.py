@@ -13,7 +13,8 @@ from uq.analysis.overview import summary
 from uq.analysis.regime_split import between_share
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
-from uq.moments import moments, sd_interval
+from uq.indices.sensitivities import sensitivities
+from uq.moments import moments, sd_interval, standard_deviation
 from uq.report.outcomes import outcomes, result_tables
 from uq.store import write
 
@@ -75,6 +76,17 @@ def test_every_reader_is_told():
     assert np.isnan(value)
 
 
+@pytest.mark.parametrize(("design", "method"), [("saltelli", "sobol"), ("monte-carlo", "hdmr")])
+def test_a_variance_that_does_not_exist_is_not_apportioned(design, method):
+    ds = linear(method=design, samples=1024)
+    share = stats.rankdata(ds["y"].values) / (ds.sizes["sample"] + 1)
+    ds = asking(with_output(ds, "z", stats.pareto(1.5).ppf(share)), outputs=["z"])
+    found = sensitivities(ds, method, "z")["outputs"]["z"]
+    assert "log(z)" in found["refused"] and "rank(z)" in found["refused"]
+    for name in ("log(z)", "rank(z)"):
+        assert "refused" not in sensitivities(ds, method, name)["outputs"][name]
+
+
 def test_the_terminal_and_the_report_give_the_reason(uq, folder):
     ds = heavy(0.8)
     write(ds, Path("z.nc").absolute())
@@ -86,15 +98,28 @@ def test_the_terminal_and_the_report_give_the_reason(uq, folder):
     assert "no mean" not in cells["sd"].more and "no variance" in cells["sd"].more
 
 
-def test_the_sd_of_replicates_has_their_interval():
-    rng = np.random.default_rng(0)
-    held = 0
-    replicate = np.repeat(np.arange(8), 50)
-    for _ in range(300):
-        low, high = sd_interval(rng.standard_normal(400), replicate)
-        held += low < 1 < high
-    assert 0.91 < held / 300 < 0.98
-    assert np.isnan(sd_interval(np.append(np.zeros(50), np.ones(50)), np.repeat([0, 1], 50))).all()
+@pytest.mark.parametrize("law", [stats.uniform(), stats.norm(), stats.expon()])
+def test_the_sd_of_replicates_holds_the_truth(law):
+    rng, held = np.random.default_rng(0), 0
+    for _ in range(200):  # Latin hypercubes of one input
+        slices = rng.permuted(np.tile(np.arange(50), (8, 1)), axis=1)
+        values = law.ppf((slices + rng.random((8, 50))) / 50).ravel()
+        low, high = sd_interval(values, np.repeat(np.arange(8), 50))
+        held += low < law.std() < high
+    assert held >= 0.91 * 200
+
+
+def test_replicates_that_agree_have_no_interval_of_sd():
+    values, replicate = np.append(np.zeros(50), np.ones(50)), np.repeat([0, 1], 50)
+    assert np.isnan(sd_interval(values, replicate)).all()
+
+
+def test_the_sd_of_an_even_design_has_no_bias():
+    even = (np.arange(125) + np.random.default_rng(0).random((400, 125))) / 125
+    replicate = np.repeat(np.arange(8), 125)
+    found = [standard_deviation(y, replicate) for y in even.reshape(50, 1000)]
+    assert np.mean(found) == pytest.approx(12**-0.5, rel=1e-4)
+    assert standard_deviation(even[0]) == even[0].std(ddof=1)
 
 
 @pytest.mark.parametrize(

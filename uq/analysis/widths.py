@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from uq.designs.table import DESIGNS
-from uq.indices.targets import targets
+from uq.indices.targets import lightened, number_of
 from uq.intervals import is_within
 from uq.rows.elements import (
     Element,
@@ -122,7 +122,7 @@ def _indices(
     element: Element, groups: NDArray[np.intp], labels: list[str], n: int, factor: float | None
 ) -> dict[str, float | None]:
     """Return the widest interval of first-order and of total indices, as of independent groups."""
-    target = next(targets([element], {}))
+    target = lightened(number_of(element))
     y = target.values[groups]
     y = y[np.isfinite(y).all(axis=1)]
     if target.refused or factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:

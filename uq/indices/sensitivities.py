@@ -24,11 +24,14 @@ from uq.indices.targets import (
     Target,
     all_targets,
     category_targets,
+    lightened,
     split_name,
     targets,
+    with_tail_note,
 )
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.in_regime import within_regime
+from uq.tails import lacks_variance
 
 _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
     "sobol": (crossed, sobol_indices),
@@ -54,6 +57,13 @@ _WITH_NOISE = {
     "fast": f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
 }
 """What a method whose rows share seeds makes of noise."""
+
+
+SCALE_FREE = ("delta", "pawn", "regional")
+"""Methods that compare distributions: no increasing function of an output changes what they say."""
+
+_OF_VARIANCE = ("sobol", "shapley", "fast", "rbd-fast", "hdmr")
+"""Methods whose indices are shares of the variance."""
 
 
 def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
@@ -230,6 +240,8 @@ def _estimate(
         try:
             if target.refused:
                 raise RefusedError(target.refused)
+            if method in _OF_VARIANCE and not target.event and lacks_variance(target.values):
+                raise RefusedError(_no_variance(target))
             few = few_hits(ds, target)
             if estimate is None:
                 quantiles = _quantiles(target, asked)
@@ -243,6 +255,14 @@ def _estimate(
         whole = whole_groups(target.values, alone if design is None else design.order)
         found.append(_Found(target, indices, whole, ds.sizes["sample"] // whole.size))
     return method, found
+
+
+def _no_variance(target: Target) -> str:
+    name = target.element.name if target.element else target.name
+    return (
+        f"the tail of {target.name} is too heavy for a variance to apportion; ask for"
+        f" log({name}), where all rows are positive, or rank({name})"
+    )
 
 
 def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
@@ -278,7 +298,7 @@ def _chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> 
     """Return the targets that a user means, all that suit the method or by name."""
     if output is None:
         found = [
-            target
+            target if method in SCALE_FREE else lightened(target)
             for name in shown_outputs(ds, analysis_of(ds))
             for target in _targets(ds, name)
             if target.event or method != "regional"
@@ -292,16 +312,15 @@ def _chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> 
         if not found:
             raise InputError("none of the outputs is a number: there is nothing to apportion")
         return found
-    if not isinstance(output, str):
-        return [target for name in output for target in _named(ds, name)]
-    found = _named(ds, output)
-    if not found:
+    names = [output] if isinstance(output, str) else output
+    found = [target for name in names for target in _named(ds, name)]
+    if not found and isinstance(output, str):
         _, inside, _ = split_name(output)
         if output == inside:
             raise InputError(f"no row has a {output}: there is nothing to apportion")
         names = [target.name for target in _targets(ds, _output_in(inside), every=True)]
         raise InputError(f"no such output '{output}'{nearest(output, names)}")
-    return found
+    return found if method in SCALE_FREE else [with_tail_note(target) for target in found]
 
 
 def _named(ds: xr.Dataset, name: str) -> list[Target]:

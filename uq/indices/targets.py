@@ -1,7 +1,7 @@
 """What goes into every sensitivity method, a target, and what comes out of it, indices."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -100,14 +100,10 @@ def targets(
     Yields
     ------
     Target
-        What `number_of` gives; of a value whose tail is heavy by `heaviness` the logarithm, where
-        all rows are positive and the tail of the logarithm is not heavy, else the rank. Beside a
-        lifetime T, the events T < t.
+        What `number_of` gives, and of a lifetime T the events T < t.
     """
     for element in elements:
-        number = number_of(element)
-        why = heaviness(number.values) if element.kind == "value" else ""
-        yield _lighter(element, why) if why else number
+        yield number_of(element)
         yield from _events(element, thresholds)
 
 
@@ -136,7 +132,7 @@ def all_targets(
     """
     for element in elements:
         if element.kind != "lifetime":
-            yield _plain(element)
+            yield number_of(element)
         if element.kind != "angle":
             yield _transformed(element, "log")
             yield _transformed(element, "rank")
@@ -184,23 +180,49 @@ def _transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Ta
     return Target(f"{form}({element.name})", element, values, refused, notes=notes)
 
 
-def _lighter(element: Element, why: str) -> Target:
-    """Return the logarithm or the rank of a value whose tail is heavy."""
-    found = _transformed(element, "log")
-    light = not found.refused and not heaviness(found.values)
-    form = "log" if light else "rank"
+def lightened(target: Target) -> Target:
+    """Return what stands for a value whose tail is heavy, in methods that are about a variance.
+
+    Parameters
+    ----------
+    target : Target
+
+    Returns
+    -------
+    Target
+        The logarithm, where all rows are positive and its own tail is not heavy, else the rank,
+        with a note; `target` itself where `heaviness` finds nothing.
+    """
+    if not (why := _heaviness(target)):
+        return target
+    assert target.element is not None
+    form = _lighter_form(target.element)
     note = (
-        f"{why}: these are indices of its {FORMS[form]}; name {element.name} for"
-        " those of the output itself"
+        f"{why}: these are indices of its {FORMS[form]}; name {target.name} for those of the"
+        " output itself"
     )
-    return _transformed(element, form, (note,))
+    return _transformed(target.element, form, (note,))
 
 
-def _plain(element: Element) -> Target:
-    notes: tuple[str, ...] = ()
-    if element.kind == "value" and (why := heaviness(element.values)):
-        notes = (f"{why}: {_lighter(element, why).name} says more",)
-    return Target(element.name, element, element.values, notes=notes)
+def with_tail_note(target: Target) -> Target:
+    """Return a target with a note where its tail is heavy, in methods that are about a variance."""
+    if not (why := _heaviness(target)):
+        return target
+    assert target.element is not None
+    other = f"{_lighter_form(target.element)}({target.name})"
+    return replace(target, notes=(*target.notes, f"{why}: {other} says more"))
+
+
+def _heaviness(target: Target) -> str:
+    """Say why indices of the variance of a value say little, or return ""."""
+    element = target.element
+    own = element is not None and element.kind == "value" and target.name == element.name
+    return heaviness(target.values) if own else ""
+
+
+def _lighter_form(element: Element) -> str:
+    found = logarithm(element)
+    return "rank" if found.refused or heaviness(found.values) else "log"
 
 
 def _events(element: Element, thresholds: Mapping[str, tuple[float, ...]]) -> Iterator[Target]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from models.numerics.linear import solve
+from models.numerics.linear import product, solve
 
 
 def test_solutions_are_those_of_lapack_in_any_units():
@@ -26,3 +26,9 @@ def test_singular_matrices_are_told_and_harm_nobody():
     np.testing.assert_array_equal(told, regular)
     np.testing.assert_allclose(solution[regular], expected, rtol=1e-12)
     assert np.all(solution[~regular] == 0)
+
+
+def test_products_are_those_of_numpy():
+    rng = np.random.default_rng(3)
+    matrix, right = rng.normal(size=(7, 3, 5)), rng.normal(size=(7, 4, 5)).transpose(0, 2, 1)
+    np.testing.assert_allclose(product(matrix, right), matrix @ right, rtol=1e-13, atol=1e-13)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from models.numerics.linear import inverse
-from models.numerics.multipliers import largest_multiplier
+from models.numerics.multipliers import largest_multiplier, log_radius
 
 
 def all_of_them(flow):
@@ -39,6 +39,21 @@ def test_each_map_is_on_its_own():
     largest = largest_multiplier(flow)
     assert largest[1] == 0 and np.isnan(largest[2])
     assert np.array_equal(largest[3:], largest_multiplier(flow[3:]))
+
+
+@pytest.mark.parametrize("size", [1, 2, 5, 8])
+def test_the_radius_is_that_of_all_eigenvalues(size):
+    matrix = np.random.default_rng(size).normal(size=(200, size, size))
+    np.testing.assert_allclose(np.exp(log_radius(matrix)), all_of_them(matrix), rtol=1e-11)
+
+
+def test_radii_of_what_grows_without_bound_fades_away_or_only_shears():
+    shear = np.array([[1.0, 1e3], [0.0, 1.0]])
+    matrix = np.stack([1e200 * np.eye(2), 1e-300 * np.eye(2), shear, 0 * shear, shear])
+    matrix[4, 0, 1] = np.inf
+    radius = log_radius(matrix)
+    np.testing.assert_allclose(radius[:3], np.log([1e200, 1e-300, 1.0]), rtol=1e-15, atol=1e-12)
+    assert radius[3] == -np.inf and np.isnan(radius[4])
 
 
 def test_inverses_and_a_singular_matrix_among_them():

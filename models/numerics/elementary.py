@@ -1,0 +1,111 @@
+"""Elementary functions of arrays, number by number.
+
+numpy has its own for the vectors of each processor, which differ in the last bit. Those here are
+the C library's, and sine and cosine are ours.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models.numerics.jit import kernel
+from models.numerics.sincos import cosine_sine
+
+Array = NDArray[np.float64]
+
+
+@kernel
+def _exp(x, out):
+    for i in range(len(x)):
+        out[i] = math.exp(x[i])
+
+
+@kernel
+def _expm1(x, out):
+    for i in range(len(x)):
+        out[i] = math.expm1(x[i])
+
+
+@kernel
+def _log(x, out):
+    for i in range(len(x)):
+        out[i] = math.log(x[i]) if x[i] != 0 else -math.inf
+
+
+@kernel
+def _log1p(x, out):
+    for i in range(len(x)):
+        out[i] = math.log1p(x[i])
+
+
+@kernel
+def _tan(x, out):
+    for i in range(len(x)):
+        out[i] = math.tan(x[i])
+
+
+@kernel
+def _arctan(x, out):
+    for i in range(len(x)):
+        out[i] = math.atan(x[i])
+
+
+@kernel
+def _cos(x, out):
+    for i in range(len(x)):
+        out[i], _ = cosine_sine(x[i])
+
+
+@kernel
+def _sin(x, out):
+    for i in range(len(x)):
+        _, out[i] = cosine_sine(x[i])
+
+
+def _each(function: Any, x: ArrayLike) -> Any:
+    x = np.asarray(x, float)
+    out = np.empty(x.size)
+    function(np.ravel(x), out)
+    return out.reshape(x.shape)
+
+
+def exp(x: ArrayLike) -> Any:
+    """Return the exponentials of numbers, of their shape."""
+    return _each(_exp, x)
+
+
+def expm1(x: ArrayLike) -> Any:
+    """Return the exponentials less 1."""
+    return _each(_expm1, x)
+
+
+def log(x: ArrayLike) -> Any:
+    """Return the logarithms of numbers that are not negative, of their shape."""
+    return _each(_log, x)
+
+
+def log1p(x: ArrayLike) -> Any:
+    """Return the logarithms of 1 + x, for x not below -1."""
+    return _each(_log1p, x)
+
+
+def cos(x: ArrayLike) -> Any:
+    """Return the cosines of angles [rad], of their shape."""
+    return _each(_cos, x)
+
+
+def sin(x: ArrayLike) -> Any:
+    """Return the sines of angles [rad], of their shape."""
+    return _each(_sin, x)
+
+
+def tan(x: ArrayLike) -> Any:
+    """Return the tangents of angles [rad], of their shape."""
+    return _each(_tan, x)
+
+
+def arctan(x: ArrayLike) -> Any:
+    """Return the angles [rad] with these tangents, of their shape."""
+    return _each(_arctan, x)
