@@ -22,8 +22,9 @@ FEWEST_HITS = 5
 ENOUGH_HITS = 20
 """With fewer in each replicate the indices are given with a warning."""
 
-ENOUGH_ROWS = 50
-"""Where the variance rests on fewer rows of each replicate, intervals are widened."""
+ENOUGH_ROWS, ENOUGH_SHARE = 50, 0.22
+"""Where the variance rests on fewer rows of each replicate, and on less than this share of them,
+intervals are widened. Of a normal law it rests on a third of the rows."""
 
 
 def effective_rows(deviations: Floats) -> float:
@@ -56,9 +57,10 @@ def one_more_row(deviations: Floats, groups: int, replicates: int) -> float:
     Returns
     -------
     float
-        A half-width, zero where enough rows count.
+        A half-width; zero where the variance rests on rows enough, or on a common share of them.
     """
-    if replicates < 2 or effective_rows(deviations) >= ENOUGH_ROWS * replicates:
+    enough = min(ENOUGH_ROWS * replicates, ENOUGH_SHARE * len(deviations))
+    if replicates < 2 or effective_rows(deviations) >= enough:
         return 0.0
     student = stats.t.ppf(0.5 + CONFIDENCE / 2, replicates - 1)
     return float(student * (deviations**2).max() / groups)
