@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
 from uq.intervals import (
@@ -112,8 +111,8 @@ def sd_interval(
     -------
     Interval
         Independent rows: after [1]_, which takes the kurtosis from the rows. Replicates: Student's
-        t of the logarithms of their variances, whose high end is raised by what one more row, as
-        far out as the farthest, would add: a few replicates with few such rows scatter too little.
+        t of the logarithms of their variances. Both with the high end raised by what one more row,
+        as far out as the farthest, would add: samples that lack such rows also scatter too little.
 
     References
     ----------
@@ -123,27 +122,28 @@ def sd_interval(
     n = len(values)
     if n < _FEWEST or is_constant(values):
         return UNKNOWN
-    if replicate is not None:
-        return _from_replicates(values, replicate, confidence)
+    squares = (values - values.mean()) ** 2
+    variance = standard_deviation(values, replicate) ** 2
+    if replicate is None:
+        low, high = variance * _bonett(values, squares, confidence)
+    else:
+        found = by_replicate(squares, replicate)
+        if not (found > 0).all():
+            return UNKNOWN
+        logarithm = float(np.log(variance))
+        low, high = np.exp(scatter_interval(logarithm, np.log(found), confidence))
+    return Interval(float(np.sqrt(low)), float(np.sqrt(high + squares.max() / n)))
+
+
+def _bonett(values: Floats, squares: Floats, confidence: float) -> Floats:
+    """Return the ends of the interval of the variance, over its estimate."""
+    n = len(values)
     z = stats.norm.ppf(0.5 + confidence / 2)
     middle = stats.trim_mean(values, 1 / (2 * np.sqrt(n - 4)))
-    squares = (values - values.mean()) ** 2
     kurtosis = n * np.sum((values - middle) ** 4) / squares.sum() ** 2
     c = n / (n - z)
     error = c * np.sqrt(max(kurtosis - (n - 3) / n, 0.0) / (n - 1))
-    sides = np.exp((np.log(c) + z * error * np.array([-1, 1])) / 2)
-    return Interval(*(values.std(ddof=1) * sides).tolist())
-
-
-def _from_replicates(values: Floats, replicate: NDArray[np.integer], level: float) -> Interval:
-    deviation = (values - values.mean()) ** 2
-    found = by_replicate(deviation, replicate)
-    variance = standard_deviation(values, replicate) ** 2
-    if not (found > 0).all():
-        return UNKNOWN
-    low, high = scatter_interval(float(np.log(variance)), np.log(found), level)
-    more = deviation.max() / len(values) / variance
-    return Interval(float(np.exp(low / 2)), float(np.exp(high / 2) * np.sqrt(1 + more)))
+    return np.exp(np.log(c) + z * error * np.array([-1, 1]))
 
 
 def standard_deviation(values: Floats, replicate: Replicates = None) -> float:

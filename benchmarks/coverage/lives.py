@@ -212,8 +212,7 @@ def _asymptotic(tally, law, life, parameters):
 
 
 RARE = (
-    "conservative: seven rows of 512 lie beyond, and Wilson's interval with Student's quantile"
-    " covers 96 to 98 % of so rare a count, 95 % from some twenty rows on"
+    "conservative by design: seven rows of 512 lie beyond, and the interval of so few hits is exact"
 )
 STEPS = (
     "conservative: the 1st and the 11th of 500 lives hold B1 in 98.0 %, and neither end can move to"

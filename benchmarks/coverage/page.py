@@ -22,14 +22,18 @@ Problems: *Ishigami's function*; a *function of two regimes* that jumps by 3 whe
 1.2, added to x1 + x3; a *life with a heavy tail*, whose P(T > t) falls as t^-3, so that it has a
 variance but no skewness; the same life *never ending* in some rows, *censored* at a horizon or at
 random times; lives of which 60 % *never end*, known at once, while the others, Weibull, may be
-censored; Weibull and lognormal lives; the *g-function*; a *linear function* in two studies; a
-*random model*, x1 + (1 + 2 x2) e with noise e; limits with a probability of 1e-5. Their truths
-are closed forms or quadratures (`benchmarks/coverage`).
+censored; Weibull and lognormal lives; the *g-function*; a *linear function* in two studies;
+*Pareto* values without variance or mean; gamma lives and lives with infant mortality, to which
+wrong laws are fitted; a *random model*, x1 + (1 + 2 x2) e with noise e; limits with a probability
+of 1e-5. Their truths are closed forms or quadratures (`benchmarks/coverage`).
 
-Printed without an interval, because none would be honest: sd, within-regime sd, extended FAST,
-RBD-FAST, delta, PAWN, HDMR and quantile-oriented indices. The last table counts what stands in
-its place, the dummy: an input without effect should stay below it in 95 % of cases. What the
-bootstrap of others makes of such indices is counted in the table before it.
+*Held or refused* counts together the intervals that hold and those that are refused with a reason,
+which rests on the rows: what is given all the same is then not a fair sample of all.
+
+Printed without an interval, because none would be honest: within-regime sd, extended FAST, RBD-
+FAST, delta, PAWN, HDMR and quantile-oriented indices. The last table counts what stands in its
+place, the dummy: an input without effect should stay below it in 95 % of cases. What the bootstrap
+of others makes of such indices is counted in the table before it.
 """
 
 

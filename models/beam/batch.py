@@ -12,6 +12,8 @@ from models.beam.modal import Array, beams
 from models.beam.parameters import Params, Rows, Settings
 from models.beam.random_lives import find_random_lives
 from models.beam.random_load import has_band
+from models.beam.second_looks import add_second_looks
+from models.beam.step_error import add_step_error
 from uq.contract import Status
 
 PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
@@ -105,7 +107,11 @@ def _simulate_group(
     gaps = initial_gaps(p)
     x0 = p.initial_gap
     state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
+    begin = state.copy()
     settled = response.settle(propagator, system, state, gaps)
+    work, error = settled.work.copy(), settled.error.copy()
+    add_step_error(propagator, system, state, gaps, settled)
+    add_second_looks(propagator, system, begin, gaps, settled)
     share = np.stack([np.ones_like(x0), p.wear_coefficient_ratio], axis=1)
     growths = np.asarray(settings.depths) / x0[:, None]
     lives = Lives.nothing(*growths.shape)
@@ -114,10 +120,10 @@ def _simulate_group(
         rows = np.flatnonzero(known & (system.is_random == is_random))
         if not len(rows):
             continue
-        start = (propagator, system.take(rows), state[rows], gaps[rows], settled.work[rows])
+        start = (propagator, system.take(rows), state[rows], gaps[rows], work[rows])
         wear = (share[rows], growths[rows], settings.accuracy)
         part = (
-            find_random_lives(*start, settled.error[rows], *wear)
+            find_random_lives(*start, error[rows] / response.NINE_IN_TEN, *wear)
             if is_random
             else find_lives(*start, *wear)
         )

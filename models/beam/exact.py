@@ -62,6 +62,11 @@ class System(NamedTuple):
         return self.forcing / (2 * np.pi * self.beams.decay[:, 0])
 
     @property
+    def turn(self) -> Array:
+        """Forcing periods in a free oscillation of the first mode, shape (n,)."""
+        return self.forcing / self.beams.frequency[:, 0]
+
+    @property
     def longest(self) -> int:
         """Forcing periods in a time mean, at most."""
         return LONGEST
@@ -98,6 +103,11 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     steps = settings.steps_per_period or TRACE_STEPS
     modal = steady_response(beams)
     yield rows, System(each, modal, reach(beams), beams, beams.forcing, steps)
+
+
+def finer(system: System) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Return no systems of smaller steps: there are no steps; see `models.beam.lanes.finer`."""
+    return iter(())
 
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:

@@ -40,6 +40,7 @@ class System(NamedTuple):
         w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode: how it responds to the random load.
     forcing : ndarray, shape (n,)
         [rad s-1]
+    beams : Beams
     steps : int
         In a forcing period.
     """
@@ -52,6 +53,7 @@ class System(NamedTuple):
     load: NDArray[np.void]
     oscillators: Array
     forcing: Array
+    beams: Beams
     steps: int
 
     @property
@@ -65,13 +67,18 @@ class System(NamedTuple):
         return self.forcing / (2 * np.pi * self.oscillators[:, 1, 0])
 
     @property
+    def turn(self) -> Array:
+        """Forcing periods in a free oscillation of the first mode, shape (n,)."""
+        return self.forcing / self.beams.frequency[:, 0]
+
+    @property
     def longest(self) -> int:
         """Forcing periods in a time mean, at most."""
         return min(LONGEST, _MOST // self.steps)
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return the systems of some rows."""
-        return System._make([*(a[rows] for a in self[:-1]), self.steps])
+        return System._make([*(a[rows] for a in self[:-2]), self.beams.take(rows), self.steps])
 
 
 @kernel
@@ -197,48 +204,81 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
         Which of the n beams are in the group.
     system : System
     """
-    n, m = beams.frequency.shape
-    gain = -beams.stiffness[:, None] * beams.mobility
-    steps = np.full(n, settings.steps_per_period)
-    least = RESOLVED * beams.load["edges"][:, -1]
+    steps = np.full(len(beams.forcing), settings.steps_per_period)
     if not settings.steps_per_period:
-        _choose_steps(beams.forcing, beams.frequency, beams.decay, gain, beams.moving, least, steps)
+        least = _least_steps(beams)
+        _choose_steps(
+            beams.forcing, beams.frequency, beams.decay, _gain(beams), beams.moving, least, steps
+        )
     for count in np.unique(steps):
         rows = np.flatnonzero(steps == count)
-        b = beams.take(rows)
-        modes, begin = np.zeros((len(rows), 4, m)), np.zeros((len(rows), 3, m))
-        sigma, residual = np.empty((2, len(rows)))
-        _prepare(
-            b.forcing,
-            b.frequency,
-            b.decay,
-            gain[rows],
-            b.moving,
-            int(count),
-            modes,
-            begin,
-            sigma,
-            residual,
-        )
-        system = System(
-            modes,
-            begin,
-            sigma + residual,
-            steady_response(b),
-            reach(b),
-            b.load,
-            np.stack([b.frequency, b.decay, b.mobility], axis=1),
-            b.forcing,
-            int(count),
-        )
-        sound = (np.abs(sigma) <= UNSTABLE) & (least[rows] <= count)
-        sound &= (b.load["power"] == 0) | (count <= MOST_UNDER_RANDOM)
-        width = np.minimum(m, _widths(begin[:, 2]))
-        for size in np.unique(width[sound]):
-            part = np.flatnonzero(sound & (width == size))
-            some = system.take(part)
-            cut = some._replace(modes=some.modes[:, :, :size], begin=some.begin[:, :, :size])
-            yield rows[part], cut
+        for part, system in _systems(beams.take(rows), int(count)):
+            yield rows[part], system
+
+
+def finer(system: System) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Prepare the same beams for steps of half the size, in groups as `groups` yields them.
+
+    Parameters
+    ----------
+    system : System
+
+    Yields
+    ------
+    rows : ndarray of int
+        Which of the system's beams are in the group.
+    system : System
+    """
+    yield from _systems(system.beams, 2 * system.steps)
+
+
+def _systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Prepare n beams for so many steps, in groups of one number of modes."""
+    n, m = b.frequency.shape
+    modes, begin = np.zeros((n, 4, m)), np.zeros((n, 3, m))
+    sigma, residual = np.empty((2, n))
+    _prepare(
+        b.forcing,
+        b.frequency,
+        b.decay,
+        _gain(b),
+        b.moving,
+        steps,
+        modes,
+        begin,
+        sigma,
+        residual,
+    )
+    system = System(
+        modes,
+        begin,
+        sigma + residual,
+        steady_response(b),
+        reach(b),
+        b.load,
+        np.stack([b.frequency, b.decay, b.mobility], axis=1),
+        b.forcing,
+        b,
+        steps,
+    )
+    sound = (np.abs(sigma) <= UNSTABLE) & (_least_steps(b) <= steps)
+    sound &= (b.load["power"] == 0) | (steps <= MOST_UNDER_RANDOM)
+    width = np.minimum(m, _widths(begin[:, 2]))
+    for size in np.unique(width[sound]):
+        part = np.flatnonzero(sound & (width == size))
+        some = system.take(part)
+        cut = some._replace(modes=some.modes[:, :, :size], begin=some.begin[:, :, :size])
+        yield part, cut
+
+
+def _gain(b: Beams) -> Array:
+    """Return what each mode does per unit penetration, shape (n, m)."""
+    return -b.stiffness[:, None] * b.mobility
+
+
+def _least_steps(b: Beams) -> Array:
+    """Return how many steps the fastest line of a random load needs, shape (n,)."""
+    return RESOLVED * b.load["edges"][:, -1]
 
 
 def _widths(moving: Array) -> NDArray[np.int64]:
@@ -293,3 +333,53 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
     state[:, 2 * m + 1] = displacement
     state[:, 2 * m + 2] = displacement
     return state
+
+
+def refine(system: System, state: Array, fine: System) -> Array:
+    """Return nearly the same state in steps of half the size.
+
+    Parameters
+    ----------
+    system : System
+    state : ndarray, shape (n, 2 m + 4)
+        Of `start`.
+    fine : System
+        The same beams; see `finer`.
+
+    Returns
+    -------
+    ndarray, shape (n, 2 m' + 4)
+        The displacement a step before is interpolated, with the tip's velocity.
+    """
+    b = system.beams
+    out = np.zeros((len(state), 2 * fine.modes.shape[2] + 4))
+    step = 2 * np.pi / (system.forcing * system.steps)
+    modal = (system.modal * system.forcing[:, None]).imag.sum(axis=1)
+    _refine(b.frequency, b.decay, _gain(b), b.moving, step, -modal, state, out)
+    return out
+
+
+@kernel
+def _refine(frequency, decay, gain, moving, step, velocity, state, out):
+    """Set out to state in half steps; velocity is that of the tip without contact."""
+    m, size = (state.shape[1] - 4) // 2, (out.shape[1] - 4) // 2
+    for n in range(len(state)):
+        p, x1, x2 = state[n, 2 * m], state[n, 2 * m + 1], state[n, 2 * m + 2]
+        h = step[n]
+        speed = velocity[n]
+        for i in range(min(size, moving[n])):
+            w, d, g = frequency[n, i], decay[n, i], gain[n, i]
+            if i >= m or _is_static(w, d, h):
+                z, v = g / (w * w) * p, 0.0
+            else:
+                y, r = state[n, i], state[n, m + i]
+                _, p12, _, p22, _, _, b1, b2 = _mode_step(w, d, h)
+                z, v = y + g * b1 * p, (r + p22 * y) / p12 + g * b2 * p
+            speed += w * v
+            if not _is_static(w, d, h / 2):
+                _, p12, _, p22, _, _, b1, b2 = _mode_step(w, d, h / 2)
+                y = z - g * b1 * p
+                out[n, i], out[n, size + i] = y, p12 * (v - g * b2 * p) - p22 * y
+        out[n, 2 * size], out[n, 2 * size + 1] = p, x1
+        out[n, 2 * size + 2] = 0.75 * x1 + 0.25 * x2 - 0.25 * h * speed
+        out[n, 2 * size + 3] = state[n, 2 * m + 3]

@@ -21,7 +21,7 @@ times smaller.
 import numpy as np
 
 from models.beam.lane_lines import Lines, Load, draw_lines, redraw_lines, sum_lines
-from models.beam.lane_systems import System, groups, start
+from models.beam.lane_systems import System, finer, groups, refine, start
 from models.beam.lane_tangents import carry
 from models.beam.modal import Array, Record
 from models.numerics.blocks import LANES, aligned
@@ -29,7 +29,7 @@ from models.numerics.elementary import cos, sin
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
-__all__ = ["advance", "groups", "monodromy", "start"]
+__all__ = ["advance", "finer", "groups", "monodromy", "refine", "start"]
 
 CLOCK = -1
 """Column of the state that counts forcing periods."""

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import stdtrit
 
 from models.beam import wear
 from models.beam.looks import UNKNOWN, WINDOW, changes_of, confirmed_regimes
@@ -18,7 +19,7 @@ from models.beam.modal import Array
 SHORTEST = 64  # N of the first run; each further one lasts twice as long
 LEAST = 5  # runs: fewer are too fast to notice some branch changes
 SMOOTH = 4  # runs that suffice where nothing changes and the limit is approached evenly
-LONGEST = 330  # over the accuracy: N of the last run at most, unless they are the least
+LONGEST = 210  # over the accuracy: N of the last run at most, unless they are the least
 
 
 def _fit_of_constant_and_inverse() -> Array:
@@ -29,6 +30,8 @@ def _fit_of_constant_and_inverse() -> Array:
 
 
 _FIT = _fit_of_constant_and_inverse()
+_FIT_SPREAD = math.sqrt(sum(weight**2 / 2**k for k, weight in enumerate(_FIT)))
+_STUDENT = round(float(stdtrit(LEAST - 1, 0.95)), 9)  # the same on every processor
 
 
 class Lives(NamedTuple):
@@ -115,7 +118,7 @@ def find_lives(
         if level + 1 < LEAST:
             time, error = extrapolate_smooth(times[:SMOOTH, left])
             changed = ((regime != regime[:, :1]) & (regime != UNKNOWN)).any(axis=1)
-            error[changed] = np.inf
+            error[changed | one.lost] = np.inf
         else:
             time, error = extrapolate(times[level + 1 - LEAST : level + 1, left])
         # A life that one of the runs did not reach is known no better than by its own size.
@@ -154,7 +157,7 @@ def extrapolate_smooth(times: Array) -> tuple[Array, Array]:
     with np.errstate(invalid="ignore", divide="ignore"):
         time, regular = _rest(times[1:])
         before, was_regular = _rest(times[:-1])
-        error = np.maximum(np.abs(time - times[-1]) / 3, np.abs(time - before))
+        error = _regular_error(np.abs(time - times[-1]), np.abs(time - before))
         differences = np.abs(np.diff(times, axis=0)).max(axis=0)
         even = regular & was_regular
         return np.where(even, time, times[-1]), np.where(even, error, 4 * differences)
@@ -171,8 +174,10 @@ def extrapolate(times: Array) -> tuple[Array, Array]:
     1/N, each with the weight of its periods. Differences that grow say that a change is not
     resolved yet.
 
-    The error is made of what was added, how much it changes when the slowest life is left out,
-    and the differences themselves. Its factors are measured: see ``benchmarks/beam_lives.py``.
+    The error is made of what was added, how much it changes when the slowest life is left out, the
+    differences themselves, and the scatter that all of them show where the variance of a life is
+    one over its periods. Its factors are such that nine in ten lives lie within it, measured
+    against lives ten times as slow: see ``benchmarks/beam_lives.py``.
 
     Parameters
     ----------
@@ -190,10 +195,22 @@ def extrapolate(times: Array) -> tuple[Array, Array]:
         last, previous = np.abs(times[-1] - times[-2]), np.abs(times[-2] - times[-3])
         same_sign = (times[-1] > times[-2]) == (times[-2] > times[-3])
         growing = same_sign & (last > previous)
-        irregular = np.maximum.reduce(
-            [added / 2, 1.5 * change, last, 0.7 * previous, np.where(growing, 4 * last, 0.0)]
+        rest = np.maximum.reduce(
+            [added, 3 * change, 2 * last, 1.4 * previous, np.where(growing, 8 * last, 0.0)]
         )
-        return time, np.where(regular, np.maximum(added / 3, change), irregular)
+        irregular = np.maximum(rest, _STUDENT * _FIT_SPREAD * _scatter(times))
+        return time, np.where(regular, _regular_error(added, change), irregular)
+
+
+def _regular_error(added: Array, change: Array) -> Array:
+    """Return the error of a limit by what was added, and its change from one run to the next."""
+    return np.maximum(added, 2 * change)
+
+
+def _scatter(times: Array) -> Array:
+    """Return the standard deviation of the second of five lives, from all their differences."""
+    periods = (2.0 ** np.arange(-1, LEAST - 2)).reshape(-1, *[1] * (times.ndim - 1))
+    return np.sqrt((np.diff(times, axis=0) ** 2 * periods / 1.5).mean(axis=0))
 
 
 def _limit(times: Array) -> tuple[Array, NDArray[np.bool_]]:

@@ -257,7 +257,9 @@ def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
 OUTPUTS: Mapping[str, Output] = {
     "work_rate": Output("W", "impact work-rate of each site at the initial gaps", dims=("site",)),
     "work_rate_error": Output(
-        "W", "standard error of the work-rate's time mean, 0 if periodic", dims=("site",)
+        "W",
+        "numerical error of the work-rate: of the steps and of the time mean",
+        dims=("site",),
     ),
     "work_rate_heavy": Output("W", "the larger of the two sites' work-rates"),
     "work_rate_light": Output("W", "the smaller of the two sites' work-rates"),

@@ -18,6 +18,7 @@ import numpy as np
 from models.beam.averages import SHORTEST, time_mean
 from models.beam.lives import Lives
 from models.beam.modal import Array
+from models.beam.response import NINE_IN_TEN
 from models.numerics.elementary import exp, expm1, log, log1p
 from models.numerics.linear import inverse, product
 
@@ -59,7 +60,7 @@ def find_random_lives(
     Returns
     -------
     Lives
-        With standard errors.
+        With the errors within which nine in ten lie.
     """
     n = len(state)
     periods = SHORTEST << max(0, round(np.log2(_LONGEST / accuracy / SHORTEST)))
@@ -88,6 +89,7 @@ def find_random_lives(
         _note(i, out, gaps[i], grown[some, i], rate[some, i], doubt[some, i], growths[i], silent)
         # A random load knows one regime until contact ends.
         out.changes[i] = float(silent and bool(rate[0, i].any()))
+    out.error[:] *= NINE_IN_TEN
     return out
 
 

@@ -3,8 +3,10 @@
 The tip is looked at once per forcing period. Where its strobe points seem to approach an orbit of
 k periods, Newton's method on the map of k periods looks for it; if it is there, near and stable,
 the response is that orbit and its work-rate is exact. A response that has not come near a stable
-orbit within the budget is aperiodic, and its work-rate is a time mean with the standard error of
-batch means. Under a random load it never settles, see `models.beam.averages`.
+orbit is aperiodic, and its work-rate is a time mean with the error of batch means. It is looked at
+for `SHORTEST` segments, and twice as long again and again where the mean is still uncertain, the
+start not forgotten yet, or a beam that could do without contact may still come to that. Under a
+random load it never settles, see `models.beam.averages`.
 """
 
 from types import ModuleType
@@ -17,15 +19,18 @@ from models.beam.approach import Approached, approached
 from models.beam.averages import time_mean
 from models.beam.modal import Array
 from models.beam.parameters import REGIMES
-from models.numerics.batch_means import mean_and_error
+from models.numerics.batch_means import mean_and_bound
 from models.numerics.jit import kernel
 
 SEGMENT = 32  # periods between two looks; also the length of a batch
 LONGEST_PERIOD = 16
-TRANSIENT = 4  # segments left out of a time mean
-BUDGET = 32  # segments
-RANDOM_ACCURACY = 0.05  # relative error of a mean work-rate under a random load
-MEMORIES = 5  # times what the beam remembers: a budget within which it forgets its start
+SHORTEST, LONGEST = 32, 512  # segments of a look
+MOST_STEPS = 2**24  # of a look
+RANDOM_ACCURACY = 0.05  # relative standard error of a mean work-rate under a random load
+NINE_IN_TEN = 1.645  # standard errors within which nine in ten lie
+ACCURACY = NINE_IN_TEN * RANDOM_ACCURACY  # error of a mean for which a look goes on
+TURNS = 2  # of the first mode, in which a beam that does not touch shows that it no longer will
+MEMORIES = 5  # times what the beam remembers: in so long it forgets its start
 _NEAR = 0.05  # k times the distance of strobe points k periods apart, relative to the response
 _SHRINKING = 0.9  # factor of that distance from one look to the next
 _NEARER = 0.5  # that distance over the one at which an orbit was looked for in vain
@@ -42,7 +47,7 @@ class Response(NamedTuple):
     work : ndarray, shape (n, 2)
         Mean dimensionless work per forcing period at the right and the left site.
     error : ndarray, shape (n, 2)
-        Its standard error, 0 if periodic.
+        Within which nine in ten means lie, 0 if periodic.
     peak : ndarray, shape (n, 2)
         Largest penetration, in initial gaps.
     regime : ndarray of int8, shape (n,)
@@ -62,17 +67,31 @@ class Response(NamedTuple):
     multiplier: Array
 
     @staticmethod
+    def settling(n: int) -> "Response":
+        """Return a response of n beams to be filled in: aperiodic, at rest."""
+        regime = np.full(n, APERIODIC, np.int8)
+        return Response._make([*np.zeros((3, n, 2)), regime, np.zeros(n), np.full(n, np.nan)])
+
+    @staticmethod
     def nothing(n: int) -> "Response":
         """Return what is known of n beams before they are run."""
         regime = np.full(n, APERIODIC, np.int8)
         unknown = np.full((2, n), np.nan)
         return Response._make([*np.full((3, n, 2), np.nan), regime, *unknown])
 
+    def take(self, rows: NDArray[np.intp]) -> "Response":
+        """Return the responses of some beams."""
+        return Response._make(field[rows] for field in self)
+
+    def put(self, rows: NDArray[np.intp], known: "Response") -> None:
+        """Set the responses of some beams."""
+        fields: tuple[Any, ...] = self
+        for mine, theirs in zip(fields, known, strict=True):
+            mine[rows] = theirs
+
     def forget(self, rows: NDArray[np.intp]) -> None:
         """Know nothing of some beams."""
-        fields: tuple[Any, ...] = self
-        for mine, unknown in zip(fields, Response.nothing(len(rows)), strict=True):
-            mine[rows] = unknown
+        self.put(rows, Response.nothing(len(rows)))
 
 
 def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Response:
@@ -93,55 +112,84 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
     -------
     Response
         NaN for a beam that no propagator can follow, or whose motion has neither come near an orbit
-        nor forgotten its start within the budget.
+        nor forgotten its start within the longest look.
     """
-    n = len(state)
-    out = Response(
-        np.zeros((n, 2)),
-        np.zeros((n, 2)),
-        np.zeros((n, 2)),
-        np.full(n, APERIODIC, np.int8),
-        np.zeros(n),
-        np.full(n, np.nan),
-    )
+    out = Response.settling(len(state))
     never_touches = system.reach < gaps.min(axis=1)
-    batches = np.zeros((n, BUDGET, 2))
-    distance = np.full((n, LONGEST_PERIOD), np.inf)
     random = np.flatnonzero(system.is_random)
     if len(random):
         _settle_random(propagator, system, state, gaps, never_touches, random, out)
+    longest = min(LONGEST, max(SHORTEST, MOST_STEPS // (SEGMENT * system.steps)))
+    look(propagator, system, state, gaps, np.flatnonzero(~system.is_random), out, longest)
+    remembers = ~system.is_random & (MEMORIES * system.memory > longest * SEGMENT)
+    out.forget(np.flatnonzero(remembers & (out.regime == APERIODIC)))
+    out.forget(np.flatnonzero(np.isnan(out.work).any(axis=1)))
+    return out
+
+
+def look(
+    propagator: ModuleType,
+    system: Any,
+    state: Array,
+    gaps: Array,
+    rows: NDArray[np.intp],
+    out: Response,
+    longest: int,
+    shortest: int = SHORTEST,
+) -> None:
+    """Look at some of n beams until they are silent, on an orbit, or known well enough on average.
+
+    Parameters
+    ----------
+    propagator, system, state, gaps
+        As in `settle`.
+    rows : ndarray of int
+    out : Response
+        Updated in place.
+    longest, shortest : int
+        Segments.
+    """
+    n = len(state)
+    never_touches = system.reach < gaps.min(axis=1)
+    batches = np.zeros((n, longest, 2))
+    quiet = np.zeros(n)
+    distance = np.full((n, LONGEST_PERIOD), np.inf)
     lag = np.arange(1, LONGEST_PERIOD + 1)
     tried = np.tile(_NEAR / _NEARER / lag, (n, 1))
-    left = np.flatnonzero(~system.is_random)
-    for segment in range(BUDGET):
-        if not len(left):
-            break
+    left, segment, total = rows, 0, shortest
+    while len(left):
         part, now, here = system.take(left), state[left], gaps[left].copy()
         record = propagator.advance(part, now, here, np.zeros_like(here), SEGMENT)
         state[left] = now
         batches[left, segment] = record.work.mean(axis=1)
-        if segment >= TRANSIENT:
+        if segment >= shortest // 4:
             out.peak[left] = np.maximum(out.peak[left], record.peak)
         size = np.abs(record.strobe).max(axis=(1, 2))
         before, distance[left] = distance[left], _distances(record.strobe, size)
-        silent = never_touches[left] & (record.work == 0).all(axis=(1, 2))
+        quiet[left] = np.where((record.work == 0).all(axis=(1, 2)), quiet[left] + SEGMENT, 0)
+        silent = never_touches[left] & (quiet[left] >= np.maximum(SEGMENT, TURNS * part.turn))
         _note_silence(out, left[silent])
         guess = np.zeros(len(left), int)
         if (segment + 1) % (1 + segment // 4) == 0:  # late ones wait for company
             guess = np.where(silent, 0, _guess(before, distance[left], tried[left]))
         for k in np.unique(guess[guess > 0]):
-            rows = left[guess == k]
-            tried[rows, k - 1] = distance[rows, k - 1]
+            some = left[guess == k]
+            tried[some, k - 1] = distance[some, k - 1]
             orbit = approached(
-                propagator, system.take(rows), state[rows], gaps[rows], size[guess == k], int(k)
+                propagator, system.take(some), state[some], gaps[some], size[guess == k], int(k)
             )
-            _note_orbit(out, rows, orbit, state)
+            note_orbit(out, some, orbit, state)
         left = left[out.period[left] == 0]
-    _note_aperiodic(out, left, batches)
-    forgetful = MEMORIES * system.memory[left] <= BUDGET * SEGMENT
-    out.forget(left[~forgetful])
-    out.forget(np.flatnonzero(np.isnan(out.work).any(axis=1)))
-    return out
+        segment += 1
+        if segment == total:
+            out.work[left], out.error[left] = mean_and_bound(batches[left, total // 4 : total])
+            remembers = MEMORIES * system.memory[left] > total * SEGMENT
+            enough = ACCURACY * out.work[left].max(axis=1, keepdims=True)
+            uncertain = (out.error[left] > enough).any(axis=1)
+            unsettled = remembers | uncertain | never_touches[left]
+            if 2 * total > longest:
+                break
+            left, total = left[unsettled], 2 * total
 
 
 def _settle_random(
@@ -157,7 +205,8 @@ def _settle_random(
     now = state[rows]
     mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, 0)
     state[rows] = now
-    out.work[rows], out.error[rows], out.peak[rows] = mean
+    out.work[rows], out.peak[rows] = mean.work, mean.peak
+    out.error[rows] = NINE_IN_TEN * mean.error
     silent = rows[never_touches[rows] & (mean.work == 0).all(axis=1)]
     out.regime[silent], out.period[silent] = NO_IMPACT, 1
 
@@ -190,17 +239,19 @@ def _guess(before: Array, now: Array, tried: Array) -> NDArray[np.int64]:
 
 
 def _note_silence(out: Response, rows: NDArray[np.intp]) -> None:
+    out.work[rows] = out.error[rows] = 0
     out.regime[rows] = NO_IMPACT
     out.period[rows] = 1
     out.peak[rows] = 0
     out.multiplier[rows] = np.nan
 
 
-def _note_orbit(out: Response, rows: Any, orbit: Approached, state: Array) -> None:
+def note_orbit(out: Response, rows: Any, orbit: Approached, state: Array) -> None:
+    """Note the orbits that some beams approach, and put the beams onto them."""
     good = orbit.found
     rows, work = rows[good], orbit.work[good]
     state[rows] = orbit.state[good]
-    out.work[rows] = work
+    out.work[rows], out.error[rows] = work, 0.0
     out.peak[rows] = orbit.peak[good]
     out.period[rows] = orbit.period[good]
     out.multiplier[rows] = orbit.multiplier[good]
@@ -208,7 +259,3 @@ def _note_orbit(out: Response, rows: Any, orbit: Approached, state: Array) -> No
     single = np.where(symmetric, SYMMETRIC, ASYMMETRIC)
     out.regime[rows] = np.where(orbit.period[good] == 1, single, PERIODIC)
     _note_silence(out, rows[(work == 0).all(axis=1)])
-
-
-def _note_aperiodic(out: Response, rows: Any, batches: Array) -> None:
-    out.work[rows], out.error[rows] = mean_and_error(batches[rows, TRANSIENT:])

@@ -13,15 +13,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.delay import push_off_unstable_orbits
 from models.beam.looks import WINDOW, History, regime_of
 from models.beam.modal import Array
-from models.beam.response import NO_IMPACT
+from models.beam.response import NO_IMPACT, TURNS
 from models.numerics.jit import kernel, lean
 
 LOOKS = 32  # changes of the acceleration in N periods
 OVERTIME = 4  # a run may last this many times N periods
 _MEMORY = 0.25  # weight of the newest look in the running work-rate
-_SILENCE = 64  # periods without contact after which a beam that need not touch never will
+_SILENCE = 64  # least periods without contact after which a beam that need not touch never will
 _EXTINCT = 1e-6  # of the first work-rate: what is left when the gaps approach the free amplitude
 
 
@@ -38,6 +39,8 @@ class Run(NamedTuple):
         Whether wear has stopped for good: what was not reached never will be.
     ratio : ndarray, shape (n, D)
         Gap of the other site over that of the first to reach the growth, then; NaN if never.
+    lost : ndarray of bool, shape (n,)
+        Whether an orbit was found to have lost its stability.
     history : History
         NaN after the end of a life.
     """
@@ -46,6 +49,7 @@ class Run(NamedTuple):
     reached: NDArray[np.bool_]
     ended: NDArray[np.bool_]
     ratio: Array
+    lost: NDArray[np.bool_]
     history: History
 
 
@@ -64,6 +68,8 @@ class _Life(NamedTuple):
         Growth of each gap so far [X0].
     clock, silence : ndarray, shape (n,)
         Accelerated time, and periods since the last contact.
+    silent : ndarray, shape (n,)
+        Periods without contact after which there will be none.
     """
 
     gaps: Array
@@ -75,6 +81,7 @@ class _Life(NamedTuple):
     grown: Array
     clock: Array
     silence: NDArray[np.int64]
+    silent: Array
 
 
 def run(
@@ -121,13 +128,16 @@ def run(
         np.zeros((n, 2, depths), bool),
         np.zeros(n, bool),
         np.full((n, depths), np.nan),
+        np.zeros(n, bool),
         History.nothing(n, looks * OVERTIME),
     )
     rate = work * share
     reach = system.reach
     clock, grown, silence = np.zeros(n), np.zeros((n, 2)), np.zeros(n, np.int64)
-    life = _Life(gaps, share, growths, reach, rate.max(axis=1), rate, grown, clock, silence)
-    left, state, here = np.arange(n), state.copy(), gaps.copy()
+    silent = np.maximum(_SILENCE, TURNS * system.turn)
+    life = _Life(gaps, share, growths, reach, rate.max(axis=1), rate, grown, clock, silence, silent)
+    left, state, here, unstable = np.arange(n), state.copy(), gaps.copy(), np.zeros(n, bool)
+    every = 8 if looks < LOOKS else 4  # looks from one check of stability to the next
     for look in range(looks * OVERTIME):
         acceleration, growth = np.empty(len(left)), np.empty((len(left), 2))
         _pace(left, life, out.reached, periods, acceleration, growth)
@@ -138,8 +148,13 @@ def run(
         if not alive.all():
             kept = np.flatnonzero(alive)
             left, state, here, system = left[kept], state[kept], here[kept], system.take(kept)
+            unstable = unstable[kept]
         if not len(left):
             break
+        if look % every == every - 1:
+            regime = out.history.regime[left, look]
+            push_off_unstable_orbits(propagator, system, state, here, regime, unstable)
+            out.lost[left] |= unstable
     missing = ~out.reached
     never = out.ended[:, None, None]
     out.time[missing] = np.where(never, np.inf, clock[:, None, None] + 0 * out.time)[missing]
@@ -257,5 +272,5 @@ def _has_ended(i, life):
     """
     narrow = min(life.gaps[i, 0] + life.grown[i, 0], life.gaps[i, 1] + life.grown[i, 1])
     rate = max(life.rate[i, 0], life.rate[i, 1])
-    silent = life.silence[i] >= _SILENCE and life.reach[i] < narrow
+    silent = life.silence[i] >= life.silent[i] and life.reach[i] < narrow
     return silent or (rate <= _EXTINCT * life.first[i] and life.reach[i] < 1.01 * narrow)

@@ -160,8 +160,8 @@ class Settings:
         int,
         Setting(
             "control periods averaged, rounded up to whole periods of the response, or to 20 "
-            "times the common period where it does not repeat; 0: one period, or 200. Where the "
-            "regime is then undecided, up to 16 times as many",
+            "times the common period where it does not repeat; 0: one period, or 200. Where they "
+            "cannot tell the Lyapunov exponent from zero, up to 16 times as many",
             bounds=(0, 100_000),
         ),
     ] = 0

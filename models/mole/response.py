@@ -33,7 +33,6 @@ from models.mole.lane_rows import (
     begin,
 )
 from models.mole.lanes import run
-from models.mole.parameters import UNDECIDED
 from models.mole.system import Mole
 from models.mole.verdict import SURE, verdicts
 from models.numerics.batch_means import mean_and_error
@@ -49,7 +48,7 @@ BUDGET = 2_000_000  # trial steps, for as many control periods as are averaged a
 APERIODIC = 200
 """Control periods averaged at first where the motion does not repeat."""
 LOOKS = 1, 4, 16
-"""How often as many it may take until its regime is decided."""
+"""How often as many it may take to tell the exponent from zero."""
 _UNSTABLE = 1e-3  # logarithm of a multiplier from which on a motion that repeats is no attractor
 BATCHES = 20
 _FORGOTTEN = np.log(1e-6)
@@ -135,11 +134,6 @@ class Machines(NamedTuple):
         """Return what motions that do not repeat are; see `models.mole.verdict`."""
         periods = known.time[rows] * self.control_frequency[rows]
         return verdicts(known.growth[rows], periods, self.common[rows] == 0)
-
-    def settling(self, rows: Counts, known: "Response") -> Flags:
-        """Tell which motions draw nearer to one that repeats, but have not come to it."""
-        mean, error = mean_and_error(known.growth[rows])
-        return (self.common[rows] > 0) & (mean < -SURE * error)
 
 
 class Response(NamedTuple):
@@ -281,7 +275,8 @@ def settle_late(machines: Machines, rows: Counts, tolerance: float, known: Respo
     ndarray of int
         Rows whose motion has come to repeat.
     """
-    rows = rows[machines.settling(rows, known)]
+    mean, error = mean_and_error(known.growth[rows])
+    rows = rows[(machines.common[rows] > 0) & (mean < -SURE * error)]
     limit = machines.periods(rows) + np.ceil(LATEST * machines.control_frequency[rows]).astype(int)
     reached = machines.run(rows, limit, tolerance, True, np.empty((len(rows), 0)))
     rows = rows[reached]
@@ -351,8 +346,7 @@ def follow_other(
 ) -> None:
     """Follow moles whose motion does not repeat through batches of control periods.
 
-    Where the regime remains undecided, a longer look follows and replaces the one before. None does
-    where the motion is settling: what it settles to is not for the exponent to say.
+    Where the exponent cannot be told from zero, a longer look follows and replaces the one before.
 
     Parameters
     ----------
@@ -374,8 +368,9 @@ def follow_other(
         each = -(-times * (duration or APERIODIC) // (BATCHES * common)) * common
         places = _follow_batches(machines, rows, each, tangents, tolerance, out)
         rows, tangents = rows[places], tangents[places]
-        open_ = (machines.verdicts(rows, out) == UNDECIDED) & ~machines.settling(rows, out)
-        rows, tangents = rows[open_], tangents[open_]
+        mean, error = mean_and_error(out.growth[rows])
+        near = np.abs(mean) < SURE * error
+        rows, tangents = rows[near], tangents[near]
 
 
 def _follow_batches(

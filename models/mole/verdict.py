@@ -3,8 +3,9 @@
 The largest Lyapunov exponent decides, with its standard error. Chaos needs an exponent that is
 positive, quasi-periodicity evidence of its own; an exponent that cannot be told from zero is
 neither. Where control and mains have no common period, motion driven by both follows their phases
-if neighbours come together: the exponent is negative. A motion with a frequency of its own has an
-exponent of zero, which no average can equal, but which it can be near to.
+if neighbours come together: the exponent is negative. Where they have one, such motion is still
+settling to something that repeats. A motion with a frequency of its own has an exponent of zero,
+which no average can equal, but which it can be near to.
 """
 
 import numpy as np
@@ -44,6 +45,6 @@ def verdicts(
     each = periods / growth.shape[1]
     low, high = (mean - SURE * error) / each, (mean + SURE * error) / each
     follows = alone & (high < 0)
-    neutral = (low > -NEAR_ZERO) & (high < NEAR_ZERO)
+    neutral = (low > -NEAR_ZERO) & (high >= 0) & (high < NEAR_ZERO)
     known = np.where(follows | neutral, QUASI_PERIODIC, UNDECIDED)
     return np.where(low > 0, CHAOTIC, known).astype(np.int8)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from computed import asking, linear, with_output
+from computed import asking, kinds, linear, with_output
 from scipy import stats
 
 import uq as api
@@ -92,3 +92,10 @@ def test_laws_stand_side_by_side(uq, folder):
     b1 = next(line for line in lines if "B1, extrapolated" in line)
     assert b1.count(" to ") == 2
     assert "no proof" in " ".join(" ".join(lines).split())
+
+
+def test_inputs_of_a_regime_of_few_rows_have_no_outer_quantiles():
+    ds = kinds(samples=8, analysis={"outputs": ["regime"]})
+    found = api.regimes(ds)["input_quantile"].isel(regime=0, parameter=0)
+    assert np.isnan(found.sel(probability=[0.05, 0.95])).all()
+    assert np.isfinite(found.sel(probability=0.5))

@@ -11,6 +11,7 @@ from uq.analysis.statistics import regime_shares
 from uq.errors import InputError
 from uq.indices.given_data import given_data_indices
 from uq.indices.targets import RefusedError, Target, category_targets, number_of
+from uq.intervals import is_within
 from uq.moments import moments
 from uq.rows.elements import (
     Floats,
@@ -38,13 +39,13 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     xarray.Dataset
         Of the independent rows, over ``regime``: ``count``, and ``share`` with ``share_low`` and
         ``share_high``. Over ``regime`` and ``parameter``: ``input_quantile``, at each
-        ``probability``, of the inputs of the rows in it; ``distance``, of Kolmogorov and Smirnov,
-        between these and the inputs of all other rows, and ``distance_dummy``, the largest for
-        inputs that play no part; NaN where one side has too few rows. Over ``output`` and
-        ``regime``: ``rows``, ``mean``, ``sd`` (NaN where too heavy a tail has
-        none). Over ``output``: ``between``, the share of its
-        variance that lies between regimes, with ``between_low`` and ``between_high``. Lifetimes
-        stand as their logarithms, or as their ranks where rows never end or are censored.
+        ``probability``, of the inputs of the rows in it (NaN where they do not reach it);
+        ``distance``, of Kolmogorov and Smirnov, between these and the inputs of all other rows, and
+        ``distance_dummy``, the largest for inputs that play no part; NaN where one side has too few
+        rows. Over ``output`` and ``regime``: ``rows``, ``mean``, ``sd`` (NaN where too heavy a tail
+        has none). Over ``output``: ``between``, the share of its variance that lies between
+        regimes, with ``between_low`` and ``between_high``. Lifetimes stand as their logarithms, or
+        as their ranks where rows never end or are censored.
 
     Raises
     ------
@@ -62,7 +63,7 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
         for name, variable in rows.data_vars.items()
         if variable.attrs["role"] == "input"
     }
-    quantiles = [[np.quantile(x[hits], PROBABILITIES) for x in inputs.values()] for hits in members]
+    quantiles = [[_quantiles(x[hits]) for x in inputs.values()] for hits in members]
     distances = [_distances(inputs, target) for target in category_targets(rows, "regime")]
     found = list(_numbers(rows))
     moments = [[_moments(target.values[hits]) for hits in members] for target in found]
@@ -107,6 +108,11 @@ def _distances(inputs: dict[str, Floats], target: Target) -> list[float]:
     except RefusedError:
         return [np.nan] * (len(inputs) + 1)
     return [*(index.value for index in found.values["KS"].values()), found.dummy["KS"]]
+
+
+def _quantiles(values: Floats) -> Floats:
+    reached = [is_within(probability, len(values)) for probability in PROBABILITIES]
+    return np.where(reached, np.quantile(values, PROBABILITIES), np.nan)
 
 
 def _moments(values: Floats) -> tuple[float, float, float]:

@@ -53,6 +53,8 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
         grid(_lines(output), header=("", "value", "95 % interval", ""))
         for reason in dict.fromkeys(output["reasons"].values()):
             paragraph(reason, indent=2)
+        if (accuracy := output.get("accuracy")) and accuracy["missed"]:
+            paragraph(accuracy_not_reached(accuracy), indent=2)
         if fits := output.get("fits"):
             _show_fits(fits)
     for note in summary["notes"]:
@@ -107,8 +109,6 @@ def _lines(output: Entry) -> Iterator[Line]:
     for count in ("never", "censored", "undefined", "failed"):
         if output[count]:
             yield count, str(output[count]), "", "rows"
-    if (accuracy := output.get("accuracy")) and accuracy["missed"]:
-        yield "", accuracy_not_reached(accuracy), "", ""
 
 
 _ASSUMES = "censoring says nothing of the life left"

@@ -11,10 +11,9 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from uq.designs.table import DESIGNS
 from uq.indices.targets import RefusedError, Target
 from uq.intervals import CONFIDENCE, Interval
-from uq.rows.elements import Floats, independent_rows
+from uq.rows.elements import Floats, independent_rows, why_no_statistics
 
 FEWEST_HITS = 5
 """Fewer in each replicate give no indices of an event."""
@@ -22,8 +21,9 @@ FEWEST_HITS = 5
 ENOUGH_HITS = 20
 """With fewer in each replicate the indices are given with a warning."""
 
-ENOUGH_ROWS = 50
-"""Where the variance rests on fewer rows of each replicate, intervals are widened."""
+ENOUGH_ROWS, ENOUGH_SHARE = 50, 0.22
+"""Where the variance rests on fewer rows of each replicate, and on less than this share of them,
+intervals are widened. Of a normal law it rests on a third of the rows."""
 
 
 def effective_rows(deviations: Floats) -> float:
@@ -56,9 +56,10 @@ def one_more_row(deviations: Floats, groups: int, replicates: int) -> float:
     Returns
     -------
     float
-        A half-width, zero where enough rows count.
+        A half-width; zero where the variance rests on rows enough, or on a common share of them.
     """
-    if replicates < 2 or effective_rows(deviations) >= ENOUGH_ROWS * replicates:
+    enough = min(ENOUGH_ROWS * replicates, ENOUGH_SHARE * len(deviations))
+    if replicates < 2 or effective_rows(deviations) >= enough:
         return 0.0
     student = stats.t.ppf(0.5 + CONFIDENCE / 2, replicates - 1)
     return float(student * (deviations**2).max() / groups)
@@ -90,7 +91,7 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
         Fewer than `FEWEST_HITS` in each replicate.
     """
     values, replicates = target.values, int(ds.attrs.get("replicates", 1))
-    if DESIGNS[ds.attrs["design"]].follows_laws:
+    if not why_no_statistics(ds):
         chosen = np.arange(ds.sizes["sample"])
         values = values[independent_rows(ds.assign(place=("sample", chosen)))["place"].values]
     hits = values[np.isfinite(values)] > 0

@@ -256,11 +256,9 @@ def test_a_random_response_is_aperiodic_and_its_error_covers_what_other_seeds_gi
     assert all(REGIMES[r] == "aperiodic" for r in found.regime)
     assert (found.period == 0).all() and (found.peak > 0).all()
     relative = found.error / found.work
-    assert 0.03 < np.median(relative) < 0.07 and (relative < 0.15).all()
-    pool = found.work.mean()
-    off = np.abs(found.work - pool)
-    assert 0.5 < (off < found.error).mean() < 0.9
-    assert (off < 2 * found.error).mean() > 0.85
+    assert 0.05 < np.median(relative) < 0.115 and (relative < 0.25).all()
+    off = np.abs(found.work - found.work.mean())
+    assert 0.8 < (off < found.error).mean() < 0.98
 
 
 def test_a_random_load_too_weak_to_touch_does_no_work_and_wears_for_ever():
@@ -283,8 +281,7 @@ def test_lives_cover_what_other_seeds_give():
     life, error = outputs["time_to_depth"], outputs["time_to_depth_error"]
     off = np.abs(life - life.mean(axis=(0, 1)))
     assert (error > 0).all() and (error < 0.3 * life).all()
-    assert (off < error).mean() > 0.5
-    assert (off < 2 * error).mean() > 0.85
+    assert (off < error).mean() > 0.8
 
 
 def test_a_seed_is_a_row_s_own_and_does_not_matter_without_random_load():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from models.numerics.batch_means import mean_and_error
+from models.numerics.batch_means import mean_and_bound, mean_and_error
 
 
 def series(rng, memory, rows, count):
@@ -24,10 +24,22 @@ def test_errors_tell_how_far_means_are_off(memory):
     assert 0.93 < within < 0.99
 
 
-def test_every_element_is_on_its_own():
+@pytest.mark.parametrize(("memory", "least"), [(0.0, 0.9), (0.9, 0.9), (0.99, 0.85)])
+def test_bounds_hold_even_where_changes_outlast_the_batches(memory, least):
+    """At 0.99 a change lasts for twelve batches of 16, and half of the largest joined ones."""
+    batches = series(np.random.default_rng(3), memory, 2000, 768).reshape(2000, 48, 16).mean(axis=2)
+    mean, error = mean_and_bound(batches)
+    assert least < (np.abs(mean - 3) < error).mean() < 0.99
+    if memory == 0.99:
+        mean, error = mean_and_error(batches)
+        assert (np.abs(mean - 3) < 1.645 * error).mean() < 0.8
+
+
+@pytest.mark.parametrize("estimate", [mean_and_error, mean_and_bound])
+def test_every_element_is_on_its_own(estimate):
     batches = np.random.default_rng(4).normal(size=(3, 8, 2))
-    mean, error = mean_and_error(batches)
+    mean, error = estimate(batches)
     assert mean.shape == error.shape == (3, 2)
     for i, j in np.ndindex(3, 2):
-        alone = mean_and_error(batches[i : i + 1, :, j])
+        alone = estimate(batches[i : i + 1, :, j])
         np.testing.assert_allclose([mean[i, j], error[i, j]], np.concatenate(alone))
