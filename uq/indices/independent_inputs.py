@@ -32,14 +32,16 @@ def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
 
 
 def are_dependent(ds: xr.Dataset) -> bool:
-    """Whether the study of a result states rank correlations, or its rows were imported."""
+    """Whether a study states rank correlations, or nothing of the rows that it imports."""
     study = read_study_text(ds.attrs["study"], "study of this result")
-    return study.dependence is not None or study.design.method == "imported"
+    imported = study.design.method == "imported" and not study.design.independent
+    return study.dependence is not None or imported
 
 
 def notes_on_inputs(ds: xr.Dataset) -> list[str]:
     """Return sentences on what stands for what among the inputs of a result."""
-    entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
+    study = read_study_text(ds.attrs["study"], "study of this result")
+    entries = study.uncertain
     notes = []
     for name, entry in entries.items():
         if isinstance(entry, Tied):
@@ -47,5 +49,10 @@ def notes_on_inputs(ds: xr.Dataset) -> list[str]:
         elif entry.times is not None:
             notes.append(f"{name} is {entry.times} times a factor: its index is of the factor")
     if are_dependent(ds):
-        notes.append("inputs are dependent: an input may owe its index to another")
+        what = (
+            "inputs are dependent"
+            if study.dependence
+            else "imported inputs may depend on each other"
+        )
+        notes.append(f"{what}: an input may owe its index to another")
     return notes
