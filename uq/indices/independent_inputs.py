@@ -31,28 +31,25 @@ def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
     }
 
 
-def are_dependent(ds: xr.Dataset) -> bool:
-    """Whether a study states rank correlations, or nothing of the rows that it imports."""
+def why_dependent(ds: xr.Dataset) -> str:
+    """Return a clause that says why inputs cannot be taken for independent, or ""."""
     study = read_study_text(ds.attrs["study"], "study of this result")
-    imported = study.design.method == "imported" and not study.design.independent
-    return study.dependence is not None or imported
+    if study.dependence is not None:
+        return "the inputs of this study depend on each other"
+    if study.design.method == "imported" and not study.design.independent:
+        return "imported inputs may depend on each other"
+    return ""
 
 
 def notes_on_inputs(ds: xr.Dataset) -> list[str]:
     """Return sentences on what stands for what among the inputs of a result."""
-    study = read_study_text(ds.attrs["study"], "study of this result")
-    entries = study.uncertain
+    entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
     notes = []
     for name, entry in entries.items():
         if isinstance(entry, Tied):
             notes.append(f"{name} equals {entry.equals}: the index of {entry.equals} is of both")
         elif entry.times is not None:
             notes.append(f"{name} is {entry.times} times a factor: its index is of the factor")
-    if are_dependent(ds):
-        what = (
-            "inputs are dependent"
-            if study.dependence
-            else "imported inputs may depend on each other"
-        )
-        notes.append(f"{what}: an input may owe its index to another")
+    if why := why_dependent(ds):
+        notes.append(f"{why}: an input may owe its index to another")
     return notes
