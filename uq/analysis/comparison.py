@@ -13,7 +13,6 @@ from uq.analysis.input_changes import changes, only_change, spread
 from uq.analysis.pairing import MEAN, SD, SHARE, Estimator, Pair, Sample, quantile
 from uq.analysis.statistics import event, summarise
 from uq.contract import Status
-from uq.designs.table import DESIGNS
 from uq.errors import InputError
 from uq.rows.elements import (
     Element,
@@ -22,6 +21,7 @@ from uq.rows.elements import (
     flags,
     output_names,
     shown_outputs,
+    why_no_statistics,
 )
 from uq.study.file import AnalysisTable
 from uq.two_samples import NOTHING, Estimate
@@ -135,10 +135,10 @@ def _refuse(first: xr.Dataset, second: xr.Dataset) -> None:
             " model can be compared"
         )
     for which, ds in zip(("first", "second"), (first, second), strict=True):
-        if not DESIGNS[method := ds.attrs["design"]].follows_laws:
+        if why := why_no_statistics(ds):
             raise InputError(
-                f"the rows of the {which}, a '{method}' design, do not follow the laws of the"
-                " inputs: compare studies of another design; 'uq sensitivity' shows its indices"
+                f"the rows of the {which}, a '{ds.attrs['design']}' design, {why}: compare studies"
+                " of another design; 'uq sensitivity' shows its indices"
             )
 
 

@@ -30,6 +30,7 @@ from uq.rows.elements import (
     replicates_of,
     shown_outputs,
     study_file_of,
+    why_no_statistics,
 )
 from uq.rows.in_regime import within_regime
 from uq.study.file import AnalysisTable
@@ -44,10 +45,7 @@ NOT_STATED = (
     " of the laws, set independent = true in [design]"
 )
 
-NO_STATISTICS = (
-    "no statistics: the rows of a '{design}' design do not follow the laws of the inputs; see"
-    " 'uq sensitivity'"
-)
+NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
 
 
 def summarise(
@@ -279,8 +277,8 @@ def _plain(number: float) -> float | None:
 
 
 def _notes(ds: xr.Dataset) -> list[str]:
-    if not DESIGNS[ds.attrs["design"]].follows_laws:
-        return [NO_STATISTICS.format(design=ds.attrs["design"])]
+    if why := why_no_statistics(ds):
+        return [NO_STATISTICS.format(design=ds.attrs["design"], why=why)]
     design = study_file_of(ds).design
     notes = []
     if design.until is not None:

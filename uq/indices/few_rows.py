@@ -11,10 +11,9 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from uq.designs.table import DESIGNS
 from uq.indices.targets import RefusedError, Target
 from uq.intervals import CONFIDENCE, Interval
-from uq.rows.elements import Floats, independent_rows
+from uq.rows.elements import Floats, independent_rows, why_no_statistics
 
 FEWEST_HITS = 5
 """Fewer in each replicate give no indices of an event."""
@@ -92,7 +91,7 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
         Fewer than `FEWEST_HITS` in each replicate.
     """
     values, replicates = target.values, int(ds.attrs.get("replicates", 1))
-    if DESIGNS[ds.attrs["design"]].follows_laws:
+    if not why_no_statistics(ds):
         chosen = np.arange(ds.sizes["sample"])
         values = values[independent_rows(ds.assign(place=("sample", chosen)))["place"].values]
     hits = values[np.isfinite(values)] > 0

@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.columns import censored_name, lacking
+from uq.designs.seeds import of_curves
 from uq.designs.table import DESIGNS, NOISE
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
@@ -97,14 +98,22 @@ def study_file_of(ds: xr.Dataset) -> StudyFile:
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
     """Return the rows for plain statistics: A and B where a design has these, all rows of others.
 
-    The other blocks repeat the numbers of A and B. Where the rows do not follow
-    the laws of the inputs there are none.
+    The other blocks repeat the numbers of A and B. There are none where `why_no_statistics`.
     """
-    design = DESIGNS[ds.attrs["design"]]
-    labels = flags(ds["block"]) if design.follows_laws else []
+    labels = [] if why_no_statistics(ds) else flags(ds["block"])
     plain = [c for c, label in labels if label != NOISE and not label.startswith(("AB_", "BA_"))]
     chosen = np.isin(ds["block"].values, plain)
     return ds if chosen.all() else ds.isel(sample=chosen)
+
+
+def why_no_statistics(ds: xr.Dataset) -> str:
+    """Return what the rows of a result do that forbids plain statistics, or ""."""
+    design = DESIGNS[ds.attrs["design"]]
+    if not design.follows_laws:
+        return "do not follow the laws of the inputs"
+    if ds.attrs.get("random") and design.shared_seeds is of_curves:
+        return "share seeds along a curve, as the model is random"
+    return ""
 
 
 def replicates_of(rows: xr.Dataset) -> Replicates:
