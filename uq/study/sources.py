@@ -171,7 +171,7 @@ def _imported(source: bytes, within: str) -> tuple[str, ...]:
     """Return the modules that a source imports anywhere, and names that might be some."""
     try:
         return tuple(_imports(source, within))
-    except (ImportError, SyntaxError, ValueError):  # whoever imports it will be told
+    except (ImportError, SyntaxError, ValueError):  # reported by whoever imports it
         return ()
 
 
