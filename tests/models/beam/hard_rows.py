@@ -74,3 +74,20 @@ DELAYED = {
     "forcing_frequency": 32.291460710059006,
 }
 """Loses the stability of its orbit on the way: 858032 and 1286817 s to 125 and 250 um."""
+
+LIGHT = {
+    "length": 0.6573167532903915,
+    "flexural_rigidity": 14.274560106838022,
+    "mass_per_length": 0.6940185757018333,
+    "lateral_support_stiffness": 257276.3220206441,
+    "rotational_support_stiffness": 235.68159610739062,
+    "contact_stiffness": 12388.780311147055,
+    "force_amplitude": 6.816074018969023,
+    "forcing_frequency": 27.66656661656863,
+    "initial_gap": 0.00029112362147372514,
+    "gap_asymmetry": -0.5743009783507685,
+    "mass_damping": 0.29380787768098676,
+    "stiffness_damping": 3.869572200914478e-06,
+}
+"""Lightly damped. A hair of the start decides between orbits of two periods, of 429.8 and 213.8 mW,
+each other's mirror images, and an aperiodic motion of 87 mW."""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hard_rows import DELAYED, GRAZING, STEPPED, SWITCHING, TRANSIENT
+from hard_rows import DELAYED, GRAZING, LIGHT, STEPPED, SWITCHING, TRANSIENT
 
 from models.beam import MODEL, lanes, wear
 from models.beam.batch import initial_gaps
@@ -39,6 +39,11 @@ def test_a_response_that_the_start_decides_by_a_hair_says_so():
     found, _ = compute(GRAZING)
     off = np.abs(np.sort(found["work_rate"]) - [0.00449281, 0.00479233])
     assert (off <= found["work_rate_error"]).all()
+
+
+def test_light_damping_does_not_keep_a_row_from_being_looked_at_again():
+    found, _ = compute(LIGHT)
+    assert (found["work_rate_error"] > found["work_rate"]).all()
 
 
 def test_a_response_that_dwells_in_its_states_says_so():
