@@ -58,11 +58,15 @@ def when_imported(name: str, action: Callable[[], object]) -> Callable[[], None]
             if fullname != name:
                 return None
             sys.meta_path.remove(self)  # what comes behind it finds the module
-            spec = find_spec(name)
+            try:
+                spec = find_spec(name)
+            finally:
+                sys.meta_path.insert(0, self)  # somebody may ask without importing
             if spec and spec.loader:
                 execute = spec.loader.exec_module
 
                 def execute_then_act(module: ModuleType) -> None:
+                    forget()
                     execute(module)
                     action()
 

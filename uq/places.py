@@ -2,6 +2,7 @@
 
 import os
 import stat
+from errno import ENAMETOOLONG
 from pathlib import Path
 
 from uq.errors import InputError
@@ -14,12 +15,18 @@ _KINDS = {
     stat.S_IFBLK: "a device",
 }
 
+_TOO_LONG = "too long a name"
+_LONGEST = 225  # bytes in a name: rows are kept beside a result under it with an ending
+
 
 def node(path: Path) -> str:
     """Return what stands in the place of a file, such as "a device"; nothing where all is well."""
     try:
         kind = stat.S_IFMT(path.stat().st_mode)
-    except OSError:  # a link that leads in a circle exists for nobody who follows it
+    except OSError as error:
+        if error.errno == ENAMETOOLONG:
+            return _TOO_LONG
+        # a link that leads in a circle exists for nobody who follows it
         return "a link that leads nowhere" if Path(os.path.realpath(path)).is_symlink() else ""
     return "" if kind == stat.S_IFREG else _KINDS[kind]
 
@@ -44,7 +51,10 @@ def file_behind(path: Path) -> Path:
     refuse_standard_output(path)
     match node(path):
         case "":
-            return Path(os.path.realpath(path)) if path.is_symlink() else path
+            file = Path(os.path.realpath(path)) if path.is_symlink() else path
+            if len(os.fsencode(file.name)) > _LONGEST:
+                raise InputError(f"{path}: is {_TOO_LONG}; at most {_LONGEST} bytes")
+            return file
         case "a folder":
             raise InputError(f"{path}: is a folder; give the name of a file in it")
         case what:

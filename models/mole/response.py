@@ -346,7 +346,7 @@ def follow_other(
 ) -> None:
     """Follow moles whose motion does not repeat through batches of control periods.
 
-    Where the exponent cannot be told from zero, a longer look follows and replaces the one before.
+    Where the exponent is indistinguishable from zero, a longer look replaces the one before.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """What a motion that does not repeat is: chaotic, quasi-periodic, or undecided.
 
 The largest Lyapunov exponent decides, with its standard error. Chaos needs an exponent that is
-positive, quasi-periodicity evidence of its own; an exponent that cannot be told from zero is
+positive, quasi-periodicity evidence of its own; an exponent indistinguishable from zero is
 neither. Where control and mains have no common period, motion driven by both follows their phases
 if neighbours come together: the exponent is negative. Where they have one, such motion is still
 settling to something that repeats. A motion with a frequency of its own has an exponent of zero,

@@ -20,6 +20,7 @@ from models.vibrator.synchronous import Known, Machines, describe, search
 
 LAST = 1.0  # [s]
 STEPS = 12  # in a turn at synchronous speed, unless the machine is stiff
+_CLOSELY = 48  # in a turn of the last second, whose extremes are those of the steps
 NEAR = 0.03  # of the expected disphasing angle: the same motion [rad]
 _LOCKED = 0.2  # range of the disphasing angle below which motors are locked [rad]
 _LONGEST = 1 << 20  # steps
@@ -92,7 +93,7 @@ def run_last_second(
     """
     part, state, rows = live.machines, live.state, live.rows
     turn = 2 * np.pi / part.synchronous_speed.max(axis=1)
-    per_turn = settings.steps_per_turn or STEPS
+    per_turn = settings.steps_per_turn or _CLOSELY
     needed = LAST * np.maximum(per_turn / turn, part.fastest / lanes.STABLE)
     part_of_two, power = np.frexp(np.minimum(needed, _LONGEST))
     steps = 2 ** (power - (part_of_two == 0.5)).astype(np.int64)

@@ -80,6 +80,40 @@ def test_files_beside_a_model_count_where_they_are_imported(folder, monkeypatch)
     assert anew("alone:MODEL") != before
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "f = importlib.import_module('plant.hidden')",
+        "f = importlib.import_module('.hidden', __package__)",
+        "f = import_module(name)",
+        "f = __import__('plant.hidden')",
+    ],
+)
+def test_a_module_imported_by_a_call_counts(plant, folder, line):
+    (folder / "plant" / "laws.py").write_text(f"{line}\n")
+    (folder / "plant" / "hidden.py").write_text("a = 1\n")
+    before = plant()
+    (folder / "plant" / "hidden.py").write_text("a = 2\n")
+    assert plant() != before
+
+
+@pytest.mark.parametrize("name", ["tools.py", "tools/__init__.py", "tools/deep/one.py"])
+def test_sources_in_another_folder_count_unless_installed(folder, monkeypatch, name):
+    def told(where):
+        monkeypatch.syspath_prepend(where)
+        (where / name).parent.mkdir(parents=True, exist_ok=True)
+        (where / name).write_text("a = 1\n")
+        before = anew("alone:MODEL")
+        (where / name).write_text("a = 2\n")
+        return before != anew("alone:MODEL")
+
+    monkeypatch.syspath_prepend(folder / "project")
+    (folder / "project").mkdir()
+    (folder / "project" / "alone.py").write_text("import tools\nfrom tools.deep import one\n")
+    assert told(folder / "elsewhere")
+    assert not told(folder / "site-packages")
+
+
 def test_a_model_in_the_working_folder_has_a_code_at_once(folder, monkeypatch):
     """As in ``uq verify``, which asks for it before the model is imported."""
     monkeypatch.setattr(sys, "path", [entry for entry in sys.path if entry])

@@ -21,6 +21,16 @@ with compilation(lambda: heard.append("began"), lambda: heard.append("ended")):
 numba.njit(lambda x: x)(1)
 assert heard == ["began", "ended"], heard
 """
+LOOKED_FOR = """
+import sys
+from importlib.util import find_spec
+with compilation(lambda: heard.append("began")):
+    heard = []
+    assert find_spec("numba") and "numba" not in sys.modules
+    import numba
+    numba.njit(lambda x: x + 1.0)(1.0)
+assert heard == ["began"], heard
+"""
 NEVER = """
 import sys
 before = list(sys.meta_path)
@@ -32,7 +42,7 @@ numba.njit(lambda x: x)(1)
 """
 
 
-@pytest.mark.parametrize("program", [LATE, f"import numba\n{LATE}", NEVER])
+@pytest.mark.parametrize("program", [LATE, f"import numba\n{LATE}", LOOKED_FOR, NEVER])
 def test_compilation_is_heard_of(program):
     program = f"from uq.compilation import compilation\n{program}"
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)

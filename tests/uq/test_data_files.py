@@ -1,5 +1,7 @@
 """Laws whose values come from a file."""
 
+import os
+
 import pytest
 from computed import as_text, asking, computed
 from input_studies import UNIFORM, inputs_of, tables
@@ -81,6 +83,15 @@ def test_a_file_that_is_no_use_is_one_line(springs, held, said):
         load_study(springs / "study.toml")
     (line,) = caught.value.lines
     assert said in line and line.startswith(f"{springs}/study.toml: [uncertain.x1] ")
+
+
+def test_only_a_file_is_read(springs):
+    (springs / "springs.csv").unlink()
+    for make, what in ((os.mkfifo, "a named pipe"), (os.mkdir, "a folder")):
+        (springs / "springs.csv").unlink(missing_ok=True)
+        make(springs / "springs.csv")
+        with pytest.raises(InputError, match=f'"springs.csv": is {what}, not a file$'):
+            load_study(springs / "study.toml")
 
 
 def test_asking_of_a_result_still_works_with_files(springs):

@@ -204,7 +204,8 @@ def test_quantiles_without_rows_enough_are_left_out_with_a_note():
 
 def test_dependent_inputs_are_refused_by_methods_that_suppose_otherwise(monkeypatch):
     ds = linear(samples=128)
-    monkeypatch.setattr(module, "are_dependent", lambda ds: True)
+    why = "the inputs of this study depend on each other"
+    monkeypatch.setattr(module, "why_dependent", lambda ds: why)
     assert module.methods(ds) == ("delta",)
     assert sensitivities(ds)["method"] == "delta"
     for method in ("rbd-fast", "hdmr"):

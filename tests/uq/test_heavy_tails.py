@@ -14,7 +14,7 @@ from uq.report.indices import sensitivity_of
 
 
 def heavy(sign=1, shift=0.0, samples=64):
-    """Return a work rate whose logarithm is 0.8 y: lognormal, as it were, with sigma = 1.3."""
+    """Return a work rate whose logarithm is 0.8 y: lognormal with sigma = 1.3."""
     ds = linear("saltelli", samples=samples, replicates=4)
     work = sign * np.exp(0.8 * ds["y"].values) + shift
     return asking(with_output(ds, "work", work), outputs=["work"])

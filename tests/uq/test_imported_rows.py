@@ -136,6 +136,28 @@ def test_rows_stated_to_be_independent_feed_what_a_plain_sample_feeds(table):
     assert running["samples"].max() == 100 and running["low"].notna().any()
 
 
+def test_independent_draws_of_the_laws_are_not_called_dependent(table):
+    for design, notes in (({"independent": True}, 0), ({}, 1)):
+        ds = computed(study_from_text(as_text(imported(**design)), folder=table[0]))
+        found = sensitivities(ds, "pawn")["outputs"]["y"]["notes"]
+        assert sum("may depend on each other" in note for note in found) == notes
+        assert not any("inputs are dependent" in note for note in found)
+
+
+def test_methods_for_independent_inputs_take_rows_stated_to_be_such(table):
+    folder, _ = table
+    ds = result_of(folder, independent=True)
+    plain = ds.assign_attrs(design="monte-carlo")
+    assert sensitivities(ds) == sensitivities(plain) and sensitivities(ds)["method"] == "rbd-fast"
+    unsaid = computed(study_from_text(as_text(imported()), folder=folder))
+    with pytest.raises(InputError, match="but imported inputs may depend on each other"):
+        sensitivities(unsaid, "hdmr")
+    asks = imported() | {"analysis": {"sensitivity": ["hdmr"]}}
+    assert "independent = true in [design] states that they are not" in refusal(asks, folder)
+    asks = imported(independent=True) | {"analysis": {"sensitivity": ["hdmr"]}}
+    assert study_from_text(as_text(asks), folder=folder).analysis.sensitivity == ("hdmr",)
+
+
 def test_a_life_of_independent_imported_rows_has_a_curve_and_fits(table):
     ds = result_of(table[0], independent=True)
     values = np.random.default_rng(0).weibull(2.0, 100)

@@ -78,6 +78,18 @@ def test_what_is_no_file_is_refused(uq, result, folder, make):
         assert state(folder) == before
 
 
+@pytest.mark.parametrize("length", [230, 300])
+def test_a_name_too_long_is_refused(uq, result, folder, length):
+    before, name = state(folder), length * "n"
+    for line in LINES.split("\n")[1:-1]:
+        ended = uq(*line.replace("node", name).split())
+        assert (ended.code, ended.out) == (2, ""), line
+        assert ended.err.startswith(f"{name}: ") and ended.err.count("\n") == 1, line
+        said = ended.err.removeprefix(f"{name}: ")
+        assert said.startswith("is too long a name") or (length == 230 and "no such" in said), line
+        assert state(folder) == before
+
+
 def test_basins_and_figures_refuse_too(uq, result, folder):
     what = device(folder / "node")
     axes = {"x1": (0.0, 1.0, 2)}

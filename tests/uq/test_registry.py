@@ -1,10 +1,13 @@
 import sys
+from dataclasses import replace
 from importlib.metadata import EntryPoint
+from typing import Annotated, NamedTuple
 
 import pytest
 
+from models import analytic
 from models.analytic import LINEAR
-from uq.contract import Model
+from uq.contract import Model, Parameter
 from uq.errors import InputError
 from uq.study import registry
 from uq.study.registry import find_model, model_names
@@ -63,3 +66,29 @@ def test_a_broken_model_is_one_line_and_leaves_the_others_alone(tmp_path, monkey
     assert "broken" in model_names()
     assert "SystemExit: no licence found" in message("broken")
     assert isinstance(find_model("linear"), Model)
+
+
+class Undeclared(NamedTuple):
+    x1: float = 0.0
+
+
+class WithoutNominal(NamedTuple):
+    x1: Annotated[float, Parameter("x_1", "1", "input", (0.0, 1.0), "made up")]
+
+
+class NotADataclass:
+    pass
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"parameters": Undeclared}, "Undeclared.x1 is declared without a Parameter"),
+        ({"parameters": WithoutNominal}, "parameter 'x1' has no nominal value"),
+        ({"settings": NotADataclass}, "must be called with a dataclass"),
+    ],
+)
+def test_a_model_that_is_not_declared_is_refused(monkeypatch, change, said):
+    monkeypatch.setattr(analytic, "ODD", replace(LINEAR, **change), raising=False)
+    with pytest.raises(InputError, match=said):
+        find_model("models.analytic:ODD")

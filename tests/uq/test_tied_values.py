@@ -165,6 +165,19 @@ def test_hdmr_takes_few_values_at_the_degree_that_they_allow():
     assert "polynomials of degree 2 " in indices_.notes[0]
 
 
+@pytest.mark.parametrize(
+    "labels", [[0.0, 1.0, 2.0, 3.0], [1.0, 3.0, 0.0, 2.0], [0.0, 9.0, 1.0, 10.0]]
+)
+def test_hdmr_of_a_choice_does_not_depend_on_what_its_values_are_called(labels):
+    rng = np.random.default_rng(6)
+    x1, choice = rng.random(N), rng.integers(0, 4, N)
+    moved = np.array([0.0, 2.0, -1.0, 0.5])[choice]
+    found, indices_ = estimated("hdmr", moved + 3 * x1, x1=x1, x2=np.array(labels)[choice])
+    share = moved.var() / (moved.var() + 0.75)
+    assert [found["x1"], found["x2"]] == pytest.approx([1 - share, share], abs=0.03)
+    assert "polynomials of degree" in indices_.notes[0]
+
+
 def test_hdmr_says_which_input_keeps_it_from_a_higher_degree():
     binary, x1, _ = rows(0.5)
     with pytest.raises(RefusedError, match="x2 has 2 values, which allow no higher degree than 1"):

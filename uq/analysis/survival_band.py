@@ -11,8 +11,8 @@ DRAWS = 4000
 POINTS = 500
 """Times at which they are drawn, spread evenly over the ends."""
 
-FEW_ENDS = 2
-"""With few ends the limiting law is too narrow: measured, by 2 over their number."""
+FEW_ENDS = 0.35
+"""The limiting law is too narrow: measured, by about this over the root of the number of ends."""
 
 AT_RISK = 10
 """The band ends where fewer rows are at risk: the limiting law says little of so few."""
@@ -80,7 +80,7 @@ def simultaneous_band(
     relative = rows * (of_share**2 + (of_among * deviation) ** 2) / share**2
     weight = share * (1 + relative)
     largest = _largest(of_share, of_among, deviation, weight, known)
-    half = (1 + FEW_ENDS / ended) * largest * weight
+    half = (1 + FEW_ENDS / np.sqrt(ended)) * largest * weight
     return _within(share, half, known)
 
 

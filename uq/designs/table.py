@@ -249,7 +249,7 @@ DESIGNS = {
     "imported": Design(
         "the rows of a CSV or netCDF file, in the parameters' units",
         None,
-        FOR_DEPENDENT_INPUTS,
+        _GIVEN_DATA,
         append_only=False,
     ),
 }

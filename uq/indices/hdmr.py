@@ -16,7 +16,7 @@ MIN_ROWS = 300
 EXPLAINED = 0.8
 """An expansion that explains less of rows it has not seen says too little about the output."""
 
-_DEGREES = (2, 4, 6, 8)  # 1 where an input has two values only
+_DEGREES = (2, 4, 6, 8)  # and what an input of few values allows, which tells all of them apart
 _ENOUGH = 0.99
 _LEAST_VALUES = 10
 _MOST_ROWS = 2048
@@ -131,7 +131,7 @@ def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
         )
     if fewest > max(_DEGREES):
         return _DEGREES, ""
-    allowed = tuple(d for d in _DEGREES if d < fewest) or (1,)
+    allowed = (*(d for d in _DEGREES if d < fewest - 1), fewest - 1)
     return (
         allowed,
         f" ({name} has {fewest} values, which allow no higher degree than {allowed[-1]})",

@@ -31,10 +31,14 @@ def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
     }
 
 
-def are_dependent(ds: xr.Dataset) -> bool:
-    """Whether the study of a result states rank correlations, or its rows were imported."""
+def why_dependent(ds: xr.Dataset) -> str:
+    """Return a clause that says why inputs cannot be taken for independent, or ""."""
     study = read_study_text(ds.attrs["study"], "study of this result")
-    return study.dependence is not None or study.design.method == "imported"
+    if study.dependence is not None:
+        return "the inputs of this study depend on each other"
+    if study.design.method == "imported" and not study.design.independent:
+        return "imported inputs may depend on each other"
+    return ""
 
 
 def notes_on_inputs(ds: xr.Dataset) -> list[str]:
@@ -46,6 +50,6 @@ def notes_on_inputs(ds: xr.Dataset) -> list[str]:
             notes.append(f"{name} equals {entry.equals}: the index of {entry.equals} is of both")
         elif entry.times is not None:
             notes.append(f"{name} is {entry.times} times a factor: its index is of the factor")
-    if are_dependent(ds):
-        notes.append("inputs are dependent: an input may owe its index to another")
+    if why := why_dependent(ds):
+        notes.append(f"{why}: an input may owe its index to another")
     return notes

@@ -13,7 +13,7 @@ from uq.indices.fast import curves, fast_indices
 from uq.indices.few_rows import few_hits
 from uq.indices.given_data import given_data_indices
 from uq.indices.groups import whole_groups
-from uq.indices.independent_inputs import are_dependent, independent_inputs, notes_on_inputs
+from uq.indices.independent_inputs import independent_inputs, notes_on_inputs, why_dependent
 from uq.indices.morris import morris_indices, trajectories
 from uq.indices.shapley import paths, shapley_indices
 from uq.indices.sobol import crossed, sobol_indices
@@ -71,7 +71,7 @@ def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
 
     Of dependent inputs, one that does not suppose them to be independent.
     """
-    dependent = are_dependent(ds) if dependent is None else dependent
+    dependent = bool(why_dependent(ds)) if dependent is None else dependent
     feeds = DESIGNS[ds.attrs["design"]].feeds_with(dependent)
     asked = analysis_of(ds).sensitivity
     return tuple(name for name in asked if name in feeds) or feeds[:1] or asked
@@ -219,13 +219,7 @@ class _Found(NamedTuple):
 def _estimate(
     ds: xr.Dataset, method: str | None, output: str | Sequence[str] | None, within: bool = False
 ) -> tuple[str, list[_Found]]:
-    why = (
-        "within a regime the inputs depend on each other"
-        if within
-        else "the inputs of this study depend on each other"
-        if are_dependent(ds)
-        else ""
-    )
+    why = "within a regime the inputs depend on each other" if within else why_dependent(ds)
     method = method or [*methods(ds, bool(why)), *DESIGNS[ds.attrs["design"]].feeds][0]
     _check_method(ds, method, why)
     asked = analysis_of(ds).quantiles

@@ -69,7 +69,7 @@ def steps(ds: xr.Dataset) -> Steps:
     if not sound:
         raise InputError(
             f"the rows are not those of its design as '{ds.attrs['design']}' is drawn here, so the"
-            " effect of an input cannot be told: run the study again"
+            " effect of an input cannot be determined: run the study again"
         )
     return Steps(order, parameters, direction)
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.literals import key
+from uq.places import node
 
 MAX_NUMBERS = 1_000_000
 """Numbers in a column: they become part of every result."""
@@ -122,6 +123,8 @@ def _read(folder: Path | None, file: str, column: str) -> NDArray[np.float64]:
     if folder is None:
         raise ValueError("the text of this study does not hold the file's numbers")
     path = folder / file
+    if what := node(path):
+        raise ValueError(f"is {what}, not a file")
     if not path.is_file():
         names = [entry.name for entry in path.parent.glob("*")] if path.parent.is_dir() else []
         raise ValueError(f"no such file in {folder.absolute()}{nearest(path.name, names)}")

@@ -57,9 +57,9 @@ def write_report(result: str | Path, path: str | Path) -> None:
 
     result, path = Path(result), Path(path)
     ds = open_result(result)
+    check_target(path, 0)
     if path.exists() and path.samefile(result):
         raise InputError(f"{path}: is the result itself; give the report another name")
-    check_target(path, 0)
     text = page(ds, result.name)
     with whole(path) as temporary:
         temporary.write_text(text, encoding="utf-8")

@@ -7,6 +7,7 @@ dimensions), one ``<name>_censored`` beside each lifetime that can be censored, 
 depends on clock, host, chunks or workers.
 """
 
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -172,7 +173,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     """
     path = Path(path)
     if what := node(path):
-        inside = _others(path / "_") if path.is_dir() else ""
+        inside = _others(path / "_") if os.path.isdir(path) else ""
         raise InputError(f"{path}: is {what}, not a result{inside}; {remedy}")
     if not path.exists():
         raise InputError(f"{path}: no such file{_others(path)}; {remedy}")

@@ -58,8 +58,9 @@ def study_of(path: Path, model: str | None = None) -> Study:
 
 def _recorded(path: Path) -> tuple[str, str, str, int]:
     """Return identity, text, version of the model and samples of the study of a result."""
+    folder = folder_of(path)
     if not path.is_file():
-        runs = [run for run in history(folder_of(path)) if isinstance(run, RunRecord)]
+        runs = [run for run in history(folder) if isinstance(run, RunRecord)]
         if runs:
             return runs[-1].identity, runs[-1].study, runs[-1].model_version, runs[-1].samples
     attrs = results.open_result(path).attrs

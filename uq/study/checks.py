@@ -138,15 +138,22 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
             f"needs independent rows, and those of '{method}' are not; use method = {able}",
             analysis["twin"],
         )
-    dependent = bool(tables["dependence"])
+    unsaid = design.draw is None and not stated
+    dependent = bool(tables["dependence"]) or unsaid
     if dependent and not design.feeds_with(dependent):
         return  # told at the design
     for name in analysis.get("sensitivity", ()):
         if dependent and name in design.feeds and name not in design.feeds_with(dependent):
+            why = (
+                "imported rows may be dependent (independent = true in [design] states that they"
+                " are not)"
+                if unsaid
+                else "[dependence] says they are not"
+            )
             yield Fault(
                 ("analysis", "sensitivity"),
-                "supposes independent inputs, and [dependence] says they are not; those that do not"
-                f" are {_names(design.feeds_with(dependent))}",
+                f"supposes independent inputs, and {why}; those that do not are"
+                f" {_names(design.feeds_with(dependent))}",
                 name,
             )
         elif name not in design.feeds:

@@ -10,17 +10,13 @@ import sys
 import tempfile
 from collections.abc import Callable
 from functools import cache
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any, Self
 
 from platformdirs import user_cache_path
 
 from uq.compilation import when_imported
-from uq.study.sources import digest, is_installed, signature, sources_of
-
-_DISTRIBUTION = "vibrolife"
-
+from uq.study.sources import DISTRIBUTION, digest, is_installed, own_packages, signature, sources_of
 
 _models: set[str] = set()
 
@@ -66,7 +62,7 @@ class SourcesLocator:
         import numba
 
         config: Any = numba.config
-        base = config.CACHE_DIR or str(user_cache_path(_DISTRIBUTION, appauthor=False) / "numba")
+        base = config.CACHE_DIR or str(user_cache_path(DISTRIBUTION, appauthor=False) / "numba")
         self._path = Path(base) / key_of(module) / module
         self._line = str(function.__code__.co_firstlineno)
 
@@ -85,7 +81,7 @@ class SourcesLocator:
         try:
             found.ensure_cache_path()
         except OSError:
-            name = f"{_DISTRIBUTION}-numba-{os.getuid()}"
+            name = f"{DISTRIBUTION}-numba-{os.getuid()}"
             found._path = Path(tempfile.gettempdir(), name, *found._path.parts[-2:])
             found.ensure_cache_path()
         return found
@@ -122,11 +118,3 @@ def key_of(module: str) -> str:
     for package in sorted(sources.others):
         whole.update(repr(signature(package)).encode())
     return whole.hexdigest()[:16]
-
-
-@cache
-def own_packages() -> set[str]:
-    """Return the packages of our own models, which see to their compiled code themselves."""
-    points = entry_points(group="vibrolife.models")
-    names = ((point.dist.name if point.dist else "", point.value) for point in points)
-    return {value.partition(".")[0] for name, value in names if name == _DISTRIBUTION}

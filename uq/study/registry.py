@@ -88,4 +88,20 @@ def _load(point: EntryPoint, label: str) -> Model:
         raise InputError(
             f"{label}: {point.value} is a {type(found).__name__}, not a uq.contract.Model"
         )
+    _check(found, label)
     return found
+
+
+def _check(model: Model, label: str) -> None:
+    """Refuse a model whose parameters or settings are not declared."""
+    try:
+        for name in model.parameter_names:
+            model.parameter(name)
+        for name in model.setting_names:
+            model.setting(name)
+        missing = set(model.parameter_names) - set(model.nominal)
+        model.settings()
+    except (TypeError, AttributeError, NameError) as error:
+        raise InputError(f"{label}: {error}") from None
+    if missing:
+        raise InputError(f"{label}: parameter '{min(missing)}' has no nominal value")

@@ -1,7 +1,7 @@
 """The source files that a module of a model consists of: its own, and what it imports.
 
-That is its package, and what it imports beside that, in the same folder. What is installed in other
-packages has a version; `uq` itself is no part of any model.
+That is its package, and what it imports of packages that are not installed, wherever they lie. What
+is installed in other packages has a version; the platform itself is no part of any model.
 """
 
 import ast
@@ -11,12 +11,16 @@ import sys
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from importlib.machinery import EXTENSION_SUFFIXES
+from importlib.metadata import entry_points
 from importlib.util import find_spec, resolve_name
 from pathlib import Path
 from typing import NamedTuple
 
+DISTRIBUTION = "vibrolife"
 _INSTALLED = ("site-packages", "dist-packages")
 _PLATFORM = __name__.partition(".")[0]
+_COMPUTED = "*"  # a module whose name is known when the import is carried out
+_IMPORTERS = ("import_module", "__import__")
 _FILES = ("/__init__.py", ".py", *EXTENSION_SUFFIXES)
 
 
@@ -58,16 +62,19 @@ def sources_of(module: str) -> Sources:
         name = todo.pop()
         seen.add(name)
         first = name.partition(".")[0]
-        if first != package and not (beside and _is_module(root, first)):
+        home = root if first == package or (beside and _is_module(root, first)) else _edited(first)
+        if home is None:
             others.add(first)
             continue
         for ending in _FILES:
-            file = Path(f"{root.joinpath(*name.split('.'))}{ending}")
+            file = Path(f"{home.joinpath(*name.split('.'))}{ending}")
             if name not in found and file.is_file():
                 found[name] = file.read_bytes()
                 above = name.rpartition(".")[0]
                 within = name if ending == _FILES[0] else above
-                inside = _imported(found[name], within) if ending.endswith(".py") else ()
+                inside = set(_imported(found[name], within)) if ending.endswith(".py") else set()
+                if _COMPUTED in inside:
+                    inside |= _modules(home, first)
                 todo |= {above or name, *inside} - seen
         todo = {name for name in todo if name.partition(".")[0] != _PLATFORM}
     return Sources(found, root, others)
@@ -123,6 +130,14 @@ def is_installed(package: str) -> bool:
     return root is None or root.name in _INSTALLED
 
 
+@cache
+def own_packages() -> set[str]:
+    """Return the packages of our own models, which see to their compiled code themselves."""
+    points = entry_points(group="vibrolife.models")
+    names = ((point.dist.name if point.dist else "", point.value) for point in points)
+    return {value.partition(".")[0] for name, value in names if name == DISTRIBUTION}
+
+
 def _root(package: str) -> Path | None:
     """Return the folder in which a package lies, or a module that is a file."""
     try:
@@ -136,6 +151,17 @@ def _root(package: str) -> Path | None:
     return Path(spec.origin).parent if spec.origin else None
 
 
+def _edited(package: str) -> Path | None:
+    """Return the folder of a package that somebody may be editing; None for all others."""
+    return None if package in own_packages() or is_installed(package) else _root(package)
+
+
+def _modules(root: Path, package: str) -> set[str]:
+    """Return all modules of a package, or of a module that is a file."""
+    files = [file.relative_to(root).with_suffix("") for file in (root / package).rglob("*.py")]
+    return {".".join(file.parts).removesuffix(".__init__") for file in files}
+
+
 def _is_module(root: Path, name: str) -> bool:
     return any(os.path.isfile(f"{root / name}{ending}") for ending in _FILES)
 
@@ -145,7 +171,7 @@ def _imported(source: bytes, within: str) -> tuple[str, ...]:
     """Return the modules that a source imports anywhere, and names that might be some."""
     try:
         return tuple(_imports(source, within))
-    except (ImportError, SyntaxError, ValueError):  # whoever imports it will be told
+    except (ImportError, SyntaxError, ValueError):  # reported by whoever imports it
         return ()
 
 
@@ -156,3 +182,10 @@ def _imports(source: bytes, within: str) -> Iterator[str]:
         elif isinstance(node, ast.ImportFrom) and (within or not node.level):
             base = resolve_name("." * node.level + (node.module or ""), within)
             yield from (base, *(f"{base}.{alias.name}" for alias in node.names))
+        elif isinstance(node, ast.Call) and _name(node.func) in _IMPORTERS and node.args:
+            name = getattr(node.args[0], "value", None)
+            yield resolve_name(name, within) if isinstance(name, str) else _COMPUTED
+
+
+def _name(function: ast.expr) -> str:
+    return getattr(function, "attr", getattr(function, "id", ""))

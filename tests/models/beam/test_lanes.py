@@ -224,7 +224,7 @@ print(repr(np.concatenate([record.work.ravel(), record.strobe.ravel(), gaps.rave
         )
         results.append(np.array(eval(done.stdout)))
     assert results[0].max() > 0.1
-    assert np.allclose(results[0], results[1], rtol=1e-8, atol=1e-10)
+    np.testing.assert_array_equal(results[0], results[1])
 
 
 def test_motion_that_has_died_out_is_zero_and_not_next_to_it():

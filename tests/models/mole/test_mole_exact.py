@@ -288,4 +288,4 @@ def test_compiled_code_is_kept_on_disk_and_agrees_with_plain_python():
         )
         numbers, missed = done.stdout.rsplit(maxsplit=1)
         assert missed == "0"
-        np.testing.assert_allclose(eval(numbers), expected, rtol=1e-10, atol=1e-12)
+        np.testing.assert_array_equal(eval(numbers), expected)

@@ -98,7 +98,7 @@ def test_what_repeats_is_still_periodic():
 
 
 def test_what_settles_slowly_is_given_the_time():
-    """Over 200 control periods its exponent, -0.04 1/s, cannot be told from zero."""
+    """Over 200 control periods its exponent, -0.04 1/s, is indistinguishable from zero."""
     start = {"initial_displacement": -0.0408007, "initial_velocity": -1.29148}
     slow = Params(**start, supply_phase=2.397224)
     o = compute(slow)

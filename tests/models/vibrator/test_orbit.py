@@ -233,4 +233,4 @@ def test_plain_python_agrees_with_compiled_code():
         )
         results.append(np.array(eval(done.stdout)))
     assert len(results[0]) == 23 and results[0][0]
-    np.testing.assert_allclose(results[1], results[0], rtol=1e-9, atol=1e-13)
+    np.testing.assert_array_equal(results[1], results[0])

@@ -160,6 +160,15 @@ def test_the_step_of_the_start_does_not_matter():
     assert np.allclose(coarse.max_excursion, fine.max_excursion, rtol=1e-3)
 
 
+def test_amplitudes_of_unlocked_motors_are_those_between_the_steps():
+    apart = fleet(8, synchronous_speed_1=np.linspace(147, 152, 8))
+    coarse, _ = outcomes(apart, run_up=6.0)
+    fine, _ = outcomes(apart, run_up=6.0, steps_per_turn=200)
+    assert (coarse.regime == ASYNCHRONOUS).all()
+    for name in ("angular_amplitude", "stroke_left", "stroke_right"):
+        np.testing.assert_allclose(getattr(coarse, name), getattr(fine, name), rtol=1e-3)
+
+
 def test_a_run_longer_than_its_budget_is_said_and_censored(monkeypatch):
     monkeypatch.setattr(start, "BUDGET", 4)
     out, status = outcomes(fleet(2, synchronous_speed_1=[157.0, 150.0]), run_up=600.0)
