@@ -52,6 +52,8 @@ def known(entry: Entry, key: str = "value", per: float = 1.0) -> str:
         return number(entry[key] / per)
     if key == "value" and "rows_needed" in entry:
         return f"needs {entry['rows_needed']} rows"
+    if key == "value" and "kaplan_meier" in entry:  # it may lie within the horizon
+        return "-"
     prefix = "" if key == "value" else f"{key}_"
     if entry.get(f"{prefix}never"):
         return "never"

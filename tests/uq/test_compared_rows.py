@@ -105,3 +105,31 @@ def test_identical_rows_are_said_to_be_so_and_have_no_interval_of_no_width(metho
     assert moved["mean"]["difference"]["value"] == pytest.approx(0.5)
     assert moved["mean"]["difference"]["low"] is moved["mean"]["difference"]["high"] is None
     assert "identical" not in moved["mean"]["difference"]
+
+
+def censored_lives(times, censored=True):
+    """Return a result of which every third life is censored, or ends, at some time."""
+    lost = np.arange(200) % 3 == 0
+    values = np.where(lost, times, np.linspace(1, 5, 200))
+    ds = with_output(linear(samples=200), "life", values, "lifetime", lost & censored)
+    return asking(ds, outputs=["life"], thresholds={"life": 4.0})
+
+
+def test_lives_censored_before_a_threshold_can_be_compared():
+    early, late = censored_lives(2.0), censored_lives(3.0)
+    below = comparison(early, late)["outputs"]["life"]["thresholds"]["4.0"]["below"]
+    assert below["a"]["value"] != below["b"]["value"]
+    assert below["difference"]["value"] == pytest.approx(below["b"]["value"] - below["a"]["value"])
+    assert below["difference"]["low"] < below["difference"]["value"] < below["difference"]["high"]
+    same = comparison(early, early)["outputs"]["life"]["thresholds"]["4.0"]["below"]["difference"]
+    assert same == {"value": 0.0, "low": None, "high": None, "identical": True}
+    for pair in ((early, censored_lives(9.0)), (censored_lives(9.0), early)):  # known in one alone
+        below = comparison(*pair)["outputs"]["life"]["thresholds"]["4.0"]["below"]
+        assert below["difference"]["value"] is not None
+
+
+def test_rows_censored_at_other_times_are_not_identical():
+    pair = censored_lives(2.0), censored_lives(3.0)
+    b50 = comparison(*pair)["outputs"]["life"]["b_lives"]["B50"]
+    assert b50["a"]["value"] != b50["b"]["value"] and "identical" not in b50["difference"]
+    assert b50["difference"]["value"] == pytest.approx(b50["b"]["value"] - b50["a"]["value"])

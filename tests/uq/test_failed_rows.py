@@ -6,6 +6,7 @@ from computed import asking, linear, with_output, with_status
 from scipy import stats
 
 import uq
+from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.overview import summary
 from uq.analysis.statistics import summarise
 from uq.intervals import share_interval
@@ -152,3 +153,26 @@ def test_the_table_has_columns_of_the_bounds():
     line = summary(ds).loc["life"]
     assert line["P(>5.0)_failed_low"] < TRUTH < line["P(>5.0)_failed_high"]
     assert line["q0.95_failed_high"] == np.inf and line["B1_failed_low"] == 0
+
+
+def test_bounds_are_never_within_the_interval_where_replicates_scatter_less_with_failed_rows():
+    # One failed row makes up for the one hit that the first replicate has less than the others.
+    ds = linear("sobol", samples=64, replicates=4)
+    hit = np.tile(np.repeat([0.0, 1.0], 32), 4)
+    hit[32] = 0.0
+    ds = with_status(with_output(ds, "life", 2.0 - hit, "lifetime"), [32], 2)
+    ds["life"][32] = np.nan
+    entry = summarise(asking(ds, thresholds={"life": 1.5}))["outputs"]["life"]
+    for side in entry["thresholds"]["1.5"].values():
+        if isinstance(side, dict):
+            assert side["failed_low"] <= side["low"] and side["high"] <= side["failed_high"]
+    curve = uq.survival(ds, "life")
+    assert not (curve["failed_low"] > curve["low"]).any()
+    assert not (curve["failed_high"] < curve["high"]).any()
+    hits, failed = hit == 1.0, np.arange(256) == 32
+    of = np.repeat(np.arange(4), 64)
+    bounds, plain = (
+        failed_share_bounds(hits, failed, of),
+        share_interval(hits[~failed], of[~failed]),
+    )
+    assert bounds["failed_low"] <= plain.low and plain.high <= bounds["failed_high"]

@@ -76,3 +76,13 @@ def test_rows_that_a_variance_rests_on():
     assert effective_rows(rng.standard_normal(30_000)) == pytest.approx(10_000, rel=0.05)
     event = (np.arange(10_000) < 100) - 0.01
     assert effective_rows(event) == pytest.approx(100, rel=0.05)
+
+
+@pytest.mark.parametrize(("hits", "refused"), [(1, True), (4, True), (40, False)])
+@pytest.mark.parametrize("values", [(0.0, 1.0), (-3.0, 7.0)])
+def test_an_output_of_two_values_is_an_event(hits, refused, values):
+    ds = linear("saltelli", samples=64, replicates=2)
+    some = ds["x1"].values < hits / 128
+    found = sensitivities(with_output(ds, "hit", np.where(some, values[1], values[0])), "sobol")
+    (told,) = [one for name, one in found["outputs"].items() if "hit" in name]
+    assert ("needed for an index" in told.get("refused", "")) is refused

@@ -10,6 +10,7 @@ from uq.analysis.location_scale import FAMILIES, anderson_darling, fit
 from uq.analysis.statistics import summarise
 from uq.errors import InputError
 from uq.intervals import rows_needed
+from uq.wording import known
 
 WEIBULL = stats.weibull_min(1.7, scale=3e5)
 LOGNORMAL = stats.lognorm(0.6, scale=2e5)
@@ -141,3 +142,30 @@ def test_rows_that_a_bound_needs_are_those_of_openturns(coverage, confidence):
     for failed in (0, 2):
         expected = ot.Wilks.ComputeSampleSize(coverage, confidence, failed)
         assert rows_needed(coverage, confidence, failed) == expected
+
+
+def test_beside_quantiles_of_censored_rows_stand_those_of_kaplan_and_meier_as_b_lives_are():
+    # Rows are lost from sight all along: B10 has a value, and so must the quantile 0.1 have.
+    life, leaving = sample(WEIBULL, 1000), sample(stats.expon(scale=4e5), 1000, seed=2)
+    ds = lives(np.minimum(life, leaving), leaving < life, quantiles=[0.05, 0.1, 0.5])
+    entry = summarise(ds)["outputs"]["life"]
+    assert entry["quantiles"]["0.1"]["kaplan_meier"] == entry["b_lives"]["B10"]
+    assert entry["quantiles"]["0.5"]["kaplan_meier"] == entry["b_lives"]["B50"]
+    plain = entry["quantiles"]["0.05"]
+    assert plain["value"] is None and plain["censored"] and known(plain) == "-"
+    low = plain["kaplan_meier"]
+    assert low["low"] < WEIBULL.ppf(0.05) < low["high"] and "censoring" in low["assumes"]
+
+
+@pytest.mark.parametrize(
+    ("values", "time", "value", "reason"),
+    [
+        ([1.0, 2.0, 3.0, 4.0], 2.5, 0.0, "no row ended before then"),
+        ([1.0, 2.0, 3.0, 4.0], 9.0, None, "the last row was seen before then"),
+    ],
+)
+def test_a_share_after_kaplan_and_meier_without_interval_has_a_reason(values, time, value, reason):
+    ds = lives(np.array(values), np.ones(4), thresholds={"life": time})
+    entry = summarise(ds)["outputs"]["life"]["thresholds"][repr(time)]["kaplan_meier"]
+    below = {"value": value, "low": None, "high": None, "reason": reason}
+    assert entry["below"] == below

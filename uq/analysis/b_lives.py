@@ -1,5 +1,6 @@
 """Times by which a share of the rows has ended, and shares that have ended by a time."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -17,12 +18,21 @@ ASSUMES = "that censoring says nothing of the life left"
 
 
 def b_lives(element: Element, replicate: Replicates) -> dict[str, dict[str, Any]]:
-    """Estimate B1, B10 and B50 of a lifetime.
+    """Estimate B1, B10 and B50 of a lifetime, as `life_quantiles` does."""
+    return life_quantiles(element, B_LIVES, replicate)
+
+
+def life_quantiles(
+    element: Element, asked: Mapping[str, float], replicate: Replicates
+) -> dict[str, dict[str, Any]]:
+    """Estimate times by which a share of the rows has ended.
 
     Parameters
     ----------
     element : Element
         Of independent rows.
+    asked : dict of str to float
+        Name -> share.
     replicate : ndarray of int, shape (n,), or None
 
     Returns
@@ -39,12 +49,12 @@ def b_lives(element: Element, replicate: Replicates) -> dict[str, dict[str, Any]
        Biometrics 38, 29-41 (1982).
     """
     within = None if replicate is None else replicate[element.present]
-    found = {name: quantile_entry(element, p, within) for name, p in B_LIVES.items()}
+    found = {name: quantile_entry(element, p, within) for name, p in asked.items()}
     if any("censored" in entry for entry in found.values()):
         time = _times(element)
         seen = curve(element, time, replicate)
         first_end = _first(seen["survival"] < 1, time)
-        for name, probability in B_LIVES.items():
+        for name, probability in asked.items():
             passed = {end: _first(seen[end] <= 1 - probability, time) for end in _ENDS}
             if passed["low"] == first_end:  # nothing is known of times before the first end
                 passed["low"] = None
@@ -72,7 +82,7 @@ def ended_by(element: Element, time: float, replicate: Replicates) -> dict[str, 
     -------
     dict
         ``above`` and ``below``, each ``value``, ``low``, ``high``, and ``assumes``; None where the
-        last row was seen before `time`.
+        last row was seen before `time`. Where there is no interval ``reason`` says why.
     """
     times = _times(element)
     seen = curve(element, times, replicate)
@@ -87,7 +97,20 @@ def ended_by(element: Element, time: float, replicate: Replicates) -> dict[str, 
     not_below = share(int(np.searchsorted(times, time, side="left")) - 1)
     value, low, high = (not_below[name] for name in ("value", "high", "low"))
     below = {"value": _rest(value), "low": _rest(low), "high": _rest(high)}
-    return {"above": above, "below": below, "assumes": ASSUMES}
+    sides: dict[str, dict[str, Any]] = {"above": above, "below": below}
+    for side, entry in sides.items():
+        if entry["low"] is None and entry["high"] is None:
+            sides[side] = entry | {"reason": _why_none(entry["value"], len(times))}
+    return sides | {"assumes": ASSUMES}
+
+
+def _why_none(value: float | None, seen: int) -> str:
+    """Say why there is no interval of a share after Kaplan and Meier."""
+    if not seen:
+        return "there are no rows"
+    if value is None:
+        return "the last row was seen before then"
+    return "no row ended before then" if value in (0.0, 1.0) else "nothing shows its scatter"
 
 
 def quantile_entry(element: Element, probability: float, replicate: Replicates) -> dict[str, Any]:

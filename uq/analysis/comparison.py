@@ -205,12 +205,13 @@ def _compared(pair: Pair, elements: list[Element], entries: list[Entry]) -> Entr
         Sample(element.present, np.where(element.censored, np.inf, element.values))
         for element in elements
     ]
+    whole = _whole(elements)
     means = [{"value": entry["mean"], **entry["mean_interval"]} for entry in entries]
 
     def each(part: str, estimator_of: Callable[[str], Estimator]) -> Entry:
         return {
             key: _estimate(
-                pair, estimator_of(key), present, [entry[part][key] for entry in entries]
+                pair, estimator_of(key), present, [entry[part][key] for entry in entries], whole
             )
             for key in entries[0][part]
         }
@@ -264,7 +265,9 @@ def _sides(pair: Pair, elements: list[Element], threshold: float, entries: list[
             for element, sides in zip(elements, events, strict=True)
             if sides is not None
         ]
-        found[side] = _estimate(pair, SHARE, samples, [_side(entry, side) for entry in entries])
+        told = [_side(entry, side) for entry in entries]
+        rows = _whole(elements) if len(samples) < len(elements) else samples
+        found[side] = _estimate(pair, SHARE, samples, told, rows)
     return found
 
 
@@ -276,11 +279,24 @@ def _side(entry: Entry, side: str) -> Entry:
     return found[side] | {"assumes": found["assumes"]}
 
 
+def _whole(elements: list[Element]) -> list[Sample]:
+    """Return all that is known of each row: its value, and whether it is only a lower bound."""
+    return [
+        Sample(element.present, np.column_stack([element.values, element.censored]))
+        for element in elements
+    ]
+
+
 def _estimate(
-    pair: Pair, estimator: Estimator, samples: list[Sample], entries: list[Entry]
+    pair: Pair,
+    estimator: Estimator,
+    samples: list[Sample],
+    entries: list[Entry],
+    rows: list[Sample] | None = None,
 ) -> Entry:
+    """Compare two estimates; `rows` say whether the pairs are identical, if not the samples."""
     known = [_known(entry) for entry in entries]
-    if pair.identical(samples) and not np.isnan(known[0].value):
+    if pair.identical(samples if rows is None else rows) and not np.isnan(known[0].value):
         difference = {"value": 0.0, "low": None, "high": None, "identical": True}
         return {**dict(zip("ab", entries, strict=True)), "difference": difference}
     if any(np.isnan(one.value) for one in known):

@@ -10,9 +10,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from uq.intervals import Replicates, share_interval
-from uq.rows.elements import Element, Mask
+from uq.rows.elements import Element, Floats, Mask
 
 Entry = dict[str, Any]
 Described = dict[str, dict[str, Any]]
@@ -57,7 +58,11 @@ def with_failed_bounds(
     lowest, highest = (describe(with_failed_at(element, end)) for end in (least, np.inf))
     for part in ("quantiles", "b_lives"):
         for name, entry in found[part].items():
-            entry |= _ends(lowest[part][name], highest[part][name], entry, is_life)
+            low, high = lowest[part][name], highest[part][name]
+            entry |= _ends(low, high, entry, is_life)
+            if all("kaplan_meier" in one for one in (entry, low, high)):
+                guess, low, high = (one["kaplan_meier"] for one in (entry, low, high))
+                guess |= _ends(low, high, guess, is_life)
     if element.kind == "angle":  # thresholds are of the magnitude
         lowest = describe(with_failed_at(element, 0.0))
     for name, entry in found["thresholds"].items():
@@ -77,13 +82,25 @@ def _ends(lowest: Entry, highest: Entry, plain: Entry, is_life: bool = False) ->
     """Return both bounds; of an estimate without interval the estimates themselves."""
     alone = plain["low"] is None and plain["high"] is None
     found = {}
-    for key, entry, end in ((LOW, lowest, "low"), (HIGH, highest, "high")):
-        end, reasons = ("value", "") if alone else (end, f"{end}_")
-        found[key] = entry[end]
+    for key, entry, inner in ((LOW, lowest, "low"), (HIGH, highest, "high")):
+        # Replicates that agree with the failed rows on one side give no interval there.
+        agreed = entry["value"] is not None and entry["low"] is None and entry["high"] is None
+        end, reasons = ("value", "") if alone or agreed else (inner, f"{inner}_")
+        known = entry[end] is not None and plain[inner] is not None
+        found[key] = float(outer(key, entry[end], plain[inner])) if known else entry[end]
         for reason in ("never", "censored"):
             if is_life and entry.get(f"{reasons}{reason}"):
                 found[f"{key}_{reason}"] = True
     return found
+
+
+def outer(key: str, bound: ArrayLike, end: ArrayLike) -> Floats:
+    """Return the outer one of bounds and ends of plain intervals; NaN where there is no bound.
+
+    Replicates may scatter less with the failed rows on one side than without them.
+    """
+    widest = (np.fmin if key == LOW else np.fmax)(bound, end)
+    return np.where(np.isnan(bound), np.nan, widest)
 
 
 def failed_share_bounds(hits: Mask, failed: Mask, replicate: Replicates) -> Entry:
@@ -103,9 +120,11 @@ def failed_share_bounds(hits: Mask, failed: Mask, replicate: Replicates) -> Entr
     if not failed.any():
         return {}
     ends = {}
+    plain = share_interval(hits[~failed], None if replicate is None else replicate[~failed])
     for key, some, end in ((LOW, hits & ~failed, "low"), (HIGH, hits | failed, "high")):
         bound = getattr(share_interval(some, replicate), end)
-        ends[key] = float(bound if np.isfinite(bound) else some.mean())
+        bound = bound if np.isfinite(bound) else some.mean()
+        ends[key] = float(outer(key, bound, getattr(plain, end)))
     return ends
 
 

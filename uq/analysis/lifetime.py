@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from uq.analysis.failed_rows import HIGH, LOW, with_failed_at
+from uq.analysis.failed_rows import HIGH, LOW, outer, with_failed_at
 from uq.analysis.kaplan_meier import Outliving, outliving
 from uq.analysis.survival_band import simultaneous_band
 from uq.exact_shares import are_few, exact_interval
@@ -68,7 +68,7 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     if any(element.failed.any() for element in chosen):
         meanings |= _WITH_FAILED
         for one, element in zip(curves, chosen, strict=True):
-            one |= _failed_band(element, time, replicate)
+            one |= _failed_band(element, time, replicate, one)
 
     whole = rows[chosen[0].output]
     places = {dim: whole[dim] for dim in whole.dims if dim != "sample"}
@@ -113,13 +113,15 @@ _WITH_FAILED = {
 }
 
 
-def _failed_band(element: Element, time: Floats, replicate: Replicates) -> dict[str, Floats]:
+def _failed_band(
+    element: Element, time: Floats, replicate: Replicates, plain: dict[str, Any]
+) -> dict[str, Floats]:
     """Return the band with the failed rows at worst and at best; NaN where nothing can be said."""
     ends = {}
     for key, life, end in ((LOW, 0.0, "low"), (HIGH, np.inf, "high")):
         found = curve(with_failed_at(element, life), time, replicate)
         alone = np.isnan(found["low"]).all() and np.isnan(found["high"]).all()
-        ends[key] = found["survival" if alone else end]
+        ends[key] = outer(key, found["survival" if alone else end], plain[end])
     return ends
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from uq import intervals
 from uq.analysis.accuracy import accuracy_missed
-from uq.analysis.b_lives import b_lives, ended_by, entry, quantile_entry
+from uq.analysis.b_lives import b_lives, ended_by, entry, life_quantiles, quantile_entry
 from uq.analysis.failed_rows import failed_note, failed_share_bounds, with_failed_bounds
 from uq.analysis.life_fit import fits_of
 from uq.analysis.regime_split import between_share
@@ -160,18 +160,28 @@ def _points(
     element: Element, replicate: Replicates, analysis: AnalysisTable
 ) -> dict[str, dict[str, Any]]:
     """Return the quantiles, B-lives and probabilities of an element."""
-    within = _of(replicate, element.present)
+    asked = {repr(probability): probability for probability in analysis.quantiles}
     return {
-        "quantiles": {
-            repr(probability): quantile_entry(element, probability, within)
-            for probability in analysis.quantiles
-        },
+        "quantiles": _quantiles(element, asked, replicate),
         "thresholds": {
             repr(threshold): _threshold(element, threshold, replicate)
             for threshold in analysis.thresholds.get(element.output, ())
         },
         "b_lives": b_lives(element, replicate) if element.kind == "lifetime" else {},
     }
+
+
+def _quantiles(
+    element: Element, asked: dict[str, float], replicate: Replicates
+) -> dict[str, dict[str, Any]]:
+    """Return quantiles, and beside those that censored rows leave open Kaplan and Meier's."""
+    within = _of(replicate, element.present)
+    found = {name: quantile_entry(element, p, within) for name, p in asked.items()}
+    if element.kind == "lifetime":
+        for name, guess in life_quantiles(element, asked, replicate).items():
+            if "assumes" in guess:
+                found[name]["kaplan_meier"] = guess
+    return found
 
 
 def _moments(element: Element, within: Replicates) -> dict[str, Any]:

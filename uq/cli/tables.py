@@ -82,6 +82,10 @@ def _lines(output: Entry) -> Iterator[Line]:
     for probability, entry in output["quantiles"].items():
         yield line(f"quantile {probability}", entry)
         yield from failed(entry)
+        if guess := entry.get("kaplan_meier"):
+            yield line(f"quantile {probability}, if", guess)
+            yield from failed(guess)
+            yield "", _ASSUMES, "", ""
     for name, entry in output["b_lives"].items():
         yield line(name, entry)
         yield from failed(entry)
@@ -100,6 +104,8 @@ def _lines(output: Entry) -> Iterator[Line]:
             yield "", reason, "", ""
             guess = entry["kaplan_meier"]
             yield line(f"P(< {number(float(threshold))}), if", guess["below"], time=False)
+            if none := guess["below"].get("reason"):
+                yield "", none, "", ""
             yield from failed(guess["below"])
             yield "", _ASSUMES, "", ""
     if split := output.get("between_regimes"):

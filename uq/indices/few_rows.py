@@ -72,7 +72,7 @@ def widened(value: float, interval: Interval, by: float) -> Interval:
 
 
 def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
-    """Return the warning for an event with few hits, or misses.
+    """Return the warning for an event with few hits, or misses; any two values are an event.
 
     Parameters
     ----------
@@ -94,9 +94,11 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
     if not why_no_statistics(ds):
         chosen = np.arange(ds.sizes["sample"])
         values = values[independent_rows(ds.assign(place=("sample", chosen)))["place"].values]
-    hits = values[np.isfinite(values)] > 0
+    known = values[np.isfinite(values)]
+    hits = known > known.min(initial=np.inf)
     rarer = int(min(hits.sum(), (~hits).sum()))
-    if not target.event or not 0 < rarer < ENOUGH_HITS * replicates:
+    two_values = target.event or bool((known[hits] == known.max(initial=-np.inf)).all())
+    if not two_values or not 0 < rarer < ENOUGH_HITS * replicates:
         return ()  # with none the methods refuse themselves
     side = "hits" if rarer == hits.sum() else "misses"
     each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""

@@ -192,6 +192,8 @@ def _thresholds(one: Outcome) -> Iterator[tuple[Cell, ...]]:
         if note:
             sides = entry["kaplan_meier"]
             note += "; after Kaplan and Meier, if censoring says nothing of the life left"
+            if none := sides["below"].get("reason"):
+                note += f"; {none}"
         yield one.label, told, estimate(sides["above"]), estimate(sides["below"]), Cell(note)
 
 
