@@ -28,7 +28,7 @@ SOURCES = {
 }
 every_source = pytest.mark.parametrize("name", SOURCES)
 
-ROOT_OPTIONS = ("--help", "--install-completion", "--show-completion")
+ROOT_OPTIONS = ("--help", "--version", "--install-completion", "--show-completion")
 EXAMPLES = sorted({f"uq.{module}" for module in public._MODULES.values()})
 
 

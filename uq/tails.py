@@ -30,8 +30,11 @@ LARGEST_SHARE = 0.4
 
 FEWEST_ROWS = int(MIN_TAIL / LARGEST_SHARE)
 
-DISTINCT = 0.95
-"""Share of the tail's values that must differ: the law of a lattice or of ties has no k."""
+DISTINCT = 10
+"""Values that a tail must have at least: of fewer the law is a list."""
+
+LUMP = 0.2
+"""Share of a tail that one value may hold: more are rows in a state, and no part of a tail."""
 
 LIGHT = 1 / 3
 """The k that samples of a lognormal law with sigma = 1 show, whose moments all exist."""
@@ -92,8 +95,9 @@ def heavier_tail(values: Floats) -> Tail | None:
         Of the upper or the lower tail, whichever is heavier. A tail is the largest part of the
         rows, 40 % or 1000 at most and then half of it again and again, to which a generalised
         Pareto law fits; k is the estimate of Zhang and Stephens [1]_, drawn towards 1/2 as if by
-        ten more values [2]_, as Pareto-smoothed importance sampling has it. None where no part of
-        20 values or more fits, as with ties, with regimes far apart, or with few rows.
+        ten more values [2]_, as Pareto-smoothed importance sampling has it. Equal values, as of a
+        lattice, are spread halfway to their neighbours. None where no part of 20 values or more
+        fits, as with regimes far apart, few rows, or fewer than 10 different values.
 
     References
     ----------
@@ -133,15 +137,29 @@ def lacks_variance(values: Floats) -> bool:
 def _tail(ascending: Floats, side: str) -> Tail | None:
     size = len(ascending) - 1
     while size >= MIN_TAIL:
-        excess = ascending[-size:] - ascending[-size - 1]
-        if len(np.unique(excess)) >= DISTINCT * size:
-            excess = excess[excess > 0]
+        extreme = _spread(ascending[-size - 1 :])
+        excess = extreme[1:] - extreme[0]
+        counts = np.unique(ascending[-size:], return_counts=True)[1]
+        if len(counts) >= DISTINCT and counts.max() <= LUMP * size and (excess > 0).all():
             shape, scale = generalised_pareto(excess)
             if _distance(excess, shape, scale) <= MISFIT:
                 k, reach = _shrunk(shape, size), 1.96 * _error(shape, size)
                 return Tail(k, k - reach, k + reach, size, side)
         size //= 2
     return None
+
+
+def _spread(ascending: Floats) -> Floats:
+    """Spread equal values evenly, halfway to their neighbours."""
+    values, counts = np.unique(ascending, return_counts=True)
+    if len(values) in (1, len(ascending)):
+        return ascending
+    half = np.diff(values) / 2
+    below, above = np.r_[half[0], half], np.r_[half, half[-1]]
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    share = (np.arange(len(ascending)) - first + 0.5) / np.repeat(counts, counts)
+    low, width = np.repeat(values - below, counts), np.repeat(below + above, counts)
+    return np.where(np.repeat(counts, counts) > 1, low + share * width, ascending)
 
 
 def generalised_pareto(excess: Floats) -> tuple[float, float]:
@@ -160,6 +178,7 @@ def generalised_pareto(excess: Floats) -> tuple[float, float]:
     points = 30 + int(np.sqrt(n))
     quartile = excess[int(n / 4 + 0.5) - 1]
     theta = 1 / excess[-1] + (1 - np.sqrt(points / (np.arange(points) + 0.5))) / (3 * quartile)
+    theta = theta[theta != 0]  # the exponential law itself, of lattices
     shapes = np.log1p(-theta[:, None] * excess).mean(axis=1)
     likelihood = n * (np.log(-theta / shapes) - shapes - 1)
     weights = np.exp(likelihood - likelihood.max())

@@ -15,6 +15,7 @@ LAWS = {
     "lognormal, sigma 1": stats.lognorm(1.0),
 }
 HELD = "mean, held or refused"
+CAUTIONED = "mean, held, refused or with a caution"
 MEANS = [
     *((PARETO[1.5], stats.pareto(1.5), rows) for rows in (200, 1000, 10_000)),
     *((PARETO[0.8], stats.pareto(0.8), rows) for rows in (200, 1000)),
@@ -30,6 +31,8 @@ def means(repetitions):
         for found in _found(law, rows, repetitions):
             refused = "mean_interval" in found.reasons
             _count(tally, "mean", law.mean(), found.mean_interval, refused)
+            open_ = refused or found.caution is not None
+            tally.add(CAUTIONED, 1.0, *_held(law.mean(), found.mean_interval, open_))
         lines += tally.lines()
     return lines
 
@@ -64,8 +67,13 @@ def _found(law, rows, repetitions, replicates=1):
 
 def _count(tally, what, truth, interval, refused):
     tally.add(what, truth, *interval)
-    held = refused or interval.low <= truth <= interval.high
-    tally.add(f"{what}, held or refused", 1.0, 1.0, 2.0 if held else 0.0)
+    tally.add(f"{what}, held or refused", 1.0, *_held(truth, interval, refused))
+
+
+def _held(truth, interval, excused):
+    """Return an interval that holds 1 if the given one holds the truth or is excused."""
+    held = excused or interval.low <= truth <= interval.high
+    return 1.0, 2.0 if held else 0.0
 
 
 LEFT = "given only where the tail looks light, hence to samples that lack their far end"
@@ -75,7 +83,11 @@ RAISED = "conservative: the high end is raised by one more row as far out as the
 SKEWED = ("exponential", "lognormal, sigma 0.5")
 HELD_SD = "sd, held or refused"
 REASONS = {
-    **{(name, rows): {"mean": LEFT, HELD: REFUSED} for name, _, rows in MEANS if "Pareto" in name},
+    **{
+        (name, rows): {"mean": LEFT, HELD: REFUSED, CAUTIONED: REFUSED}
+        for name, _, rows in MEANS
+        if "Pareto" in name
+    },
     (PARETO[1.5], 200): {"mean": LEFT, HELD: FEW},
     **{(name, rows): {"sd": RAISED} for name in LAWS for rows in (64, 125, 200, 1000)},
     **{(name, rows): {"sd": LEFT, HELD_SD: RAISED} for name in SKEWED for rows in (64, 200)},

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from uq.tails import generalised_pareto, heavier_tail
+from uq.tails import generalised_pareto, heavier_tail, lacks_variance
 
 LIGHT = {
     "normal": stats.norm(),
@@ -68,14 +68,35 @@ def test_scale_and_place_do_not_matter():
     [
         np.zeros(1000),
         np.arange(1000) % 7.0,
-        np.floor(stats.pareto(0.8).rvs(1000, random_state=0)),
+        np.where(np.arange(200) % 20 == 0, stats.norm().rvs(200, random_state=0), 0.0),
         stats.pareto(0.8).rvs(49, random_state=0),
         np.array([]),
     ],
-    ids=["constant", "lattice", "counts", "few", "none"],
+    ids=["constant", "few values", "lump", "few rows", "none"],
 )
 def test_no_diagnosis_without_a_tail_of_distinct_values(values):
     assert heavier_tail(values) is None
+
+
+@pytest.mark.parametrize("rows", [200, 1000])
+def test_heavy_tails_of_counts_and_of_what_is_mostly_zero_are_seen(rows):
+    rng = np.random.default_rng(1)
+    counts = [np.floor(stats.pareto(0.8).rvs(rows, random_state=rng)) for _ in range(20)]
+    assert sum(heavier_tail(y).no_variance for y in counts) >= 15
+    zeros = np.where(rng.random(10 * rows) < 0.9, 0.0, rng.pareto(0.9, 10 * rows))
+    assert heavier_tail(zeros).no_variance
+
+
+@pytest.mark.parametrize(
+    "law",
+    [stats.geom(0.05), stats.geom(0.3), stats.poisson(3), stats.poisson(30), stats.randint(0, 50)],
+    ids=["geometric", "steep", "few counts", "many counts", "integers"],
+)
+@pytest.mark.parametrize("rows", [64, 1000])
+def test_light_tails_of_counts_are_not_called_heavy(law, rows):
+    rng = np.random.default_rng(2)
+    for _ in range(40):
+        assert not lacks_variance(law.rvs(rows, random_state=rng).astype(float))
 
 
 def test_a_regime_far_away_is_no_tail():

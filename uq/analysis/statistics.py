@@ -189,7 +189,7 @@ def _moments(element: Element, within: Replicates) -> dict[str, Any]:
     if not len(values) or element.never.any() or element.censored.any():
         nothing = _ends(intervals.UNKNOWN)
         numbers = {"mean": None, "mean_interval": nothing, "sd": None, "sd_interval": nothing}
-        return numbers | {"tail": None, "reasons": {}}
+        return numbers | {"tail": None, "reasons": {}, "caution": None}
     found = moments(values, within)
     return {
         "mean": _plain(found.mean),
@@ -198,6 +198,7 @@ def _moments(element: Element, within: Replicates) -> dict[str, Any]:
         "sd_interval": _ends(found.sd_interval),
         "tail": found.tail and found.tail._asdict(),
         "reasons": found.reasons,
+        "caution": found.caution,
     }
 
 

@@ -53,6 +53,8 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
         grid(_lines(output), header=("", "value", "95 % interval", ""))
         for reason in dict.fromkeys(output["reasons"].values()):
             paragraph(reason, indent=2)
+        if output["caution"]:
+            paragraph(output["caution"], indent=2)
         if (accuracy := output.get("accuracy")) and accuracy["missed"]:
             paragraph(accuracy_not_reached(accuracy), indent=2)
         if fits := output.get("fits"):

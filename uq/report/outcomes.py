@@ -96,7 +96,12 @@ class Outcome:
         """Return the cell of mean or sd, with the reason where its tail forbids one."""
         found = {"value": self.entry[name], **self.entry[f"{name}_interval"]}
         reason = self.entry["reasons"].get(name)
-        return self.cell(found) if reason is None else Cell("none", reason)
+        if reason is not None:
+            return Cell("none", reason)
+        cell = self.cell(found)
+        if name == "mean" and self.entry["caution"]:
+            cell = cell._replace(more=f"{cell.more}; {self.entry['caution']}")
+        return cell
 
 
 def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
