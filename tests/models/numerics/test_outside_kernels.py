@@ -58,6 +58,21 @@ def test_an_edited_helper_takes_effect(tmp_path):
     assert called() == ["10.0", "0"]
 
 
+@pytest.fixture
+def modules_of_its_own():
+    """Forget the modules that a test imports from its folder, before it and after."""
+
+    def forget():
+        for name in list(sys.modules):
+            if name.partition(".")[0] in ("plant", "kern"):
+                del sys.modules[name]
+
+    forget()
+    yield
+    forget()
+
+
+@pytest.mark.usefixtures("modules_of_its_own")
 @pytest.mark.parametrize(
     ("caller", "helper", "counts"),
     [
@@ -74,8 +89,6 @@ def test_a_kernel_is_cached_by_what_it_can_import(tmp_path, monkeypatch, caller,
     written(tmp_path, caller, "def function(x):\n    return x\n")
     file = written(tmp_path, helper, "a = 1\n")
     (tmp_path / "site-packages" / "__init__.py").unlink(missing_ok=True)
-    for name in (caller, caller.partition(".")[0]):
-        sys.modules.pop(name, None)
     function = importlib.import_module(caller).function
     before = jit._folder_of(function)
     file.write_text("a = 2\n")
