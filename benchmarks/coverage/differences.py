@@ -65,5 +65,6 @@ def _truth():
 
 
 FEW_RANKS = "conservative: ranks of few rows are whole numbers; 94 to 98 % from 4,096 rows"
-REASONS = {f"difference of quantile {p}": FEW_RANKS for p in QUANTILES}
+RAISED = "conservative: the ends are moved by one more row as far out as the farthest"
+REASONS = {f"difference of quantile {p}": FEW_RANKS for p in QUANTILES} | {"ratio of sd": RAISED}
 """Quantity -> why its coverage is not 95 %."""
