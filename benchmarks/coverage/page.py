@@ -44,10 +44,11 @@ def page(lines, seconds, missing=()):
         problems.setdefault(line.problem, []).append(line)
     tables = [_table(problem, own) for problem, own in problems.items()]
     ours = [line for line in lines if line.by == OURS and line.given]
-    off = sum(map(_is_off, ours))
+    off = [line.coverage[0] for line in ours if _is_off(line)]
+    more = sum(covered > 0.95 for covered in off)
     summary = (
-        f"{len(ours)} intervals of ours: {len(ours) - off} cover as said, {off} do not, for the"
-        f" reasons given. Counted in {seconds / 60:.0f} minutes of one core.\n"
+        f"{len(ours)} intervals of ours: {len(ours) - len(off)} cover as said, {more} more often,"
+        f" {len(off) - more} less often, for the reasons given. Counted in {seconds / 60:.0f} minutes of one core.\n"
     )
     if missing:
         summary += f"\nNot counted yet: {', '.join(missing)}.\n"
