@@ -48,7 +48,8 @@ def page(lines, seconds, missing=()):
     more = sum(covered > 0.95 for covered in off)
     summary = (
         f"{len(ours)} intervals of ours: {len(ours) - len(off)} cover as said, {more} more often,"
-        f" {len(off) - more} less often, for the reasons given. Counted in {seconds / 60:.0f} minutes of one core.\n"
+        f" {len(off) - more} less often, for the reasons given. Counted in"
+        f" {seconds / 60:.0f} minutes of one core.\n"
     )
     if missing:
         summary += f"\nNot counted yet: {', '.join(missing)}.\n"
