@@ -11,8 +11,9 @@ from models.numerics.blocks import LANES, aligned
 from models.numerics.events import crossing, dip
 from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
-from models.numerics.nystrom import ORDER_5, ORDER_8, STAGES, layout, stepper
+from models.numerics.nystrom import STAGES, layout, stepper
 from models.numerics.sincos import cosine_sine, nearest
+from models.numerics.tableaux import DORMAND_PRINCE_8, TSITOURAS_5
 from models.vibrator.equations.rigid import Rigid, accelerations
 from models.vibrator.equations.system import System
 from models.vibrator.lanes import dynamics
@@ -23,8 +24,8 @@ STATE = 10  # x, y, alpha, psi_1, psi_2 and their rates
 CONSTANTS = len(Rigid._fields)
 _AT = layout(dynamics.DEGREES)
 _SIZE = dynamics.END + STAGES * dynamics.DEGREES * LANES
-_step_5 = stepper(dynamics.DEGREES, dynamics.END, *ORDER_5, dynamics.accelerate)
-_step_8 = stepper(dynamics.DEGREES, dynamics.END, *ORDER_8, dynamics.accelerate)
+_step_5 = stepper(dynamics.DEGREES, dynamics.END, TSITOURAS_5, dynamics.accelerate)
+_step_8 = stepper(dynamics.DEGREES, dynamics.END, DORMAND_PRINCE_8, dynamics.accelerate)
 
 STABLE = 0.8
 """Step times the fastest rate of a machine: what keeps the method stable with room to spare."""
