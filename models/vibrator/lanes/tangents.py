@@ -13,8 +13,9 @@ from models.numerics.jit import inlined, kernel
 from models.numerics.sincos import cosine_sine
 from models.numerics.tableaux import TSITOURAS_5
 from models.numerics.tsit5 import STAGES, combiner, layout
-from models.vibrator.equations.rigid import accelerations, derivatives
-from models.vibrator.lanes.fixed_steps import CONSTANTS, STATE, Array, load, machine, slopes
+from models.vibrator.equations.rigid import accelerations
+from models.vibrator.equations.rigid_derivatives import derivatives
+from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, machine, slopes
 
 ANCHOR = 3  # psi_1
 FREE = [i for i in range(STATE) if i != ANCHOR]
