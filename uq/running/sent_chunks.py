@@ -11,9 +11,9 @@ from uq.errors import InputError, RunError
 from uq.provenance import versions
 from uq.rows.evaluate import Chunk, Fault, lost_rows
 from uq.rows.sampling import Rows
-from uq.rows.work import Work
+from uq.rows.workload import Work
 from uq.running.child import Task
-from uq.running.task import evaluate_rows
+from uq.running.dask_task import evaluate_rows
 
 if TYPE_CHECKING:
     from distributed import Future

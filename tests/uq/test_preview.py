@@ -5,9 +5,9 @@ import pytest
 from computed import UNIFORM, as_text
 
 from uq.rows.evaluate import evaluate
-from uq.rows.glimpse import Glimpse
+from uq.rows.preview import Glimpse
 from uq.rows.sampling import row_block
-from uq.rows.work import work_of
+from uq.rows.workload import work_of
 from uq.study.definition import study_from_text
 
 

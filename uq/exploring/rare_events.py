@@ -10,12 +10,16 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from uq.errors import InputError, nearest
+from uq.exploring.design_points import design_points, drawn_around
+from uq.exploring.evaluator import Evaluator
+from uq.exploring.limit_state import LimitState
+from uq.exploring.rare_event_intervals import (
+    log_scatter_interval,
+    subset_interval,
+    with_failed_inside,
+)
+from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, subset_simulation
 from uq.intervals import Interval, binomial_interval
-from uq.running.design_points import design_points, drawn_around
-from uq.running.evaluator import Evaluator
-from uq.running.limit_state import LimitState
-from uq.running.subset import LEVEL_SHARE, SMALLEST, subset_simulation
-from uq.running.supported import log_scatter_interval, subset_interval, with_failed_inside
 from uq.study.definition import Study, load_study
 
 METHODS = ("subset", "importance")
@@ -80,8 +84,8 @@ def rare_event(
     logarithms. Measured over 300 repetitions with 1000 samples and 8 replicates, they held
     probabilities of 1e-6 to 1e-5 on three problems of 4 to 6 inputs in 94 to 97 % of cases; the
     mean of subset simulation was 4 to 6 % too large. Where replicates never reach the event, the
-    high end is what the rows support (`uq.running.supported.subset_interval`): 8000 independent
-    rows without a hit, 4.6e-4.
+    high end is what the rows support (`uq.exploring.rare_event_intervals.subset_interval`): 8000
+    independent rows without a hit, 4.6e-4.
 
     Examples
     --------

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from uq import store
 from uq.contract import Model
 from uq.errors import InputError
+from uq.exploring.attractors import STANDARD_ERRORS, Compared, attractors
+from uq.exploring.grid import Axis, Grid, grid_of
 from uq.inputs.values import unknown_name
 from uq.rows import results
-from uq.rows.attractors import STANDARD_ERRORS, Compared, attractors
-from uq.rows.grid import Axis, Grid, grid_of
 from uq.rows.sampling import Rows
-from uq.rows.work import Work
+from uq.rows.workload import Work
 from uq.running import runner
 
 

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from uq.rows.evaluate import Chunk, KernelError
 from uq.rows.sampling import Rows
-from uq.rows.work import Work
-from uq.running.flight import Flight
+from uq.rows.workload import Work
 from uq.running.isolation import Evaluate, task_of
+from uq.running.sent_chunks import Flight
 from uq.store import DiskStore, MemoryStore, row_bytes
 
 if TYPE_CHECKING:

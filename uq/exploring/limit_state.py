@@ -10,11 +10,11 @@ from scipy.special import ndtr
 from uq.columns import censored_name, lacking
 from uq.contract import Status
 from uq.errors import InputError, nearest
+from uq.exploring.evaluator import Evaluator
 from uq.inputs.values import unknown_name
 from uq.rows.evaluate import Chunk
 from uq.rows.results import elements
 from uq.rows.sampling import physical, row_seeds
-from uq.running.evaluator import Evaluator
 
 if TYPE_CHECKING:
     from uq.contract import Output

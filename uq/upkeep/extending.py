@@ -13,9 +13,9 @@ from uq.contract import Model
 from uq.errors import InputError
 from uq.inputs.values import read_settings
 from uq.rows import results
-from uq.rows.work import work_of
+from uq.rows.workload import work_of
 from uq.running import runner
-from uq.running.job import Report
+from uq.running.dispatch import Report
 from uq.store import folder_of
 from uq.store.folder import history
 from uq.store.records import RunRecord

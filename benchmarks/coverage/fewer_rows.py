@@ -23,11 +23,11 @@ from benchmarks.coverage.problems import (
 )
 from benchmarks.coverage.tally import Tally
 from uq.analysis.twin import with_twin
+from uq.exploring.design_points import design_points, drawn_around
+from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
+from uq.exploring.subset_simulation import subset_simulation
 from uq.intervals import UNKNOWN
 from uq.rows import stopping
-from uq.running.design_points import design_points, drawn_around
-from uq.running.subset import subset_simulation
-from uq.running.supported import log_scatter_interval, subset_interval
 
 UNIFORMS = {
     name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")

@@ -14,12 +14,12 @@ from uq.cli.progress import say_compiling
 from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.errors import InputError
+from uq.exploring.simulation import holds_trajectory
+from uq.exploring.simulation import simulate as run_once
 from uq.literals import read_number, read_toml
 from uq.places import file_behind
 from uq.rows import results
 from uq.rows.elements import elements_of
-from uq.running.simulation import holds_trajectory
-from uq.running.simulation import simulate as run_once
 from uq.study.registry import find_model
 
 

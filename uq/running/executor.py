@@ -11,9 +11,9 @@ from uq.compilation import compilation
 from uq.errors import InputError
 from uq.interrupts import in_background
 from uq.rows.evaluate import Chunk, evaluate
-from uq.rows.work import Work
+from uq.rows.workload import Work
+from uq.running.dispatch import Job
 from uq.running.isolation import Evaluate, isolated
-from uq.running.job import Job
 
 if TYPE_CHECKING:
     from uq.running.cluster import Workers

@@ -1,4 +1,4 @@
-"""One dask worker process of a local cluster: ``python -m uq.running.worker ADDRESS FOLDER``.
+"""One dask worker process of a local cluster: ``python -m uq.running.dask_worker ADDRESS FOLDER``.
 
 Its standard input is a pipe from the process that started it. When that process ends, however it
 ends, the pipe closes; then the worker removes their temporary folder and stops.

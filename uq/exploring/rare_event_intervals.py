@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from uq.intervals import Interval, binomial_interval, scatter_interval
 
 if TYPE_CHECKING:
-    from uq.running.subset import Found
+    from uq.exploring.subset_simulation import Found
 
 Floats = NDArray[np.float64]
 

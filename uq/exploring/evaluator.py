@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows
-from uq.rows.work import Work
-from uq.running.computing import Computing
-from uq.running.job import Job
+from uq.rows.workload import Work
+from uq.running.dispatch import Job
+from uq.running.executor import Computing
 from uq.store import MemoryStore
 
 if TYPE_CHECKING:

@@ -7,12 +7,12 @@ from typing import Any
 
 from uq.cli import progress
 from uq.cli.printing import console, duration, grid, heading
-from uq.cli.single import literal
+from uq.cli.simulation import literal
 from uq.cli.studies import carried_out, end
 from uq.compilation import compilation
 from uq.errors import InputError
 from uq.rows import results
-from uq.running import further, verification
+from uq.upkeep import extending, verification
 
 
 def show_status(standing: Mapping[str, Any]) -> None:
@@ -40,9 +40,9 @@ def extend(
     path: Path, samples: int, model: str | None, quiet: bool, options: Mapping[str, Any]
 ) -> int:
     """Give a result more samples and show it; return the exit code."""
-    action = partial(further.extend, path, samples, model, **options)
+    action = partial(extending.extend, path, samples, model, **options)
     ds, note = carried_out(path, quiet, action)
-    return end(further.study_of(path, model), ds, path, quiet, note, options["mixed"])
+    return end(extending.study_of(path, model), ds, path, quiet, note, options["mixed"])
 
 
 def rerun(
@@ -57,9 +57,9 @@ def rerun(
     if not failed:
         raise InputError("uq rerun: say which rows: --failed")
     changes = dict(literal(text) for text in settings)
-    action = partial(further.rerun_failed, path, changes, model, **options)
+    action = partial(extending.rerun_failed, path, changes, model, **options)
     ds, note = carried_out(path, quiet, action)
-    return end(further.study_of(path, model), ds, path, quiet, note, options["mixed"])
+    return end(extending.study_of(path, model), ds, path, quiet, note, options["mixed"])
 
 
 def verify(path: Path, model: str | None) -> int:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.columns import censored_name
-from uq.rows.work import Work
+from uq.rows.workload import Work
 
 if TYPE_CHECKING:
     from uq.rows.evaluate import Chunk

@@ -13,11 +13,11 @@ from uq.interrupts import in_background
 from uq.rows import results
 from uq.rows.evaluate import evaluate
 from uq.rows.sampling import row_block
-from uq.running.further import changed_settings, study_of
 from uq.store.adopt import variants
 from uq.store.seal import is_intact
 from uq.study.code import made_here
 from uq.study.definition import Study
+from uq.upkeep.extending import changed_settings, study_of
 
 ROWS = 16
 """Rows that are computed again."""

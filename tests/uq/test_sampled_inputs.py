@@ -6,7 +6,7 @@ from computed import computed, study_of
 from input_studies import BELL, UNIFORM, tables
 from scipy import stats
 
-from uq.analysis.realised import compare
+from uq.analysis.sampled_inputs import compare
 from uq.study.file import LAW
 
 
