@@ -15,6 +15,7 @@ GROUND = {
     "compilation",
     "environment",
     "errors",
+    "estimate",
     "exact_shares",
     "interrupts",
     "intervals",
