@@ -155,7 +155,7 @@ def test_the_citation_is_that_of_this_version():
     ("module", "kept"),
     [
         ("models.vibrator.table1", "docs/outputs/vibrator-table1.txt"),
-        ("models.mole.table", "docs/outputs/mole-claims.txt"),
+        ("models.mole.paper.table", "docs/outputs/mole-claims.txt"),
     ],
 )
 def test_what_is_quoted_is_what_is_printed(module, kept, capsys):

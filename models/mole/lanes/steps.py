@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from models.mole import lane_block as at
-from models.mole.lane_block import GUARDS, INTEGRALS, LANES
-from models.mole.lane_modes import happen, mole_of, turn_relay
+from models.mole.lanes import block as at
+from models.mole.lanes.block import GUARDS, INTEGRALS, LANES
+from models.mole.lanes.modes import happen, mole_of, turn_relay
 from models.numerics.events import crossing, dip
 from models.numerics.jit import lean
 

@@ -11,8 +11,8 @@ the circuit needs neither the v' nor the L''(u) of (15).
 import math
 from typing import NamedTuple
 
-from models.mole.friction import Hold, Response, bar_hold, mole_hold, response
-from models.mole.system import Mole
+from models.mole.theory.friction import Hold, Response, bar_hold, mole_hold, response
+from models.mole.theory.system import Mole
 from models.numerics.jit import inlined, kernel
 
 DISPLACEMENT, VELOCITY, MOLE_VELOCITY, CURRENT, VOLTAGE, MOLE_DISPLACEMENT = range(6)

@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.mole.lane_block import CURRENT, LONGEST_PERIOD, MEASURED, P
-from models.mole.lane_rows import (
+from models.mole.lanes.block import CURRENT, LONGEST_PERIOD, MEASURED, P
+from models.mole.lanes.propagation import run
+from models.mole.lanes.rows import (
     CONTACTS,
     ELECTRIC,
     GROWTH,
@@ -32,9 +33,8 @@ from models.mole.lane_rows import (
     Task,
     begin,
 )
-from models.mole.lanes import run
-from models.mole.system import Mole
-from models.mole.verdict import SURE, verdicts
+from models.mole.response.verdict import SURE, verdicts
+from models.mole.theory.system import Mole
 from models.numerics.batch_means import mean_and_error
 from models.numerics.exponents import log_multiplier
 
@@ -62,7 +62,7 @@ class Machines(NamedTuple):
     Attributes
     ----------
     table : ndarray, shape (n, 20)
-        Of `models.mole.lane_rows.table_of`.
+        Of `models.mole.lanes.rows.table_of`.
     control_frequency : ndarray, shape (n,)
         [Hz]
     common : ndarray of int, shape (n,)
@@ -131,7 +131,7 @@ class Machines(NamedTuple):
         return (self.record[rows, HALF] / 2).astype(np.int64)
 
     def verdicts(self, rows: Counts, known: "Response") -> NDArray[np.int8]:
-        """Return what motions that do not repeat are; see `models.mole.verdict`."""
+        """Return what motions that do not repeat are; see `models.mole.response.verdict`."""
         periods = known.time[rows] * self.control_frequency[rows]
         return verdicts(known.growth[rows], periods, self.common[rows] == 0)
 

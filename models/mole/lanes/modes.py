@@ -6,12 +6,12 @@ an interface along its direction, or the friction limit less the force that stic
 
 import math
 
-from models.mole import lane_block as at
-from models.mole.equations import reach
-from models.mole.friction import bar_hold, decide, mole_hold, response
-from models.mole.lane_block import BAR, LANES, MOLE, TOUCH
+from models.mole.lanes import block as at
+from models.mole.lanes.block import BAR, LANES, MOLE, TOUCH
 from models.mole.parameters import PHYSICAL
-from models.mole.system import Mole
+from models.mole.theory.equations import reach
+from models.mole.theory.friction import bar_hold, decide, mole_hold, response
+from models.mole.theory.system import Mole
 from models.numerics.fma import fma
 from models.numerics.jit import lean
 

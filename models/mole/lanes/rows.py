@@ -5,13 +5,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from models.mole import lane_block as at
-from models.mole.friction import decide
-from models.mole.lane_block import INTEGRALS, LANES, MEASURED, PLAIN
-from models.mole.lane_modes import enter, force_on_bar, mole_of, set_supply
-from models.mole.lane_steps import next_step
+from models.mole.lanes import block as at
+from models.mole.lanes.block import INTEGRALS, LANES, MEASURED, PLAIN
+from models.mole.lanes.modes import enter, force_on_bar, mole_of, set_supply
+from models.mole.lanes.steps import next_step
 from models.mole.parameters import PHYSICAL
-from models.mole.system import Mole
+from models.mole.theory.friction import decide
+from models.mole.theory.system import Mole
 from models.numerics.jit import kernel, lean
 
 # What is kept of a row: the state, which tells all that is to come, and what a run has seen.

@@ -1,4 +1,4 @@
-"""The claims of Ho, Nguyen & Woo 2011 and the model: ``python -m models.mole.table`` prints both.
+"""The claims of Ho, Nguyen & Woo 2011 beside the model: ``python -m models.mole.paper.table``.
 
 Each claim is looked at in two formulations: as printed, which is what the paper computed, and
 physical, with the friction of the mole on the bar and the jump of the voltage restored.
@@ -22,7 +22,7 @@ from models.mole.parameters import (
     Params,
     Settings,
 )
-from models.mole.periods import common_periods
+from models.mole.theory.periods import common_periods
 
 STARTS = 16  # neighbouring ones over which a chaotic response is averaged, too
 LONG = 3000  # control periods of each

@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models.mole import equations
-from models.mole.friction import decide
 from models.mole.parameters import PHYSICAL, Params
-from models.mole.system import Mole
+from models.mole.theory import equations
+from models.mole.theory.friction import decide
+from models.mole.theory.system import Mole
 from models.numerics.dop853 import GUARDED, REACHED_END, integrator
 from models.numerics.jit import kernel
 
@@ -32,7 +32,7 @@ class State(NamedTuple):
     time : float
         Since the relay first closed [s].
     y : ndarray, shape (12,)
-        See `models.mole.equations`.
+        See `models.mole.theory.equations`.
     contact : bool
         Whether the bar touches the stop.
     bar, mole : int

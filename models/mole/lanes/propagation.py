@@ -8,12 +8,12 @@ row. No lane sees another, so a row's bits do not depend on its neighbours.
 
 from collections.abc import Callable
 
-from models.mole import lane_block as at
-from models.mole.lane_block import INTEGRALS, LANES, MEASURED, Block, quantities
-from models.mole.lane_modes import judge
-from models.mole.lane_rates import renew, slopes
-from models.mole.lane_rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, strobe, unload
-from models.mole.lane_steps import conclude, look
+from models.mole.lanes import block as at
+from models.mole.lanes.block import INTEGRALS, LANES, MEASURED, Block, quantities
+from models.mole.lanes.modes import judge
+from models.mole.lanes.rates import renew, slopes
+from models.mole.lanes.rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, strobe, unload
+from models.mole.lanes.steps import conclude, look
 from models.numerics import dop8
 from models.numerics.jit import kernel, lean
 

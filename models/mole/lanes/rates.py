@@ -1,16 +1,16 @@
 """Rates of change of sixteen moles abreast: straight lines without branches.
 
-Within a mode v' = a F + b and x' = d F + e, see `models.mole.friction`; contact and relay are
-numbers, too, so that every lane does the same. Two helpers make the equations polynomial but for
-one division: the bar's share of the inductance, and sine and cosine of the supply, are integrated
-along. The first, which far from the coil is nothing, is set anew at the start of each step; the
-others as often as the relay switches.
+Within a mode v' = a F + b and x' = d F + e, see `models.mole.theory.friction`; contact and relay
+are numbers, too, so that every lane does the same. Two helpers make the equations polynomial but
+for one division: the bar's share of the inductance, and sine and cosine of the supply, are
+integrated along. The first, which is negligible far from the coil, is set anew at the start of each
+step; the others as often as the relay switches.
 """
 
 import math
 from collections.abc import Callable
 
-from models.mole.lane_block import (
+from models.mole.lanes.block import (
     ADDED,
     ADDED_MOST,
     COIL,
