@@ -154,7 +154,7 @@ def test_the_citation_is_that_of_this_version():
 @pytest.mark.parametrize(
     ("module", "kept"),
     [
-        ("models.vibrator.table1", "docs/outputs/vibrator-table1.txt"),
+        ("models.vibrator.paper.table1", "docs/outputs/vibrator-table1.txt"),
         ("models.mole.paper.table", "docs/outputs/mole-claims.txt"),
     ],
 )

@@ -10,8 +10,8 @@ import numpy as np
 from models.numerics.blocks import LANES, aligned
 from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
-from models.vibrator.lanes import STATE, Array
-from models.vibrator.tangents import ANCHOR, COLUMNS
+from models.vibrator.lanes.fixed_steps import STATE, Array
+from models.vibrator.lanes.tangents import ANCHOR, COLUMNS
 
 _SQUARINGS = 40  # |A^n| may differ from the radius to the n by a factor c: log(c)/2^40 is left
 _WHOLE = COLUMNS * COLUMNS * LANES
@@ -99,7 +99,7 @@ def largest_multiplier(end: Array) -> Array:
     Parameters
     ----------
     end : ndarray, shape (n, 10, 11)
-        Of `models.vibrator.tangents.revolve`, of periodic orbits.
+        Of `models.vibrator.lanes.tangents.revolve`, of periodic orbits.
 
     Returns
     -------

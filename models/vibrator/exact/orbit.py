@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from models.numerics.dop853 import GUARDED
 from models.numerics.linear import solve
 from models.numerics.multipliers import log_radius
-from models.vibrator import theory
-from models.vibrator.machine import PSI_1, PSI_2, Machine
-from models.vibrator.measures import Measures, first_harmonic, measure
+from models.vibrator.exact.budgeted import PSI_1, PSI_2, Machine
+from models.vibrator.exact.measures import Measures, first_harmonic, measure
+from models.vibrator.theory import averaged
 
 TIGHTEST = 1e-11  # tolerance of orbits, if that of the runs is wider
 SAMPLES = 2048  # of an orbit: impacts of the feed give the mean powers errors of up to 1e-4
@@ -61,11 +61,11 @@ def proposal(machine: Machine) -> NDArray[np.float64] | None:
 
     None if there is none that is stable. The feed rides.
     """
-    guess = theory.disphasing(machine.params)
+    guess = averaged.disphasing(machine.params)
     if not guess.stable[0]:
         return None
     w = float(guess.speed[0])
-    motion = theory.steady_motion(machine.params, guess.speed, guess.angle)
+    motion = averaged.steady_motion(machine.params, guess.speed, guess.angle)
     state = np.zeros(2 * machine.degrees)
     places = (0, 1, 2, 5, 6) if machine.is_extended else (0, 1, 2)
     for i, amplitude in zip(places, motion, strict=False):
@@ -96,7 +96,7 @@ def find_orbit(machine: Machine, guess: NDArray[np.float64], tolerance: float) -
     guess : ndarray
         State at psi_1 = 0.
     tolerance : float
-        See `models.vibrator.exact.propagate`; tightened to `TIGHTEST`.
+        See `models.vibrator.exact.propagator.propagate`; tightened to `TIGHTEST`.
 
     Returns
     -------

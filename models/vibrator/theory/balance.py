@@ -7,7 +7,7 @@ import numpy as np
 
 from models.numerics.jit import kernel
 from models.vibrator.parameters import Rows
-from models.vibrator.receptance import respond
+from models.vibrator.theory.receptance import respond
 
 
 class Motor(NamedTuple):

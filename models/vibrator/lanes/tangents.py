@@ -37,8 +37,8 @@ from models.numerics.tsit5 import (
     combiner,
     layout,
 )
-from models.vibrator.lanes import CONSTANTS, STATE, Array, load, machine, slopes
-from models.vibrator.rigid import accelerations, derivatives
+from models.vibrator.equations.rigid import accelerations, derivatives
+from models.vibrator.lanes.fixed_steps import CONSTANTS, STATE, Array, load, machine, slopes
 
 ANCHOR = 3  # psi_1
 FREE = [i for i in range(STATE) if i != ANCHOR]

@@ -13,11 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics.dop853 import OUT_OF_BUDGET, STUCK
-from models.vibrator import exact
-from models.vibrator.exact_orbit import Orbit, anchored, find_orbit, proposal
-from models.vibrator.machine import Machine, prepare
-from models.vibrator.measures import Measures, measure
-from models.vibrator.outcome import (
+from models.vibrator.equations.system import System
+from models.vibrator.equations.time_scales import slowest_period
+from models.vibrator.exact import propagator
+from models.vibrator.exact.budgeted import Machine, prepare
+from models.vibrator.exact.measures import Measures, measure
+from models.vibrator.exact.orbit import Orbit, anchored, find_orbit, proposal
+from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.start.regimes import (
     ASYNCHRONOUS,
     BAND,
     CAPTURED_BELOW,
@@ -26,10 +29,7 @@ from models.vibrator.outcome import (
     unlocked_regime,
     wrapped,
 )
-from models.vibrator.parameters import Params, Rows, Settings
-from models.vibrator.rates import slowest_period
-from models.vibrator.system import System
-from models.vibrator.track import LAST, Track
+from models.vibrator.start.track import LAST, Track
 from uq.contract import Status
 
 SAMPLES_PER_TURN = 32  # at the larger synchronous speed
@@ -74,7 +74,7 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
 def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
     """Set the outcome of one machine, fields of shape (1,)."""
     machine = prepare(params, settings.kinematics, BUDGET)
-    state = exact.start(params, machine.system)
+    state = propagator.start(params, machine.system)
     speed = np.max([machine.system.synchronous_speed_1, machine.system.synchronous_speed_2])
     if not math.isfinite(speed):
         return Status.NON_FINITE

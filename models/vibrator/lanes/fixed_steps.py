@@ -13,18 +13,18 @@ from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
 from models.numerics.nystrom import ORDER_5, ORDER_8, STAGES, layout, stepper
 from models.numerics.sincos import cosine_sine, nearest
-from models.vibrator import abreast
-from models.vibrator.rigid import Rigid, accelerations
-from models.vibrator.system import System
+from models.vibrator.equations.rigid import Rigid, accelerations
+from models.vibrator.equations.system import System
+from models.vibrator.lanes import dynamics
 
 Array = NDArray[np.float64]
 
 STATE = 10  # x, y, alpha, psi_1, psi_2 and their rates
 CONSTANTS = len(Rigid._fields)
-_AT = layout(abreast.DEGREES)
-_SIZE = abreast.END + STAGES * abreast.DEGREES * LANES
-_step_5 = stepper(abreast.DEGREES, abreast.END, *ORDER_5, abreast.accelerate)
-_step_8 = stepper(abreast.DEGREES, abreast.END, *ORDER_8, abreast.accelerate)
+_AT = layout(dynamics.DEGREES)
+_SIZE = dynamics.END + STAGES * dynamics.DEGREES * LANES
+_step_5 = stepper(dynamics.DEGREES, dynamics.END, *ORDER_5, dynamics.accelerate)
+_step_8 = stepper(dynamics.DEGREES, dynamics.END, *ORDER_8, dynamics.accelerate)
 
 STABLE = 0.8
 """Step times the fastest rate of a machine: what keeps the method stable with room to spare."""
@@ -261,8 +261,8 @@ _TORQUE_1, _TORQUE_2 = Rigid._fields.index("torque_1"), Rigid._fields.index("tor
 _SPACING = Rigid._fields.index("half_spacing")
 _COS, _SIN = CONSTANTS, CONSTANTS + 1
 _FAR, _OUT, _OFF, _DRIFT, _NEW_OFF, _NEW_DRIFT = range(NOTES, NOTES + 6)  # between steps
-_X, _Y, _ALPHA, _PSI_1, _PSI_2 = (_AT.position + i * LANES for i in range(abreast.DEGREES))
-_VX, _VY, _VA, _W_1, _W_2 = (_AT.velocity + i * LANES for i in range(abreast.DEGREES))
+_X, _Y, _ALPHA, _PSI_1, _PSI_2 = (_AT.position + i * LANES for i in range(dynamics.DEGREES))
+_VX, _VY, _VA, _W_1, _W_2 = (_AT.velocity + i * LANES for i in range(dynamics.DEGREES))
 
 
 @kernel
@@ -280,8 +280,8 @@ def _advance(constants, h, state, target, steps, accurate, band, notes, work):
         for lane in range(LANES):
             angle = c[4 * LANES + lane]
             c[_COS * LANES + lane], c[_SIN * LANES + lane] = np.cos(angle), np.sin(angle)
-            abreast.prepare(machine(c, lane), step_size[lane], w, lane)
-            for i in range(abreast.DEGREES):
+            dynamics.prepare(machine(c, lane), step_size[lane], w, lane)
+            for i in range(dynamics.DEGREES):
                 w[_AT.step + i * LANES + lane] = step_size[lane]
         _begin(w, aim, note)
         for step in range(steps):

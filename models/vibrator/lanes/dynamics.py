@@ -1,8 +1,8 @@
 """Accelerations of sixteen rigid machines with the fewest operations.
 
-The algebra of `models.vibrator.rigid` the other way round. About the common centre of mass, in
-units of the mass and of the radius of gyration, the inertia of body and rotors' masses is the unit
-matrix: nothing has to be inverted to eliminate the body,
+The algebra of `models.vibrator.equations.rigid` the other way round. About the common centre of
+mass, in units of the mass and of the radius of gyration, the inertia of body and rotors' masses is
+the unit matrix: nothing has to be inverted to eliminate the body,
 
     a = F - nu_1 psi_1'' e_1 + nu_2 psi_2'' e_2,
 

@@ -7,7 +7,7 @@ the geometry is frozen at alpha = 0, and the forces still derive from a Lagrangi
 body feels no reaction to the torques of motors and bearings.
 
 `acceleration` is the machine with its motors bolted to the body and no feed; for all else see
-`models.vibrator.extended`.
+`models.vibrator.equations.general`.
 """
 
 import math
@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics.jit import kernel
+from models.vibrator.equations.rigid import accelerations
 from models.vibrator.parameters import Rows
-from models.vibrator.rigid import accelerations
 
 DEGREES = 5
 """x, y, alpha, psi_1, psi_2. A state is these [m, rad], then their rates [m s-1, rad s-1]."""
@@ -43,7 +43,7 @@ def initial_state(p: Rows) -> NDArray[np.float64]:
 
 @kernel
 def acceleration(m, state, out):
-    """Set out[:5] to the accelerations, which `models.vibrator.rigid` gives.
+    """Set out[:5] to the accelerations, which `models.vibrator.equations.rigid` gives.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from models.numerics.jit import inlined
 
 
 class Rigid(NamedTuple):
-    """The fields of `models.vibrator.system.System` that the rigid machine needs."""
+    """The fields of `models.vibrator.equations.system.System` that the rigid machine needs."""
 
     mass: Any
     moment_x: Any

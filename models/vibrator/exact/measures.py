@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from models.numerics import elementary
 from models.numerics.jit import kernel
 from models.numerics.linear import product
-from models.vibrator.system import System
+from models.vibrator.equations.system import System
 
 _FRACTIONS = np.linspace(0.0, 1.0, 65)
 _CUBICS = np.stack(  # Hermite's: of the values, then of the rates, at both ends

@@ -1,4 +1,4 @@
-"""Table 1 of Michalczyk & Cieplok 2014: ``python -m models.vibrator.table1`` prints it.
+"""Table 1 of Michalczyk & Cieplok 2014: ``python -m models.vibrator.paper.table1`` prints it.
 
 Eight combinations of damping, horizontal stiffness and depth of the supports, by the averaged
 theory and by simulation from standstill.
@@ -8,8 +8,9 @@ import itertools
 
 import numpy as np
 
-from models.vibrator import start, theory
 from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.start import fast
+from models.vibrator.theory import averaged
 
 DAMPING_RATIOS = (0.01, 0.07)
 STIFFNESSES_X = (6.21e5, 2.07e6)  # N/m
@@ -27,8 +28,8 @@ def machines() -> Rows:
 def main() -> None:
     """Print the table."""
     p = machines()
-    guess = theory.disphasing(p)
-    found, _ = start.outcomes(p, Settings())
+    guess = averaged.disphasing(p)
+    found, _ = fast.outcomes(p, Settings())
     print("row    xi  k_x [N/m]  h [m]   dphi theory  simulated [rad]  [deg]   alpha [rad]")
     for i in range(8):
         print(

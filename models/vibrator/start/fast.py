@@ -12,20 +12,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator import lanes
-from models.vibrator.equations import initial_state
-from models.vibrator.lanes import Array
-from models.vibrator.last_second import LAST, NEAR, STEPS, Live, learn, run_last_second
-from models.vibrator.outcome import (
+from models.vibrator.equations.rigid_motion import initial_state
+from models.vibrator.equations.time_scales import slowest_period
+from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.fixed_steps import Array
+from models.vibrator.parameters import Rows, Settings
+from models.vibrator.start.last_second import LAST, NEAR, STEPS, Live, learn, run_last_second
+from models.vibrator.start.regimes import (
     BAND,
     CAPTURED_BELOW,
     COMPARABLE,
     Outcome,
     locked_regime,
 )
-from models.vibrator.parameters import Rows, Settings
-from models.vibrator.rates import slowest_period
-from models.vibrator.synchronous import Known, Machines, describe, propose
+from models.vibrator.start.synchronous import Known, Machines, describe, propose
 from uq.contract import Status
 
 LOOK = 96  # steps between two looks at a run
@@ -56,7 +56,7 @@ class _Plan(NamedTuple):
         """Choose steps that are short enough, and fill the time in whole looks."""
         per_turn = settings.steps_per_turn or STEPS
         turn = 2 * np.pi / machines.synchronous_speed.max(axis=1)
-        step = np.minimum(turn / per_turn, lanes.STABLE / machines.fastest)
+        step = np.minimum(turn / per_turn, fixed_steps.STABLE / machines.fastest)
         time = settings.run_up - LAST
         looks = np.ceil(time / (LOOK * step)).astype(np.int64)
         over = looks > BUDGET
@@ -128,10 +128,10 @@ def _run(
         before = live.state[:, 3:5].copy()
         step, target = plan.step[live.rows], known.disphasing[live.rows]
         constants, accurate = live.machines.constants, settings.steps_per_turn > 0
-        notes = lanes.advance(constants, step, live.state, target, LOOK, BAND, accurate)
-        came = notes[:, lanes.LAST_ENTRY]
-        far = np.maximum(live.far, notes[:, lanes.EXCURSION])
-        near = notes[:, lanes.EXCURSION] > COMPARABLE**2 * far
+        notes = fixed_steps.advance(constants, step, live.state, target, LOOK, BAND, accurate)
+        came = notes[:, fixed_steps.LAST_ENTRY]
+        far = np.maximum(live.far, notes[:, fixed_steps.EXCURSION])
+        near = notes[:, fixed_steps.EXCURSION] > COMPARABLE**2 * far
         live = live._replace(
             came=np.where(came >= 0, (look * LOOK + came) * step, live.came),
             far=far,
@@ -139,7 +139,7 @@ def _run(
         )
         look += 1
         speed = (live.state[:, 3:5] - before) / (LOOK * step)[:, None]
-        low, high = notes[:, lanes.ANGLE_LOW], notes[:, lanes.ANGLE_HIGH]
+        low, high = notes[:, fixed_steps.ANGLE_LOW], notes[:, fixed_steps.ANGLE_HIGH]
         finite = np.isfinite(live.state).all(axis=1)
         arrived = finite & _is_near(known, live.rows, low, high, speed)
         calm = look * LOOK * step - live.neared >= slowest_period(live.machines.system)

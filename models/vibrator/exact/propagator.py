@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from models.numerics.dop853 import GUARDED, Outcome, integrator
 from models.numerics.jit import kernel
-from models.vibrator import equations, extended
+from models.vibrator.equations import general, rigid_motion
+from models.vibrator.equations.system import System
 from models.vibrator.parameters import Params
-from models.vibrator.system import System
 
 STEPS_PER_TURN = 400
 _SPARE_STEPS = 10_000
@@ -63,9 +63,9 @@ class Motion(NamedTuple):
 
 @kernel
 def _rigid_rates(t, y, task, dy):
-    for i in range(equations.DEGREES):
-        dy[i] = y[equations.DEGREES + i]
-    equations.acceleration(task.system, y, dy[equations.DEGREES :])
+    for i in range(rigid_motion.DEGREES):
+        dy[i] = y[rigid_motion.DEGREES + i]
+    rigid_motion.acceleration(task.system, y, dy[rigid_motion.DEGREES :])
 
 
 @kernel
@@ -75,17 +75,17 @@ def _turned(t, y, task, guard):
 
 @kernel
 def _extended_rates(t, y, task, dy):
-    for i in range(extended.DEGREES):
-        dy[i] = y[extended.DEGREES + i]
-    motion = extended.accelerations(task.system, task.riding, y)
-    for i in range(extended.DEGREES):
-        dy[extended.DEGREES + i] = motion[i]
+    for i in range(general.DEGREES):
+        dy[i] = y[general.DEGREES + i]
+    motion = general.accelerations(task.system, task.riding, y)
+    for i in range(general.DEGREES):
+        dy[general.DEGREES + i] = motion[i]
 
 
 @kernel
 def _fed_guards(t, y, task, guard):
     guard[_TURNED] = task.last_angle - y[3]
-    guard[_FEED] = extended.support_of_feed(task.system, y) if task.riding else y[7]
+    guard[_FEED] = general.support_of_feed(task.system, y) if task.riding else y[7]
 
 
 _integrate_rigid = integrator(_rigid_rates, _turned, 1, looks=1)
@@ -110,7 +110,7 @@ def run_empty(system, state, last_angle, end, absolute, budget, times, samples):
 @kernel
 def run_fed(system, state, last_angle, end, absolute, budget, times, samples):
     """Integrate the extended machine through all flights of the feed, as `run_rigid`."""
-    riding = state[7] == 0 and state[extended.DEGREES + 7] == 0
+    riding = state[7] == 0 and state[general.DEGREES + 7] == 0
     time = step = 0.0
     steps = sampled = 0
     while True:
@@ -132,21 +132,21 @@ def run_fed(system, state, last_angle, end, absolute, budget, times, samples):
         if ended.status != GUARDED or ended.guard == _TURNED:
             break
         if riding:
-            state[7] = state[extended.DEGREES + 7] = 0.0
+            state[7] = state[general.DEGREES + 7] = 0.0
         else:
-            extended.land(system, state)
+            general.land(system, state)
         riding = not riding
     return Outcome(ended.status, time, ended.guard, step, steps, sampled)
 
 
 def is_extended(system: System) -> bool:
-    """Whether a machine needs the equations of `models.vibrator.extended`."""
+    """Whether a machine needs the equations of `models.vibrator.equations.general`."""
     return bool(system.exact or system.slides or system.rocks or system.feed_mass)
 
 
 def runner(system: System, degrees: int) -> Callable[..., Outcome]:
     """Return the kernel for states of so many degrees: `run_rigid` or one with its arguments."""
-    if degrees == equations.DEGREES:
+    if degrees == rigid_motion.DEGREES:
         return run_rigid
     return run_fed if system.feed_mass else run_empty
 
@@ -164,11 +164,11 @@ def start(params: Params, system: System) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (10,) or (16,)
-        See `models.vibrator.equations.DEGREES` and `models.vibrator.extended.DEGREES`.
+        As in `models.vibrator.equations`: of `rigid_motion` or of `general`.
     """
     row = Params._make(np.array([value]) for value in params)
-    (state,) = equations.initial_state(row)
-    return extended.extend(state) if is_extended(system) else state
+    (state,) = rigid_motion.initial_state(row)
+    return general.extend(state) if is_extended(system) else state
 
 
 def propagate(

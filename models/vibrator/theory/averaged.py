@@ -24,10 +24,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models.numerics.jit import kernel
-from models.vibrator.balance import balance, is_stable, kloss, moments, motors
-from models.vibrator.body import machines
 from models.vibrator.parameters import Params, Rows
-from models.vibrator.receptance import respond
+from models.vibrator.theory.balance import balance, is_stable, kloss, moments, motors
+from models.vibrator.theory.linear_machine import machines
+from models.vibrator.theory.receptance import respond
 
 _SECANTS = 12
 _NEAR = 0.9  # of the larger synchronous speed: where the secants may look

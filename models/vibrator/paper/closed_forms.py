@@ -1,8 +1,8 @@
 """Closed formulas of Michalczyk & Cieplok 2014 for one disturbance at a time, undamped.
 
 Each holds for identical motors at a known common speed, far from resonance, under the conditions
-it states; `models.vibrator.theory` needs none of them. Lengths and inertias are about the mass
-centre of the body WITH its unbalanced masses, as `combined_centre` returns them: taken about C
+it states; `models.vibrator.theory.averaged` needs none of them. Lengths and inertias are about the
+mass centre of the body WITH its unbalanced masses, as `combined_centre` returns them: taken about C
 instead, K comes out up to a fifth wrong. Angles are those of the stable state, in (-pi, pi].
 Arguments may be numbers or arrays that broadcast.
 """
@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from models.vibrator.outcome import wrapped
+from models.vibrator.start.regimes import wrapped
 
 
 class Centre(NamedTuple):
@@ -272,7 +272,7 @@ def disphasing_of_feed(
     Parameters
     ----------
     contact : array_like of complex
-        N_1 [N], see `models.vibrator.feed.contact_coefficient`.
+        N_1 [N], see `models.vibrator.theory.feed.contact_coefficient`.
     working_angle : array_like
         beta [rad].
     coefficient : array_like

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.measures import excursion, refine
-from models.vibrator.outcome import BAND, COMPARABLE, wrapped
+from models.vibrator.exact.measures import excursion, refine
+from models.vibrator.start.regimes import BAND, COMPARABLE, wrapped
 
 LAST = 1.0  # [s]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from models.numerics import elementary
 from models.vibrator.parameters import Params, Rows
-from models.vibrator.theory import feed_gravity
+from models.vibrator.theory.averaged import feed_gravity
 
 _NEVER_THROWN = 1e30  # gravity that keeps a feed without mass on the deck [m s-2]
 

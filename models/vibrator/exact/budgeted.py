@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models.numerics.dop853 import Outcome
-from models.vibrator import equations, exact, extended
+from models.vibrator.equations import general, rigid_motion
+from models.vibrator.equations.system import System, system
+from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params
-from models.vibrator.system import System, system
 
 PSI_1, PSI_2, HEIGHT = 3, 4, 7
 """Places in the state."""
@@ -36,8 +37,8 @@ class Machine:
 
     @property
     def is_extended(self) -> bool:
-        """Whether the state is that of `models.vibrator.extended`."""
-        return self.degrees == extended.DEGREES
+        """Whether the state is that of `models.vibrator.equations.general`."""
+        return self.degrees == general.DEGREES
 
     @property
     def degrees(self) -> int:
@@ -68,7 +69,7 @@ class Machine:
         """Advance `state` in place, for some time or turns of vibrator 1; return samples too."""
         times = np.ascontiguousarray(times, float)
         samples = np.full((len(times), len(state)), np.nan)
-        ended = exact.runner(self.system, self.degrees)(
+        ended = propagator.runner(self.system, self.degrees)(
             self.system,
             state,
             state[PSI_1] + 2 * np.pi * turns,
@@ -94,5 +95,5 @@ def prepare(params: Params, kinematics: str, budget: int) -> Machine:
         Steps that may be tried.
     """
     m = system(params, kinematics)
-    degrees = extended.DEGREES if exact.is_extended(m) else equations.DEGREES
-    return Machine(params, m, exact.scales_of(m, degrees), budget)
+    degrees = general.DEGREES if propagator.is_extended(m) else rigid_motion.DEGREES
+    return Machine(params, m, propagator.scales_of(m, degrees), budget)

@@ -7,7 +7,8 @@ at zero. By the principle of virtual work each point adds J^T m J to the mass ma
 to the forces; J = d(position)/dq, and b is the acceleration that the point has without q''.
 
 The rotors' equations give psi_i'' in terms of the acceleration a of their shafts, as in
-`models.vibrator.rigid`: with n the direction of the unbalance and t = dn/dpsi an unbalanced mass
+`models.vibrator.equations.rigid`: with n the direction of the unbalance and t = dn/dpsi
+an unbalanced mass
 
     m J_zr mu I + (m e)^2 mu n n^T,    mu = 1/(J_zr + m e^2),
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.system import System
+from models.vibrator.equations.system import System
 
 
 def fastest_rates(m: System) -> NDArray[np.float64]:

@@ -16,9 +16,9 @@ from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
 from models.numerics.linear import product, solve
 from models.numerics.tsit5 import combiner, layout
-from models.vibrator.lanes import CONSTANTS, STATE, Array, load, slopes, store
-from models.vibrator.multiplier import largest_multiplier
-from models.vibrator.tangents import FREE, revolve
+from models.vibrator.lanes.fixed_steps import CONSTANTS, STATE, Array, load, slopes, store
+from models.vibrator.lanes.multiplier import largest_multiplier
+from models.vibrator.lanes.tangents import FREE, revolve
 
 ITERATIONS = 10
 _CLOSE = 1e-6  # of a revolution: a step this small was the last but for rounding
@@ -119,7 +119,7 @@ def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Or
     Parameters
     ----------
     constants : ndarray, shape (n, CONSTANTS)
-        Of `models.vibrator.lanes.pack`.
+        Of `models.vibrator.lanes.fixed_steps.pack`.
     state : ndarray, shape (n, 10)
         Guess, at psi_1 = 0.
     period : ndarray, shape (n,)

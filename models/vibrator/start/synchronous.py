@@ -6,14 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics import elementary
-from models.vibrator import lanes, theory
-from models.vibrator.lanes import Array
-from models.vibrator.measures import kloss
-from models.vibrator.orbit import Orbits, find_orbits, follow
-from models.vibrator.outcome import CAPTURED_BELOW, Outcome, wrapped
+from models.vibrator.equations.system import System, systems
+from models.vibrator.equations.time_scales import fastest_rates
+from models.vibrator.exact.measures import kloss
+from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.fixed_steps import Array
+from models.vibrator.lanes.orbit import Orbits, find_orbits, follow
 from models.vibrator.parameters import Params, Rows
-from models.vibrator.rates import fastest_rates
-from models.vibrator.system import System, systems
+from models.vibrator.start.regimes import CAPTURED_BELOW, Outcome, wrapped
+from models.vibrator.theory import averaged
 
 STEPS = 24  # of the orbit, unless the machine is stiff
 LADDER = tuple(base << k for k in range(7) for base in (24, 36))
@@ -28,9 +29,9 @@ class Machines(NamedTuple):
     p : Params
     system : System
     constants : ndarray, shape (n, CONSTANTS)
-        Of `models.vibrator.lanes.pack`.
+        Of `models.vibrator.lanes.fixed_steps.pack`.
     fastest : ndarray, shape (n,)
-        See `models.vibrator.rates.fastest_rates`.
+        See `models.vibrator.equations.time_scales.fastest_rates`.
     synchronous_speed : ndarray, shape (n, 2)
         [rad s-1]
     """
@@ -46,7 +47,7 @@ class Machines(NamedTuple):
         """Prepare n machines."""
         m = systems(p)
         speeds = np.stack([p.synchronous_speed_1, p.synchronous_speed_2], axis=1)
-        return Machines(p, m, lanes.pack(m), fastest_rates(m), speeds)
+        return Machines(p, m, fixed_steps.pack(m), fastest_rates(m), speeds)
 
     def take(self, rows: Any) -> "Machines":
         """Return some of the machines."""
@@ -108,7 +109,7 @@ def propose(machines: Machines, steps: int) -> Known:
     -------
     Known
     """
-    theirs = theory.disphasing(machines.p)
+    theirs = averaged.disphasing(machines.p)
     return search(machines, theirs.speed, theirs.angle, theirs.exists & theirs.stable, steps)
 
 
@@ -135,7 +136,7 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
     none = Orbits(np.zeros(n, bool), state, period, np.full(n, np.nan))
     unknown = np.full((2, n), np.nan)
     known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), *unknown)
-    needed = np.maximum(period * machines.fastest / lanes.STABLE, max(steps, STEPS))
+    needed = np.maximum(period * machines.fastest / fixed_steps.STABLE, max(steps, STEPS))
     rung = np.array([*LADDER, 0])[np.searchsorted(LADDER, needed)]
     rung = np.where((rung > 0) & (steps > 0) & (needed <= steps), steps, rung)
     for count in np.unique(rung[wanted & (rung > 0)]).tolist():
@@ -156,8 +157,8 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
 
 def _harmonic(p: Rows, speed: Array, angle: Array) -> Array:
     """Return the state at psi_1 = 0 of harmonic motion at constant speed."""
-    motion = theory.steady_motion(p, speed, angle)
-    state = np.zeros((len(speed), lanes.STATE))
+    motion = averaged.steady_motion(p, speed, angle)
+    state = np.zeros((len(speed), fixed_steps.STATE))
     for i, amplitude in enumerate((motion.x, motion.y, motion.alpha)):
         state[:, i], state[:, 5 + i] = amplitude.real, -speed * amplitude.imag
     state[:, 4] = -angle

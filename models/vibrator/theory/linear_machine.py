@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics.elementary import cos, sin
-from models.vibrator.feed import apparent_mass
 from models.vibrator.parameters import Rows
+from models.vibrator.theory.feed import apparent_mass
 
 
 class Machine(NamedTuple):

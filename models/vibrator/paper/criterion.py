@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from models.vibrator.parameters import Params, Rows
-from models.vibrator.theory import Motion, steady_motion
+from models.vibrator.theory.averaged import Motion, steady_motion
 
 _INSTANTS = 16  # of a period; energies are of second order, so their mean is exact
 
