@@ -52,6 +52,21 @@ STRANGERS = {
 } | {("upkeep", "exploring"), ("exploring", "upkeep")}
 """What may not use the other although it stands above."""
 
+STOREYS = {
+    "vibrator": (
+        {"parameters"},
+        {"theory"},
+        {"equations"},
+        {"lanes", "exact"},
+        {"start"},
+        {"paper", "batch", "trajectory"},
+    ),
+}
+"""Modules and packages of each machine, from the ground up: one may use itself and those below."""
+
+SIDE_BY_SIDE = 12
+"""Modules that one folder of a machine may hold, its ``__init__`` apart."""
+
 
 def modules(package):
     """Yield the dotted name and the syntax tree of every module of a package."""
@@ -134,6 +149,30 @@ def test_one_machine_does_not_import_another():
             if parts[0] == "models" and len(parts) > 1 and parts[1:2] not in (own, [shared]):
                 guilty.add((name, other))
     assert not guilty
+
+
+@pytest.mark.parametrize("machine", STOREYS)
+def test_a_machine_depends_one_way(machine):
+    height = {name: i for i, names in enumerate(STOREYS[machine]) for name in names}
+    package = ["models", machine]
+    guilty = set()
+    for name, found in edges(f"models/{machine}").items():
+        here = name.split(".")[2:3]
+        if not here:  # MODEL, which imports what it declares, and the rest when it computes
+            continue
+        for other in found:
+            parts = other.split(".")
+            if parts[:2] == package and parts[2:3] != here:
+                below = height.get(".".join(parts[2:3]), len(height))
+                guilty |= {(name, other)} if below >= height[here[0]] else set()
+    assert not guilty
+
+
+@pytest.mark.parametrize("machine", STOREYS)
+def test_few_files_stand_side_by_side(machine):
+    folder = HOUSE / "models" / machine
+    files = [path.parent for path in folder.rglob("*.py") if path.name != "__init__.py"]
+    assert {place for place in files if files.count(place) > SIDE_BY_SIDE} == set()
 
 
 def test_the_platform_depends_one_way():
