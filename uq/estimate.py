@@ -1,0 +1,30 @@
+"""One number with its interval, or the reason why there is none."""
+
+from dataclasses import dataclass
+from math import isfinite, nan
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A number with its 95 % interval.
+
+    Attributes
+    ----------
+    value, low, high : float
+        NaN where it is not known; infinite where it is known to be.
+    reason : str
+        Why the value or its interval is missing, or what both assume; "" if neither.
+    """
+
+    value: float = nan
+    low: float = nan
+    high: float = nan
+    reason: str = ""
+
+    @property
+    def has_interval(self) -> bool:
+        """Whether both ends are finite."""
+        return isfinite(self.low) and isfinite(self.high)
+
+
+NOTHING = Estimate()
