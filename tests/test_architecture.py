@@ -62,6 +62,15 @@ STOREYS = {
         {"start"},
         {"paper", "batch", "trajectory"},
     ),
+    "mole": (
+        {"parameters"},
+        {"theory"},
+        {"exact", "lanes"},
+        {"response"},
+        {"batch", "trajectory"},
+        {"explore"},
+        {"paper"},
+    ),
 }
 """Modules and packages of each machine, from the ground up: one may use itself and those below."""
 
