@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from uq.analysis.twin import two_fidelities
     from uq.drawing.motion_plot import plot_history, plot_phase_portrait, plot_section
     from uq.drawing.response_plot import plot_basins, plot_bifurcation, plot_curve
+    from uq.exploring.basins import basins
+    from uq.exploring.rare_events import rare_event
+    from uq.exploring.simulation import simulate
     from uq.indices.sensitivities import sensitivity
     from uq.rows.elements import labels
     from uq.rows.results import open_result
-    from uq.running.attraction import basins
-    from uq.running.reliability import rare_event
     from uq.running.runner import run
-    from uq.running.simulation import simulate
     from uq.study.definition import load_study
 
 __all__ = [
@@ -51,7 +51,7 @@ __all__ = [
 ]
 
 _MODULES = {
-    "basins": "running.attraction",
+    "basins": "exploring.basins",
     "compare": "analysis.comparison",
     "enough": "analysis.convergence",
     "labels": "rows.elements",
@@ -64,12 +64,12 @@ _MODULES = {
     "plot_history": "drawing.motion_plot",
     "plot_phase_portrait": "drawing.motion_plot",
     "plot_section": "drawing.motion_plot",
-    "rare_event": "running.reliability",
+    "rare_event": "exploring.rare_events",
     "regimes": "analysis.regime_table",
     "run": "running.runner",
     "running_estimates": "analysis.convergence",
     "sensitivity": "indices.sensitivities",
-    "simulate": "running.simulation",
+    "simulate": "exploring.simulation",
     "summary": "analysis.overview",
     "survival": "analysis.lifetime",
     "two_fidelities": "analysis.twin",

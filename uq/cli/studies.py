@@ -20,7 +20,7 @@ from uq.literals import plain_line
 from uq.rows import results
 from uq.rows.sampling import group_size, rows
 from uq.running import runner
-from uq.running.job import Progress
+from uq.running.dispatch import Progress
 from uq.store import folder_of
 from uq.study.definition import Study, load_study
 from uq.wording import law
@@ -71,7 +71,7 @@ def _unit(study: Study, name: str) -> str:
 
 def _show_realised(study: Study) -> None:
     """Print each input as stated and as the rows have it."""
-    from uq.analysis.realised import MAX_ROWS, realised_inputs, realised_ranks
+    from uq.analysis.sampled_inputs import MAX_ROWS, realised_inputs, realised_ranks
 
     count = min(rows(study), MAX_ROWS)
     found = realised_inputs(study)

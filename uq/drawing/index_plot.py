@@ -21,7 +21,7 @@ from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
 from uq.indices.targets import FORMS, split_name
 from uq.rows.elements import named_elements
-from uq.time_units import time_unit
+from uq.wording import time_unit
 
 MEANING = {
     "S1": "alone (S1)",

@@ -8,10 +8,9 @@ import xarray as xr
 from uq.contract import Status
 from uq.drawing.figure import place_in_words, powers
 from uq.indices.targets import FORMS, split_name
-from uq.report.table import Cell, Table, count, estimate, without_empty_columns
+from uq.report.cells import Cell, Table, count, estimate, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
-from uq.time_units import TimeUnit, time_unit
-from uq.wording import number, percent, percent_interval, variance_between
+from uq.wording import TimeUnit, number, percent, percent_interval, time_unit, variance_between
 
 Summary = Mapping[str, Any]
 """What `uq.analysis.statistics.summarise` returns."""

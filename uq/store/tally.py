@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from uq.columns import columns_of, failed_rows
 from uq.contract import Status
-from uq.rows.glimpse import Glimpse
-from uq.rows.work import Work
+from uq.rows.preview import Glimpse
+from uq.rows.workload import Work
 
 if TYPE_CHECKING:
     from uq.rows.evaluate import Chunk
