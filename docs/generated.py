@@ -156,7 +156,7 @@ def outputs(name: str) -> str:
         more += ["may be undefined"] if one.may_be_undefined else []
         late = one.has_censored_flag and not one.never_known_at_once
         more += ["may never end if censored"] if late else []
-        more += ["never censored"] if one.kind == "lifetime" and not one.may_be_censored else []
+        more += ["never censored"] if one.is_lifetime and not one.may_be_censored else []
         dims = f" ({', '.join(one.dims)})" if one.dims else ""
         lines.append((f"`{output}`{dims}", unit(one.unit), meaning, ", ".join(more)))
     return table(("output", "unit", "meaning", ""), lines)

@@ -15,6 +15,7 @@ GROUND = {
     "compilation",
     "environment",
     "errors",
+    "estimate",
     "exact_shares",
     "interrupts",
     "intervals",
@@ -23,8 +24,6 @@ GROUND = {
     "places",
     "provenance",
     "tails",
-    "threads",
-    "time_units",
     "two_samples",
     "wording",
 }
@@ -37,6 +36,7 @@ LAYERS = (
     {"study"},
     {"rows", "store"},
     {"running"},
+    {"upkeep", "exploring"},
     {"indices"},
     {"analysis"},
     {"drawing", "plots"},
@@ -46,12 +46,35 @@ LAYERS = (
 """Modules and packages of ``uq``, from the ground up: a layer may use itself and what is below."""
 
 STRANGERS = {
-    ("indices", "running"),
-    ("analysis", "running"),
-    ("drawing", "running"),
-    ("report", "running"),
-}
+    (above, below)
+    for above in ("indices", "analysis", "drawing", "report")
+    for below in ("running", "upkeep", "exploring")
+} | {("upkeep", "exploring"), ("exploring", "upkeep")}
 """What may not use the other although it stands above."""
+
+STOREYS = {
+    "vibrator": (
+        {"parameters"},
+        {"theory"},
+        {"equations"},
+        {"lanes", "exact"},
+        {"start"},
+        {"paper", "batch", "trajectory"},
+    ),
+    "mole": (
+        {"parameters"},
+        {"theory"},
+        {"exact", "lanes"},
+        {"response"},
+        {"batch", "trajectory"},
+        {"explore"},
+        {"paper"},
+    ),
+}
+"""Modules and packages of each machine, from the ground up: one may use itself and those below."""
+
+SIDE_BY_SIDE = 12
+"""Modules that one folder of a machine may hold, its ``__init__`` apart."""
 
 
 def modules(package):
@@ -120,7 +143,7 @@ def test_models_know_neither_dask_nor_files_nor_xarray():
         for name, found in edges("models").items()
         for other in found
         if other.split(".")[0]
-        in (foreign if name.endswith(".explore") else foreign | allowed_in_explore)
+        in (foreign if "explore" in name.split(".") else foreign | allowed_in_explore)
     }
     assert not guilty
 
@@ -135,6 +158,30 @@ def test_one_machine_does_not_import_another():
             if parts[0] == "models" and len(parts) > 1 and parts[1:2] not in (own, [shared]):
                 guilty.add((name, other))
     assert not guilty
+
+
+@pytest.mark.parametrize("machine", STOREYS)
+def test_a_machine_depends_one_way(machine):
+    height = {name: i for i, names in enumerate(STOREYS[machine]) for name in names}
+    package = ["models", machine]
+    guilty = set()
+    for name, found in edges(f"models/{machine}").items():
+        here = name.split(".")[2:3]
+        if not here:  # MODEL, which imports what it declares, and the rest when it computes
+            continue
+        for other in found:
+            parts = other.split(".")
+            if parts[:2] == package and parts[2:3] != here:
+                below = height.get(".".join(parts[2:3]), len(height))
+                guilty |= {(name, other)} if below >= height[here[0]] else set()
+    assert not guilty
+
+
+@pytest.mark.parametrize("machine", STOREYS)
+def test_few_files_stand_side_by_side(machine):
+    folder = HOUSE / "models" / machine
+    files = [path.parent for path in folder.rglob("*.py") if path.name != "__init__.py"]
+    assert {place for place in files if files.count(place) > SIDE_BY_SIDE} == set()
 
 
 def test_the_platform_depends_one_way():
@@ -154,7 +201,7 @@ def test_the_platform_depends_one_way():
 
 def test_a_worker_imports_no_more_than_it_needs():
     heavy = "{'pydantic', 'scipy', 'xarray'}"
-    program = f"import sys, uq.running.task; print(*{heavy} & set(sys.modules))"
+    program = f"import sys, uq.running.dask_task; print(*{heavy} & set(sys.modules))"
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert (ended.stdout, ended.stderr) == ("\n", "")
 

@@ -157,8 +157,8 @@ def test_the_citation_is_that_of_this_version():
 @pytest.mark.parametrize(
     ("module", "kept"),
     [
-        ("models.vibrator.table1", "docs/outputs/vibrator-table1.txt"),
-        ("models.mole.table", "docs/outputs/mole-claims.txt"),
+        ("models.vibrator.paper.table1", "docs/outputs/vibrator-table1.txt"),
+        ("models.mole.paper.table", "docs/outputs/mole-claims.txt"),
     ],
 )
 def test_what_is_quoted_is_what_is_printed(module, kept, capsys):

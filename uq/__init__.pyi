@@ -17,12 +17,12 @@ from .drawing.response_plot import plot_bifurcation as plot_bifurcation
 from .drawing.response_plot import plot_curve as plot_curve
 from .errors import InputError as InputError
 from .errors import RunError as RunError
+from .exploring.basins import basins as basins
+from .exploring.rare_events import rare_event as rare_event
+from .exploring.simulation import simulate as simulate
 from .indices.sensitivities import sensitivity as sensitivity
 from .provenance import __version__ as __version__
 from .rows.elements import labels as labels
 from .rows.results import open_result as open_result
-from .running.attraction import basins as basins
-from .running.reliability import rare_event as rare_event
 from .running.runner import run as run
-from .running.simulation import simulate as simulate
 from .study.definition import load_study as load_study

@@ -13,11 +13,11 @@ from uq.analysis.statistics import summarise
 from uq.analysis.twin import with_twin
 from uq.designs.table import DESIGNS
 from uq.errors import InputError
+from uq.exploring.rare_events import METHODS as RARE
+from uq.exploring.rare_events import rare_event
 from uq.indices.sensitivities import sensitivities
 from uq.rows import stopping
 from uq.rows.elements import study_file_of
-from uq.running.reliability import METHODS as RARE
-from uq.running.reliability import rare_event
 
 DRAWN = [name for name, design in DESIGNS.items() if getattr(design, "draw", None) is not None]
 FIRST = {method: name for name in reversed(DRAWN) for method in DESIGNS[name].feeds}

@@ -139,7 +139,7 @@ def _estimate(
 ) -> tuple[float, Interval]:
     kept = ~element.failed
     if until.threshold is not None:
-        values = np.abs(element.values) if element.kind == "angle" else element.values
+        values = element.for_thresholds
         if (element.censored & (values < until.threshold)).any():
             return np.nan, intervals.UNKNOWN
         hits = values > until.threshold if until.above is not None else values < until.threshold
