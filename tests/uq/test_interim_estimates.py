@@ -52,8 +52,8 @@ def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
     name = "life[side=left,depth=0.5]"
     known = look_at(ds, output=name, below=1.0, half_width=0.5)
     unknown = look_at(ds, output=name, below=1.4, half_width=0.5)
-    assert known.reached and 0.2 < known.value < 0.4
-    assert np.isnan(unknown.value) and not unknown.reached
+    assert known.reached and 0.2 < known.estimate.value < 0.4
+    assert np.isnan(unknown.estimate.value) and not unknown.reached
 
 
 def test_it_is_said_at_which_look_a_run_knew_enough():

@@ -133,7 +133,7 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, An
     if len(values) == 0:
         unknown = np.full(len(time), np.nan)
         return counts | {"never": np.nan} | dict.fromkeys(("survival", "low", "high"), unknown)
-    known_at_once = element.never_known_at_once
+    known_at_once = element.declared.never_known_at_once
     found = outliving(values, censored, time, known_at_once)
     if replicate is None:
         interval = _greenwood(found)
@@ -156,7 +156,7 @@ def band(element: Element, time: Floats) -> Ends:
     values, censored = element.at_least, element.censored[element.present]
     if len(values) == 0:
         return _no_band(time)
-    found = outliving(values, censored, time, element.never_known_at_once)
+    found = outliving(values, censored, time, element.declared.never_known_at_once)
     among = found.among or found
     at_risk = found.ending * len(values) - np.searchsorted(np.sort(values), time)
     with np.errstate(divide="ignore", invalid="ignore"):

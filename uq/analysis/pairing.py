@@ -62,7 +62,7 @@ def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
     Kinship
     """
     both = (first, second)
-    if any(DESIGNS[ds.attrs["design"]].draw is None for ds in both):
+    if any(DESIGNS[ds.attrs["design"]].imported for ds in both):
         return _kinship_of_imported(first, second)
     if first.attrs["seed"] != second.attrs["seed"]:
         return Kinship.STRANGERS

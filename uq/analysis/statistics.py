@@ -168,7 +168,7 @@ def _points(
             repr(threshold): _threshold(element, threshold, replicate)
             for threshold in analysis.thresholds.get(element.output, ())
         },
-        "b_lives": b_lives(element, replicate) if element.kind == "lifetime" else {},
+        "b_lives": b_lives(element, replicate) if element.is_lifetime else {},
     }
 
 
@@ -178,7 +178,7 @@ def _quantiles(
     """Return quantiles, and beside those that censored rows leave open Kaplan and Meier's."""
     within = _of(replicate, element.present)
     found = {name: quantile_entry(element, p, within) for name, p in asked.items()}
-    if element.kind == "lifetime":
+    if element.is_lifetime:
         for name, guess in life_quantiles(element, asked, replicate).items():
             if "assumes" in guess:
                 found[name]["kaplan_meier"] = guess
@@ -224,7 +224,7 @@ def _tolerance(
 
 
 def _fitted(element: Element, fits: bool) -> bool:
-    return fits and element.kind == "lifetime"
+    return fits and element.is_lifetime
 
 
 def _between(
@@ -271,8 +271,7 @@ def event(element: Element, threshold: float) -> tuple[Mask, Mask] | None:
     values, censored = element.values, element.censored
     if (censored & (values < threshold)).any():
         return None
-    if element.kind == "angle":
-        values = np.abs(values)
+    values = element.for_thresholds
     above = (values > threshold) | (censored & (values == threshold))
     return above, (values < threshold) & ~censored
 
@@ -299,6 +298,6 @@ def _notes(ds: xr.Dataset) -> list[str]:
     if design.until is not None:
         notes.append(stopping.sentence(design, ds))
     if not are_independent(ds) and ds.attrs["replicates"] == 1:
-        reason = NO_INTERVALS if DESIGNS[ds.attrs["design"]].draw else NOT_STATED
+        reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
         notes.append(reason.format(design=ds.attrs["design"]))
     return notes

@@ -137,7 +137,7 @@ def _estimates(
         if sides is None or not kept.any():
             continue
         for sign, hits in zip("><", sides, strict=True):
-            found = controlled_share(hits, kept, _sized(control), _sized(many))
+            found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
             plain = Estimate(float(hits[kept].mean()), *share_interval(hits[kept]))
             lost = failed_share_bounds(hits, element.failed, None)
             few = few_hits(int(hits[kept].sum()), int(kept.sum()))
@@ -168,11 +168,6 @@ def _filled(control: Element) -> Floats:
     """Return what a mean is controlled by, (n, 2): the value, and where there is none."""
     finite = np.isfinite(control.values)
     return np.stack([np.where(finite, control.values, 0.0), ~finite], axis=1)
-
-
-def _sized(control: Element) -> Floats:
-    """Return what a probability is controlled by: angles count by their magnitude."""
-    return np.abs(control.values) if control.kind == "angle" else control.values
 
 
 def _inputs(ds: xr.Dataset, study: Study) -> Floats:

@@ -137,7 +137,7 @@ def _estimate(
 ) -> Estimate:
     kept = ~element.failed
     if until.threshold is not None:
-        values = np.abs(element.values) if element.kind == "angle" else element.values
+        values = element.for_thresholds
         if (element.censored & (values < until.threshold)).any():
             return NOTHING
         hits = values > until.threshold if until.above is not None else values < until.threshold
