@@ -58,9 +58,9 @@ Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version
+        from uq import __version__
 
-        print(f"vibrolife {version('vibrolife')}")
+        print(f"vibrolife {__version__}")
         raise typer.Exit
 
 
