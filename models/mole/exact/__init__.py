@@ -1,8 +1,10 @@
 """The exact propagator: one mole at a time, error-controlled from event to event.
 
-states        what a mole's future depends on, and how it moved
-propagator    one mole, started and followed
-events        the loop over events
+Reading order; a module imports only those above it:
+
+    states        what a mole's future depends on, and how it moved
+    events        the loop over events
+    propagator    one mole, started and followed
 """
 
 from models.mole.exact.propagator import propagate, start
