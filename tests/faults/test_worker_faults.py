@@ -18,7 +18,7 @@ from uq.contract import Status
 from uq.errors import InputError
 from uq.rows.evaluate import KernelError
 from uq.rows.results import open_result
-from uq.rows.workload import work_of
+from uq.rows.workload import workload_of
 from uq.running import cluster, isolation, runner, sent_chunks
 from uq.study.definition import load_study
 
@@ -116,9 +116,9 @@ def test_killed_processes_leave_no_trace(
 def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monkeypatch, injected):
     study = study_of(seconds=0.1, samples=60)
     failed = []
-    real = sent_chunks.Flight._failed
+    real = sent_chunks.SentChunks._failed
     monkeypatch.setattr(
-        sent_chunks.Flight,
+        sent_chunks.SentChunks,
         "_failed",
         lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
     )
@@ -157,8 +157,8 @@ class Unlucky(isolation.Isolated):
 
 def test_a_row_is_not_guilty_because_its_process_was_killed_twice(study_of, undisturbed, injected):
     study = study_of(seconds=0.2, samples=2)
-    work = work_of(study)
-    process = Unlucky(isolation.task_of(work))
+    work = workload_of(study)
+    process = Unlucky(isolation.spec_of(work))
     rows = work.block(0, 2)
     try:
         chunk = process.evaluate(rows.x, rows.seed)

@@ -18,7 +18,7 @@ import uq
 from uq import provenance
 from uq.errors import InputError
 from uq.running import cluster, dispatch, runner
-from uq.running.child import Task
+from uq.running.child import ModelSpec
 from uq.running.dask_task import evaluate_rows
 from uq.study.definition import load_study
 
@@ -147,12 +147,14 @@ def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monk
 def test_a_worker_that_differs_is_refused_with_its_first_rows():
     x, seed = np.full((2, 3), 0.5), np.zeros(2, np.uint64)
     with pytest.raises(InputError, match="a worker has version 1 of model 'ishigami'.* has 2"):
-        evaluate_rows(Task("ishigami", "2", ()), provenance.versions(), None, x, seed, 0)
+        evaluate_rows(ModelSpec("ishigami", "2", ()), provenance.versions(), None, x, seed, 0)
     with pytest.raises(InputError, match="a worker has other code of model 'ishigami' than this"):
-        evaluate_rows(Task("ishigami", "1", (), code="x"), provenance.versions(), None, x, seed, 0)
+        evaluate_rows(
+            ModelSpec("ishigami", "1", (), code="x"), provenance.versions(), None, x, seed, 0
+        )
     later = provenance.versions() | {"vibrolife": "99"}
     with pytest.raises(InputError, match=r"^a worker has vibrolife \S+; this process has .* 99"):
-        evaluate_rows(Task("ishigami", "1", ()), later, None, x, seed, 0)
+        evaluate_rows(ModelSpec("ishigami", "1", ()), later, None, x, seed, 0)
 
 
 def test_a_script_needs_no_main_guard(write_study, folder):

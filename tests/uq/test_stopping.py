@@ -12,11 +12,11 @@ from uq.analysis.statistics import summarise
 from uq.errors import InputError
 from uq.rows import stopping
 from uq.rows.results import open_result
-from uq.rows.workload import work_of
+from uq.rows.workload import workload_of
 from uq.running import cluster, runner
 from uq.study.definition import study_from_text
 from uq.upkeep import extending
-from uq.upkeep.status import standing
+from uq.upkeep.status import run_status
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def test_a_run_stops_at_the_first_look_that_knows_enough(method, replicates, est
 def test_a_stopped_run_is_that_of_fewer_samples_to_the_bit(tmp_path):
     of = study(0.1, samples=500, settings={"fail_above": 0.995, "fail_how": "raise"})
     ds = runner.compute(of, workers=0)
-    assert ds.identical(runner.carry_out(work_of(of.with_samples(ds.attrs["samples"])), 0))
+    assert ds.identical(runner.carry_out(workload_of(of.with_samples(ds.attrs["samples"])), 0))
     example = ds["status"].attrs["example_raised"]
     assert int(example.removeprefix("row ").partition(":")[0]) >= 32  # after the first look
     store.write(ds, tmp_path / "out.nc")
@@ -93,14 +93,14 @@ def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, des
             if place == "cut":  # enough is known and the file is not written
                 patch.setattr(runner.store.DiskStore, "dataset", raising)
             runner.run(of, path, progress=killed_at(total // 2) if place == "chunk" else None)
-        found = standing(path)
+        found = run_status(path)
         assert found["state"] == "interrupted" or place == "cut"
         told = []
         runner.run(of, path, progress=told.append)
         assert told[0].done == told[0].found == found["done"] > 0
         assert told[-1].done == told[-1].total == total
         assert whole(path) == whole(folder / "once.nc")
-        assert standing(path)["state"] == "complete"
+        assert run_status(path)["state"] == "complete"
         assert not store.folder_of(path).exists()
 
 

@@ -205,9 +205,9 @@ def status(result: ResultFile, json: Json = False) -> None:
     """Show where a run stands, also while it runs."""
     from uq.cli import upkeep
     from uq.cli.printing import print_json
-    from uq.upkeep.status import standing
+    from uq.upkeep.status import run_status
 
-    print_json(standing(result)) if json else upkeep.show_status(standing(result))
+    print_json(run_status(result)) if json else upkeep.show_status(run_status(result))
 
 
 @app.command()

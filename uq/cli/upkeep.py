@@ -15,25 +15,25 @@ from uq.rows import results
 from uq.upkeep import extending, verification
 
 
-def show_status(standing: Mapping[str, Any]) -> None:
+def show_status(run_status: Mapping[str, Any]) -> None:
     """Print where a run stands."""
-    process = standing["process"]
+    process = run_status["process"]
     by = f" (process {process['pid']} on {process['host']})" if process else ""
-    heading(f"{standing['output']}: {standing['state']}{by}")
-    rate, left = standing["rate"], standing["seconds_left"]
+    heading(f"{run_status['output']}: {run_status['state']}{by}")
+    rate, left = run_status["rate"], run_status["seconds_left"]
     time_left = (duration(left) or f"{left:.0f} s") if left else ""
-    statuses = [f"{count} {label}" for label, count in standing["status"].items()]
+    statuses = [f"{count} {label}" for label, count in run_status["status"].items()]
     grid(
         [
-            ("done", f"{standing['done']} of {standing['rows']} rows"),
-            ("failed", str(standing["failed"])),
-            ("left", ", ".join(filter(None, (str(standing["left"]), time_left)))),
+            ("done", f"{run_status['done']} of {run_status['rows']} rows"),
+            ("failed", str(run_status["failed"])),
+            ("left", ", ".join(filter(None, (str(run_status["left"]), time_left)))),
             ("rate", f"{rate:.3g} rows/s" if rate else "-"),
             ("by status", ", ".join(statuses) or "-"),
         ]
     )
-    if standing["state"] != "complete" and standing["complete_rows"] is not None:
-        console.print(f"\nUntil then the result with {standing['complete_rows']} rows stays.")
+    if run_status["state"] != "complete" and run_status["complete_rows"] is not None:
+        console.print(f"\nUntil then the result with {run_status['complete_rows']} rows stays.")
 
 
 def extend(

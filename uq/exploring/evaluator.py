@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows
-from uq.rows.workload import Work
-from uq.running.dispatch import Job
-from uq.running.executor import Computing
+from uq.rows.workload import Workload
+from uq.running.dispatch import Dispatcher
+from uq.running.executor import Executor
 from uq.store import MemoryStore
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Evaluator:
     ) -> None:
         cheap = output in study.model.cheap
         self.rows = 0
-        self._work = Work(
+        self._workload = Workload(
             model=study.model.alone(output) if cheap else study.model,
             model_reference=study.model_reference,
             settings=study.settings,
@@ -56,14 +56,14 @@ class Evaluator:
             block=_NONE.part,
             output=output if cheap else "",
         )
-        self._computing = Computing(self._work, workers, scheduler)
+        self._executor = Executor(self._workload, workers, scheduler)
 
     def __enter__(self) -> Self:
-        self._computing.__enter__()
+        self._executor.__enter__()
         return self
 
     def __exit__(self, *exception: object) -> None:
-        self._computing.__exit__(*exception)
+        self._executor.__exit__(*exception)
 
     def __call__(self, x: NDArray[np.float64], seed: NDArray[np.uint64]) -> Chunk:
         """Run the model on some rows.
@@ -81,9 +81,11 @@ class Evaluator:
         """
         zeros = np.zeros(len(x), np.int64)
         rows = Rows(x, seed, zeros.astype(np.int32), zeros, zeros.astype(np.int16))
-        work = self._work._replace(total=len(x), block=rows.part)
-        store = MemoryStore(work)
-        self._computing.finish(Job(work, None, lambda _: None, store, self._computing.evaluate))
+        workload = self._workload._replace(total=len(x), block=rows.part)
+        store = MemoryStore(workload)
+        self._executor.finish(
+            Dispatcher(workload, None, lambda _: None, store, self._executor.evaluate)
+        )
         columns, status, failures = store.chunk()
         numbered = {label: (self.rows + row, text) for label, (row, text) in failures.items()}
         self.rows += len(x)

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from uq.rows.evaluate import Chunk, KernelError
 from uq.rows.sampling import Rows
-from uq.rows.workload import Work
-from uq.running.isolation import Evaluate, task_of
-from uq.running.sent_chunks import Flight
+from uq.rows.workload import Workload
+from uq.running.isolation import Evaluate, spec_of
+from uq.running.sent_chunks import SentChunks
 from uq.store import DiskStore, MemoryStore, row_bytes
 
 if TYPE_CHECKING:
@@ -72,12 +72,12 @@ class Progress(NamedTuple):
 Report = Callable[[Progress], object]
 
 
-class Job:
+class Dispatcher:
     """Work under way; rows are taken in order.
 
     Parameters
     ----------
-    work : Work
+    workload : Workload
     chunk_rows : int or None
         Rows per chunk, if the caller has a wish.
     report : callable
@@ -99,7 +99,7 @@ class Job:
 
     def __init__(
         self,
-        work: Work,
+        workload: Workload,
         chunk_rows: int | None,
         report: Report,
         store: MemoryStore | DiskStore,
@@ -107,7 +107,7 @@ class Job:
         row_limit: float | None = None,
         stop: int | None = None,
     ) -> None:
-        self.work = work
+        self.workload = workload
         self.report = report
         self.store = store
         self._wish = chunk_rows
@@ -138,7 +138,7 @@ class Job:
     @property
     def groups(self) -> int:
         """Tasks into which the rows can be cut at most."""
-        return self.store.total // self.work.group
+        return self.store.total // self.workload.group
 
     def pilot(self, share: float) -> None:
         """Run the first rows here, more and more of them, until a chunk takes a while.
@@ -162,16 +162,16 @@ class Job:
     def finish_on(self, crew: "Workers") -> None:
         """Run the other rows on workers, and here while none of our own is there."""
         self._dashboard = crew.dashboard
-        flight = Flight(self.work, task_of(self.work), crew, self._row_limit)
+        sent = SentChunks(self.workload, spec_of(self.workload), crew, self._row_limit)
         while not self.complete:
             threads = crew.threads
             sharing = max(1, threads or crew.own)
             # No more chunks in flight than keep the workers busy.
-            while self._untaken and len(flight) < max(_IN_FLIGHT, 2 * sharing):
-                flight.send(*self._take(self._shared(sharing)))
+            while self._untaken and len(sent) < max(_IN_FLIGHT, 2 * sharing):
+                sent.send(*self._take(self._shared(sharing)))
             if crew.own and not threads and self._untaken:
                 self._here(self._shared(sharing))
-            for start, some, chunk, seconds in flight.landed():
+            for start, some, chunk, seconds in sent.returned():
                 self._row_seconds = seconds / len(some.x)
                 self._keep(start, some, chunk)
             self.store.keep_up()
@@ -194,32 +194,32 @@ class Job:
         if stop < end:
             self._todo.appendleft((stop, end))
         self._untaken -= stop - start
-        return start, self.work.block(start, stop)
+        return start, self.workload.block(start, stop)
 
     def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
-        self.store.glimpse.see(chunk)
+        self.store.preview.add(chunk)
         self.store.add(start, some, chunk)
         self._left -= len(some.x)
-        self.tell()  # at once: an interrupt says how many rows are kept
+        self.report_progress()  # at once: an interrupt says how many rows are kept
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
-            raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")
+            raise KernelError(f"model '{self.workload.model.name}': every row is wrong: {wrong}")
         self.store.keep_up()
 
-    def tell(self) -> None:
+    def report_progress(self) -> None:
         """Report how far the run is."""
         store = self.store
-        seen = store.glimpse.median, store.glimpse.shares
+        seen = store.preview.median, store.preview.shares
         counts = store.done, store.total, store.failed, store.found, dict(store.status)
         self.report(Progress(*counts, *seen, self._dashboard))
 
     def _chunk_rows(self) -> int:
-        most = _CHUNK_BYTES // row_bytes(self.work)
+        most = _CHUNK_BYTES // row_bytes(self.workload)
         if self._row_limit and self._row_seconds:  # sound chunks are not to be stopped
             most = max(1, min(most, int(_LIMIT_SHARE * self._row_limit / self._row_seconds)))
         if self._wish:
             return self._whole(min(self._wish, most) if self._row_limit else self._wish)
-        return min(self._whole(most), chunk_rows(self.work, self._row_seconds))
+        return min(self._whole(most), chunk_rows(self.workload, self._row_seconds))
 
     def _shared(self, threads: int) -> int:
         """Return the rows of the next chunk: all threads are to finish together."""
@@ -229,20 +229,20 @@ class Job:
 
     def _whole(self, size: float) -> int:
         """Round up to whole groups of the design."""
-        return self.work.group * ceil(size / self.work.group)
+        return self.workload.group * ceil(size / self.workload.group)
 
 
-def chunk_rows(work: Work, row_seconds: float) -> int:
+def chunk_rows(workload: Workload, row_seconds: float) -> int:
     """Return how many rows make a good chunk, whole groups of the design.
 
     Parameters
     ----------
-    work : Work
+    workload : Workload
     row_seconds : float
         What a row costs [s], 0 if unknown.
     """
-    size: float = _CHUNK_BYTES // row_bytes(work)
+    size: float = _CHUNK_BYTES // row_bytes(workload)
     if row_seconds:
-        block = min(work.model.block, ceil(_BLOCK_SECONDS / row_seconds))
+        block = min(workload.model.block, ceil(_BLOCK_SECONDS / row_seconds))
         size = min(size, block * max(1, round(CHUNK_SECONDS / (row_seconds * block))))
-    return work.group * ceil(size / work.group)
+    return workload.group * ceil(size / workload.group)

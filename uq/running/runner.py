@@ -18,9 +18,9 @@ from uq import store
 from uq.errors import InputError
 from uq.rows import results, stopping
 from uq.rows.sampling import rows
-from uq.rows.workload import Work, work_of
-from uq.running.dispatch import Job, Progress, Report
-from uq.running.executor import Computing
+from uq.rows.workload import Workload, workload_of
+from uq.running.dispatch import Dispatcher, Progress, Report
+from uq.running.executor import Executor
 from uq.study.changes import refusal_to_extend, what_changed
 from uq.study.code import is_other_code
 from uq.study.definition import Study, load_study
@@ -99,7 +99,7 @@ def run(
         return found
     with kept(study, path, fresh, say=say or (lambda _: None), mixed=mixed) as there:
         options = (workers, scheduler, chunk_rows, progress, row_limit)
-        return carry_out(work_of(study), *options, there, until)
+        return carry_out(workload_of(study), *options, there, until)
 
 
 @contextmanager
@@ -177,11 +177,11 @@ def compute(
 ) -> xr.Dataset:
     """Run a study without writing anything; parameters as in `run`."""
     options = (workers, scheduler, chunk_rows, progress, row_limit)
-    return carry_out(work_of(study), *options, until=_until(study))
+    return carry_out(workload_of(study), *options, until=_until(study))
 
 
 def carry_out(
-    work: Work,
+    workload: Workload,
     workers: int | None = None,
     scheduler: str | None = None,
     chunk_rows: int | None = None,
@@ -194,7 +194,7 @@ def carry_out(
 
     Parameters
     ----------
-    work : Work
+    workload : Workload
     workers, scheduler, chunk_rows, progress, row_limit
         As in `run`.
     kept : DiskStore, optional
@@ -209,22 +209,28 @@ def carry_out(
     if chunk_rows is not None and chunk_rows < 1:
         raise InputError(f"chunk_rows must be at least 1: {chunk_rows}")
     report = progress or (lambda _: None)
-    where = kept or store.MemoryStore(work)
+    where = kept or store.MemoryStore(workload)
 
     def compiling() -> None:
         counts = where.done, where.total, where.failed, where.found
         report(Progress(*counts, compiling=True))
 
-    with Computing(work, workers, scheduler, row_limit, compiling) as computing:
-        for part in (*_looks(until, where.reach), None):
-            stop = work.total if part is None else rows(part)
-            job = Job(work, chunk_rows, report, where, computing.evaluate, row_limit, stop)
+    with Executor(workload, workers, scheduler, row_limit, compiling) as executor:
+        for part in (*_interim_studies(until, where.reach), None):
+            stop = workload.total if part is None else rows(part)
+            dispatcher = Dispatcher(
+                workload, chunk_rows, report, where, executor.evaluate, row_limit, stop
+            )
             if where.found:
-                job.tell()
-            computing.finish(job)
-            if part and until and stopping.look(until.design, where.first(part)).reached:
+                dispatcher.report_progress()
+            executor.finish(dispatcher)
+            if (
+                part
+                and until
+                and stopping.interim_estimate(until.design, where.first(part)).reached
+            ):
                 where.cut(part)
-                job.tell()
+                dispatcher.report_progress()
                 break
     return where.dataset()
 
@@ -242,9 +248,9 @@ def _until(study: Study) -> Study | None:
     return study
 
 
-def _looks(until: Study | None, reach: int) -> list[Study]:
+def _interim_studies(until: Study | None, reach: int) -> list[Study]:
     """Return what to look at before the budget is spent: a run that goes on looks where it was."""
     if until is None:
         return []
-    parts = [until.with_samples(samples) for samples in stopping.looks(until.design)]
+    parts = [until.with_samples(samples) for samples in stopping.interim_sizes(until.design)]
     return [part for part in parts[:-1] if rows(part) >= reach]

@@ -13,7 +13,7 @@ from uq.contract import Model
 from uq.errors import InputError
 from uq.inputs.values import read_settings
 from uq.rows import results
-from uq.rows.workload import work_of
+from uq.rows.workload import workload_of
 from uq.running import runner
 from uq.running.dispatch import Report
 from uq.store import folder_of
@@ -156,8 +156,8 @@ def rerun_failed(
     }
     plain = json.loads(json.dumps(differing))  # as it will be read again
     with runner.kept(study, path, again=plain, say=say, mixed=mixed) as kept:
-        work = work_of(study)._replace(settings=changed)
-        return runner.carry_out(work, workers, scheduler, None, progress, row_limit, kept)
+        workload = workload_of(study)._replace(settings=changed)
+        return runner.carry_out(workload, workers, scheduler, None, progress, row_limit, kept)
 
 
 def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:

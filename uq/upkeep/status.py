@@ -12,7 +12,7 @@ from uq.store.records import RowsRecord, RunRecord, without_overlap
 from uq.store.tally import ended
 
 
-def standing(path: Path) -> dict[str, Any]:
+def run_status(path: Path) -> dict[str, Any]:
     """Tell how far the run is that makes a result.
 
     Parameters
