@@ -6,14 +6,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam import exact, lanes, response
-from models.beam.lives import Lives, find_lives
-from models.beam.modal import Array, beams
+from models.beam import exact, lanes
 from models.beam.parameters import Params, Rows, Settings
-from models.beam.random_lives import find_random_lives
-from models.beam.random_load import has_band
-from models.beam.second_looks import add_second_looks
-from models.beam.step_error import add_step_error
+from models.beam.response.neighbouring_starts import add_second_looks
+from models.beam.response.settling import NINE_IN_TEN, Response, settle
+from models.beam.response.step_error import add_step_error
+from models.beam.structure.modal import Array, beams
+from models.beam.structure.random_load import has_band
+from models.beam.wear.lives import Lives, find_lives
+from models.beam.wear.random_lives import find_random_lives
 from uq.contract import Status
 
 PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
@@ -26,7 +27,7 @@ _BAND = [Params._fields.index(name) for name in ("random_force_low", "random_for
 class Simulated(NamedTuple):
     """The dimensionless results of n beams."""
 
-    response: response.Response
+    response: Response
     lives: Lives
     fundamental: Array
 
@@ -84,7 +85,7 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     b = beams(p, settings, seed)
     propagator = PROPAGATORS[settings.propagator]
     n, depths = len(p.length), len(settings.depths)
-    whole = Simulated(response.Response.nothing(n), Lives.nothing(n, depths), b.frequency[:, 0])
+    whole = Simulated(Response.nothing(n), Lives.nothing(n, depths), b.frequency[:, 0])
     possible = np.flatnonzero(has_band(p))
     for some, system in propagator.groups(b.take(possible), settings):
         rows = possible[some]
@@ -103,12 +104,12 @@ def initial_gaps(p: Rows) -> Array:
 
 def _simulate_group(
     propagator: ModuleType, system: Any, p: Rows, settings: Settings
-) -> tuple[response.Response, Lives]:
+) -> tuple[Response, Lives]:
     gaps = initial_gaps(p)
     x0 = p.initial_gap
     state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
     begin = state.copy()
-    settled = response.settle(propagator, system, state, gaps)
+    settled = settle(propagator, system, state, gaps)
     work, error = settled.work.copy(), settled.error.copy()
     add_step_error(propagator, system, state, gaps, settled)
     add_second_looks(propagator, system, begin, gaps, settled)
@@ -123,7 +124,7 @@ def _simulate_group(
         start = (propagator, system.take(rows), state[rows], gaps[rows], work[rows])
         wear = (share[rows], growths[rows], settings.accuracy)
         part = (
-            find_random_lives(*start, error[rows] / response.NINE_IN_TEN, *wear)
+            find_random_lives(*start, error[rows] / NINE_IN_TEN, *wear)
             if is_random
             else find_lives(*start, *wear)
         )
@@ -134,7 +135,7 @@ def _simulate_group(
 
 def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
     return Simulated(
-        response.Response._make(a[rows] for a in s.response),
+        Response._make(a[rows] for a in s.response),
         Lives._make(a[rows] for a in s.lives),
         s.fundamental[rows],
     )

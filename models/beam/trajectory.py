@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from models.beam import exact, random_load
+from models.beam import exact
 from models.beam.batch import PROPAGATORS, initial_gaps
-from models.beam.modal import beams
 from models.beam.parameters import Params, Rows, Settings
-from models.beam.random_load import has_band
+from models.beam.structure.modal import beams
+from models.beam.structure.random_load import force as random_force
+from models.beam.structure.random_load import has_band
 from uq.contract import Trajectory
 
 PERIODS = 100
@@ -53,7 +54,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         "force": ("N", "harmonic force at the tip", force),
     }
     if params.random_force_level > 0:
-        random = params.initial_gap * random_load.force(b.load[0], time * params.forcing_frequency)
+        random = params.initial_gap * random_force(b.load[0], time * params.forcing_frequency)
         quantities["random_force"] = ("N", "random force at the tip", random)
     if not has_band(p)[0]:
         quantities = {

@@ -7,11 +7,12 @@ from scipy.signal import welch
 from scipy.stats import kstest
 
 from models.beam import MODEL, exact, lanes
-from models.beam.modal import beams, reach
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
-from models.beam.random_lives import _fit, _step, _Wear
-from models.beam.random_load import COUNT, force, tip_deviation
-from models.beam.response import settle
+from models.beam.response.settling import settle
+from models.beam.structure.modal import beams, reach
+from models.beam.structure.random_load import COUNT, force, tip_deviation
+from models.beam.wear.random_lives import _fit, _step, _Wear
+from models.numerics.blocks import LANES
 from uq import simulate
 from uq.contract import Status
 
@@ -217,7 +218,7 @@ def test_a_random_run_in_parts_is_the_run_in_one_bit_for_bit(propagator):
 
 
 def test_rows_with_and_without_random_load_do_not_see_each_other():
-    n = lanes.LANES + 3
+    n = LANES + 3
     level = np.where(np.arange(n) % 3 == 0, 0.0, LEVEL)
     p = nominal(n, random_force_level=level)
     _, system = prepared(lanes, p, steps_per_period=96)
