@@ -56,7 +56,8 @@ def test_failures_do_not_depend_on_chunks(write_study, chunk_rows):
         more='[settings]\nfail_above = 0.7\nfail_how = "raise"',
     )
     study = load_study(path)
-    assert runner.compute(study, 0, chunk_rows=chunk_rows).identical(runner.compute(study, 0))
+    whole = runner.compute(study, workers=0)
+    assert runner.compute(study, workers=0, chunk_rows=chunk_rows).identical(whole)
 
 
 def test_chunks_may_arrive_in_any_order(write_study):

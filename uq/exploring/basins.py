@@ -21,6 +21,7 @@ from uq.rows import results
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
 from uq.running import runner
+from uq.running.options import RunOptions
 
 
 def basins(
@@ -97,7 +98,8 @@ def basins(
         if path.is_file():
             return _found(path, identity)
         store.check_target(path, store.row_bytes(workload) * workload.total)
-    ds = runner.carry_out(workload, workers if grid.reference else 0, scheduler)
+    options = RunOptions(workers if grid.reference else 0, scheduler)
+    ds = runner.carry_out(workload, options)
     if path is not None:
         store.write(ds, path)
     return ds

@@ -13,6 +13,7 @@ from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
 from uq.running.dispatch import Dispatcher
 from uq.running.executor import Executor
+from uq.running.options import DEFAULTS, RunOptions
 from uq.store import MemoryStore
 
 if TYPE_CHECKING:
@@ -29,8 +30,7 @@ class Evaluator:
     study : Study
     output : str
         The output that is wanted: computed alone, where the model can do so.
-    workers, scheduler
-        As in `uq.run`.
+    options : RunOptions
 
     Attributes
     ----------
@@ -38,15 +38,10 @@ class Evaluator:
         Rows computed so far.
     """
 
-    def __init__(
-        self,
-        study: "Study",
-        output: str,
-        workers: int | None = None,
-        scheduler: str | None = None,
-    ) -> None:
+    def __init__(self, study: "Study", output: str, options: RunOptions = DEFAULTS) -> None:
         cheap = output in study.model.cheap
         self.rows = 0
+        self._options = options
         self._workload = Workload(
             model=study.model.alone(output) if cheap else study.model,
             model_reference=study.model_reference,
@@ -56,7 +51,7 @@ class Evaluator:
             block=_NONE.part,
             output=output if cheap else "",
         )
-        self._executor = Executor(self._workload, workers, scheduler)
+        self._executor = Executor(self._workload, options)
 
     def __enter__(self) -> Self:
         self._executor.__enter__()
@@ -83,9 +78,8 @@ class Evaluator:
         rows = Rows(x, seed, zeros.astype(np.int32), zeros, zeros.astype(np.int16))
         workload = self._workload._replace(total=len(x), block=rows.part)
         store = MemoryStore(workload)
-        self._executor.finish(
-            Dispatcher(workload, None, lambda _: None, store, self._executor.evaluate)
-        )
+        dispatcher = Dispatcher(workload, self._options, store, self._executor.evaluate)
+        self._executor.finish(dispatcher)
         columns, status, failures = store.chunk()
         numbered = {label: (self.rows + row, text) for label, (row, text) in failures.items()}
         self.rows += len(x)

@@ -1,4 +1,4 @@
-"""The rows of one run on their way: taken in order, computed here or on workers, kept.
+"""The rows of one run: taken in order, computed here or on workers, kept.
 
 Rows are cut into chunks of whole design groups, one kernel call each. How they are cut and who
 computes them changes no bit of the result.
@@ -6,20 +6,20 @@ computes them changes no bit of the result.
 
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
 from math import ceil
-from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from uq.rows.evaluate import Chunk, KernelError
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
-from uq.running.isolation import Evaluate, spec_of
+from uq.running.isolation import Evaluate
+from uq.running.options import RunOptions
+from uq.running.progress import Progress
 from uq.running.sent_chunks import SentChunks
 from uq.store import DiskStore, MemoryStore, row_bytes
 
 if TYPE_CHECKING:
-    from uq.running.cluster import Workers
+    from uq.running.workers import Workers
 
 CHUNK_SECONDS = 0.5
 """Work in a chunk, unless the caller says how many rows."""
@@ -27,67 +27,25 @@ CHUNK_SECONDS = 0.5
 # Longest chunk for the sake of a whole block of the kernel: half a block may take as long.
 _BLOCK_SECONDS = 5.0
 _FIRST_ROWS = 16
-_IN_FLIGHT = 4  # chunks at least, also while workers start
+_SENT_CHUNKS = 4  # at least, also while workers start
 _LAST_SHARE = 1 / 8  # of a chunk: smaller ones towards the end would waste work
 _GROWTH = 4  # of the chunks of the pilot
 _LIMIT_SHARE = 0.25  # of the time limit of a row, for a whole chunk
 _CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
 _ENOUGH_ROWS = 32  # to blame the model and not the rows
-_POLL_SECONDS = 0.2
-
-
-class Progress(NamedTuple):
-    """How far a run is.
-
-    Attributes
-    ----------
-    done, total, failed : int
-        Rows.
-    found : int
-        Rows among those done that were there from the start.
-    status : dict of str to int
-        Status label -> rows.
-    median : tuple of (str, float) or None
-        Name and median of a life [s] that is of interest, among the rows that arrived in this
-        process.
-    shares : dict of str to float
-        Of regimes, among the same rows.
-    dashboard : str
-        Address of the page of a dask cluster, or "".
-    compiling : bool
-        Whether the model is being compiled, for which rows wait.
-    """
-
-    done: int
-    total: int
-    failed: int
-    found: int = 0
-    status: Mapping[str, int] = MappingProxyType({})
-    median: tuple[str, float] | None = None
-    shares: Mapping[str, float] = MappingProxyType({})
-    dashboard: str = ""
-    compiling: bool = False
-
-
-Report = Callable[[Progress], object]
 
 
 class Dispatcher:
-    """Work under way; rows are taken in order.
+    """Has the rows of a workload computed, in order.
 
     Parameters
     ----------
     workload : Workload
-    chunk_rows : int or None
-        Rows per chunk, if the caller has a wish.
-    report : callable
-        Called with a `Progress` whenever rows have arrived.
+    options : RunOptions
     store : MemoryStore or DiskStore
         Where they are kept; what it lacks is computed.
     evaluate : callable
         Computes rows on this computer.
-    row_limit : float or None
-        Longest time for one row [s].
     stop : int, optional
         Number behind the last row that is wanted; by default all are.
 
@@ -100,19 +58,17 @@ class Dispatcher:
     def __init__(
         self,
         workload: Workload,
-        chunk_rows: int | None,
-        report: Report,
+        options: RunOptions,
         store: MemoryStore | DiskStore,
         evaluate: Evaluate,
-        row_limit: float | None = None,
         stop: int | None = None,
     ) -> None:
         self.workload = workload
-        self.report = report
         self.store = store
-        self._wish = chunk_rows
+        self._options = options
+        self._wish = options.chunk_rows
         self._evaluate = evaluate
-        self._row_limit = row_limit
+        self._row_limit = options.row_limit
         stop = store.total if stop is None else stop
         self._todo = deque((a, min(b, stop)) for a, b in store.missing if a < stop)
         self._rows = sum(b - a for a, b in self._todo)
@@ -162,12 +118,12 @@ class Dispatcher:
     def finish_on(self, crew: "Workers") -> None:
         """Run the other rows on workers, and here while none of our own is there."""
         self._dashboard = crew.dashboard
-        sent = SentChunks(self.workload, spec_of(self.workload), crew, self._row_limit)
+        sent = SentChunks(self.workload, crew, self._row_limit)
         while not self.complete:
             threads = crew.threads
             sharing = max(1, threads or crew.own)
-            # No more chunks in flight than keep the workers busy.
-            while self._untaken and len(sent) < max(_IN_FLIGHT, 2 * sharing):
+            # No more chunks are sent than keep the workers busy.
+            while self._untaken and len(sent) < max(_SENT_CHUNKS, 2 * sharing):
                 sent.send(*self._take(self._shared(sharing)))
             if crew.own and not threads and self._untaken:
                 self._here(self._shared(sharing))
@@ -211,7 +167,7 @@ class Dispatcher:
         store = self.store
         seen = store.preview.median, store.preview.shares
         counts = store.done, store.total, store.failed, store.found, dict(store.status)
-        self.report(Progress(*counts, *seen, self._dashboard))
+        self._options.progress(Progress(*counts, *seen, self._dashboard))
 
     def _chunk_rows(self) -> int:
         most = _CHUNK_BYTES // row_bytes(self.workload)

@@ -93,7 +93,7 @@ def pilot(
     """
     if workers is not None and workers < 0:
         raise InputError(f"workers must not be negative: {workers}")
-    from uq.running.cluster import CORES
+    from uq.running.local_cluster import CORES
 
     workload = workload_of(study)
     processes = min(workers or (1 if workers == 0 else CORES), workload.total // workload.group)
@@ -139,7 +139,7 @@ def pilot(
 def _load_seconds() -> float:
     """Return how long a new process takes to load what a run needs [s]."""
     began = time.perf_counter()
-    subprocess.run(command("uq.cli.studies"), env=inherited(), stdin=subprocess.DEVNULL, check=True)
+    subprocess.run(command("uq.cli.run"), env=inherited(), stdin=subprocess.DEVNULL, check=True)
     return time.perf_counter() - began
 
 

@@ -12,13 +12,13 @@ from uq.provenance import versions
 from uq.rows.evaluate import Chunk, Fault, lost_rows
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
-from uq.running.child import ModelSpec
 from uq.running.dask_task import evaluate_rows
+from uq.running.isolation import spec_of
 
 if TYPE_CHECKING:
     from distributed import Future
 
-    from uq.running.cluster import Workers
+    from uq.running.workers import Workers
 
 _TRIES = 3
 _WAIT_SECONDS = 0.2
@@ -56,19 +56,16 @@ class SentChunks:
     Parameters
     ----------
     workload : Workload
-    spec : uq.running.child.ModelSpec
     crew : Workers
     row_limit : float or None
         Longest time for one row [s].
     """
 
-    def __init__(
-        self, workload: Workload, spec: ModelSpec, crew: "Workers", row_limit: float | None = None
-    ) -> None:
+    def __init__(self, workload: Workload, crew: "Workers", row_limit: float | None = None) -> None:
         from distributed import as_completed
 
         self._workload = workload
-        self._spec = spec
+        self._spec = spec_of(workload)
         self._crew = crew
         self._row_limit = row_limit
         self._under_way: dict[Future, _Sent] = {}
