@@ -30,11 +30,11 @@ def test_a_run_stops_at_the_first_look_that_knows_enough(method, replicates, est
     half_width = 0.3 if "quantile" in estimate else 0.1
     of = study(half_width, samples=samples, method=method, replicates=replicates, **estimate)
     ds = runner.compute(of, workers=0)
-    sizes, stopped = stopping.looks(of.design), ds.attrs["samples"]
-    assert stopping.look(of.design, ds).reached
+    sizes, stopped = stopping.interim_sizes(of.design), ds.attrs["samples"]
+    assert stopping.interim_estimate(of.design, ds).reached
     assert stopped < samples
     earlier = [computed(of.with_samples(size)) for size in sizes if size < stopped]
-    assert not any(stopping.look(of.design, one).reached for one in earlier)
+    assert not any(stopping.interim_estimate(of.design, one).reached for one in earlier)
 
 
 def test_a_stopped_run_is_that_of_fewer_samples_to_the_bit(tmp_path):
@@ -201,7 +201,7 @@ def test_intervals_stay_honest_under_stopping(estimate, half_width, truth):
     for seed in range(300):
         one = with_seed(of, seed)
         ds = runner.compute(one, workers=0, chunk_rows=4096)
-        low, high = stopping.look(one.design, ds).interval
+        low, high = stopping.interim_estimate(one.design, ds).interval
         held.append(low <= truth <= high)
         stopped.append(ds.attrs["samples"])
     print(f"\n{estimate or 'mean'}: {np.mean(held):.1%}, {np.mean(stopped):.0f} samples")
