@@ -38,9 +38,9 @@ for verb in VERBS:
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version
+        from uq import __version__
 
-        print(f"vibrolife {version('vibrolife')}")
+        print(f"vibrolife {__version__}")
         raise typer.Exit
 
 

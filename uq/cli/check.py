@@ -19,7 +19,7 @@ def check(path: str, model: str | None) -> None:
     parts = [f"{design.samples} samples"]
     parts += [f"{number} {name}" for name, number in factors.items() if number > 1]
     stated = ", stated to be independent" * design.independent
-    unsaid = DESIGNS[design.method].draw is None and not design.independent
+    unsaid = DESIGNS[design.method].imported and not design.independent
     dependent = study.dependence is not None or unsaid
     feeds = ", ".join(DESIGNS[design.method].feeds_with(dependent))
     grid(

@@ -95,7 +95,7 @@ def as_json(model: Model, ds: xr.Dataset) -> dict[str, Any]:
 def _plain(model: Model, name: str, values: Any) -> Any:
     if np.ndim(values):
         return [_plain(model, name, value) for value in values]
-    if model.outputs[name].kind == "category":
+    if model.outputs[name].is_category:
         return model.outputs[name].categories[int(values)] if values >= 0 else None
     return float(values) if np.isfinite(values) else None
 
@@ -114,7 +114,7 @@ def _show(model: Model, ds: xr.Dataset) -> None:
     for name, output in model.outputs.items():
         unit = "" if output.unit == "1" else f" [{output.unit}]"
         heading(f"\n{name}{unit}", output.meaning)
-        if output.kind == "category":
+        if output.is_category:
             grid([("", _plain(model, name, ds[name].values[0]) or "none")])
             continue
         grid(

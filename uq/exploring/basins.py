@@ -19,6 +19,7 @@ from uq.exploring.grid import Axis, Grid, grid_of
 from uq.inputs.values import unknown_name
 from uq.rows import results
 from uq.rows.sampling import Rows
+from uq.rows.variables import outputs_of
 from uq.rows.workload import Workload
 from uq.running import runner
 from uq.running.options import RunOptions
@@ -112,7 +113,7 @@ def _compared_outputs(model: Model, by: Sequence[str] | None) -> tuple[str, ...]
     unknown = [name for name in by if name not in names]
     if unknown:
         raise InputError(*(f"by: {unknown_name('output', name, model, names)}" for name in unknown))
-    return tuple(name for name in names if name in by or model.outputs[name].kind == "category")
+    return tuple(name for name in names if name in by or model.outputs[name].is_category)
 
 
 def _found(path: Path, identity: str) -> xr.Dataset:
@@ -166,12 +167,13 @@ def _finish(
 
 def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterator[Compared]:
     """Yield what is compared, element by element."""
+    declared = outputs_of(flat)
     for name in names:
         values = flat[name].astype(float)
         errors = xr.zeros_like(values)
         if f"{name}_error" in flat:
             errors = (errors + flat[f"{name}_error"]).transpose(*values.dims)
-        slack = 0.0 if values.attrs["kind"] == "category" else tolerance
+        slack = 0.0 if declared[name].is_category else tolerance
         columns = (np.reshape(a.values, (len(a), -1)).T for a in (values, errors))
         for value, error in zip(*columns, strict=True):
             yield Compared(value, np.nan_to_num(error, posinf=0.0), slack)
@@ -195,7 +197,7 @@ def _table(flat: xr.Dataset, grid: Grid) -> xr.Dataset:
     _, first, count = np.unique(flat["attractor"], return_index=True, return_counts=True)
     some = flat[[*grid.axes, *grid.model.outputs]].isel(sample=first)
     for name, output in grid.model.outputs.items():
-        if output.kind == "category":
+        if output.is_category:
             words = np.array(["none", *output.categories])[some[name].values + 1]
             about = {"long_name": output.meaning}
             some[name] = some[name].dims, words, about

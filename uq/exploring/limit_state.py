@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from uq.columns import censored_name, lacking
+from uq.columns import censored_name
 from uq.contract import Status
 from uq.errors import InputError, nearest
 from uq.exploring.evaluator import Evaluator
@@ -93,10 +93,9 @@ class LimitState:
             return chunk.columns[name].reshape(len(chunk.status), -1)[:, self._place]
 
         values = column(self._column)
-        absent = lacking(self.output.kind, values)
+        absent = self.output.is_absent(values)
         undefined = np.isnan(values) & (chunk.status == Status.OK)
-        if self.output.kind == "angle":
-            values = np.abs(values)
+        values = self.output.for_thresholds(values)
         margin = self.threshold - values if self.below else values - self.threshold
         if self.output.has_censored_flag:
             censored = column(censored_name(self._column)).astype(bool)
@@ -122,7 +121,7 @@ def find_element(study: "Study", name: str) -> tuple["Output", int]:
         problem = unknown_name("output", output, model, tuple(model.outputs))
         raise InputError(f"'{output}': {problem}")
     declared = model.outputs[output]
-    if declared.kind == "category":
+    if declared.is_category:
         raise InputError(f"'{output}' is a category: it has shares, not thresholds")
     coordinates = model.coordinates(study.settings)
     axes = {dim: list(coordinates[dim]) for dim in declared.dims}

@@ -28,9 +28,9 @@ class Preview:
         self._life, self._label = "", ""
         self._sample = _Sample()
         outputs = workload.model.outputs
-        if "regime" in outputs and outputs["regime"].kind == "category":
+        if "regime" in outputs and outputs["regime"].is_category:
             self._regimes = outputs["regime"].categories
-        lives = [name for name in workload.shown if outputs[name].kind == "lifetime"]
+        lives = [name for name in workload.shown if outputs[name].is_lifetime]
         if lives:  # the first stands for all, and its first element for all of them
             self._life, dims = lives[0], outputs[lives[0]].dims
             coordinates = workload.model.coordinates(workload.settings)

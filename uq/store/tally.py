@@ -78,7 +78,7 @@ class Tally:
     def failed_in(self, chunk: "Chunk") -> int:
         """Return how many rows of a chunk failed."""
         required = (
-            (output.kind, chunk.columns[name])
+            (output, chunk.columns[name])
             for name, output in self.workload.model.outputs.items()
             if not output.may_be_undefined
         )
