@@ -63,7 +63,7 @@ def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
 
     Returns
     -------
-    Look
+    InterimEstimate
     """
     until = design.until
     assert until is not None
