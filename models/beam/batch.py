@@ -1,6 +1,5 @@
 """From rows of parameters to work-rates, regimes and lifetimes."""
 
-from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from models.beam.response.settling import NINE_IN_TEN, settle
 from models.beam.response.step_error import add_step_error
 from models.beam.start import PROPAGATORS, initial_gaps, initial_state
 from models.beam.structure.modal import Array, beams
+from models.beam.structure.propagation import Propagator, System
 from models.beam.structure.random_load import has_band
 from models.beam.wear.lives import Lives, find_lives
 from models.beam.wear.random_lives import find_random_lives
@@ -97,7 +97,7 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
 
 
 def _simulate_group(
-    propagator: ModuleType, system: Any, p: Rows, settings: Settings
+    propagator: Propagator, system: System, p: Rows, settings: Settings
 ) -> tuple[Response, Lives]:
     gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     begin = state.copy()
@@ -110,7 +110,7 @@ def _simulate_group(
     lives = Lives.nothing(*growths.shape)
     known = np.isfinite(settled.work).all(axis=1)
     for is_random in (False, True):
-        rows = np.flatnonzero(known & (system.is_random == is_random))
+        rows = np.flatnonzero(known & (system.beams.is_random == is_random))
         if not len(rows):
             continue
         start = (propagator, system.take(rows), state[rows], gaps[rows], work[rows])

@@ -11,7 +11,7 @@ certain to stay away.
 import math
 from typing import NamedTuple
 
-from models.beam.exact.phases import exponentials
+from models.beam.exact.within_phase import exponentials
 from models.numerics.jit import kernel
 
 _FADED = 1e-18  # a velocity too small to matter

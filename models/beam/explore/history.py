@@ -8,7 +8,7 @@ from models.beam.parameters import Params, Settings
 from models.beam.response.settling import settle
 from models.beam.start import initial_gaps, initial_state, one_system
 from models.beam.structure.modal import beams
-from models.beam.wear.accelerated_life import LOOKS, run
+from models.beam.wear.accelerated_life import LOOKS, run_life
 from models.beam.wear.regimes import CONFIRMED, WINDOW, changes_of, confirmed_regimes
 
 
@@ -58,7 +58,7 @@ def wear_history(
     settled = settle(propagator, system, state, gaps)
     share = np.array([[1.0, params.wear_coefficient_ratio]])
     growths = np.asarray(settings.depths) / x0[:, None]
-    life = run(
+    life = run_life(
         propagator, system, state, gaps, settled.work, share, growths, periods, looks
     ).history
     told = np.flatnonzero(np.isfinite(life.time[0]))

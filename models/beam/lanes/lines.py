@@ -28,7 +28,7 @@ _STEPS = 4  # taken together, as are four lines
 
 
 class Load(NamedTuple):
-    """The random load of n beams, and what responds to it: the fields of `systems.System`."""
+    """The random load of n beams, and what responds to it."""
 
     load: NDArray[np.void]
     oscillators: Array
