@@ -15,7 +15,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from uq.running import cluster
+from uq.running.workers import quiet
 
 PATIENCE = 30.0
 """How long a busy machine may take for what should take a moment [s]."""
@@ -80,7 +80,7 @@ def workers_of(process):
     found = []
     for child in psutil.Process(process.pid).children():
         with contextlib.suppress(psutil.NoSuchProcess):  # it may end meanwhile
-            found += [child] * ("uq.running.worker" in " ".join(child.cmdline()))
+            found += [child] * ("uq.running.dask_worker" in " ".join(child.cmdline()))
     return found
 
 
@@ -214,7 +214,7 @@ def test_what_a_cluster_leaves_unawaited_says_nothing(caplog):
         future.set_exception(TimeoutError("Timeout"))
         future.itself = [future]  # collected late
 
-    with cluster._quiet():
+    with quiet():
         leave()
     assert caplog.records == []
     leave()

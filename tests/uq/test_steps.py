@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from computed import computed, study_of
 
-from uq.analysis.realised import compare, stated_and_realised
+from uq.analysis.sampled_inputs import compare, stated_and_realised
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.sensitivities import sensitivities

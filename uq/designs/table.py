@@ -69,6 +69,11 @@ class Design:
     least: int = 1
 
     @property
+    def imported(self) -> bool:
+        """Whether its rows come from a file."""
+        return self.draw is None
+
+    @property
     def shares_seeds(self) -> bool:
         """Whether rows of a random model share seeds."""
         return self.shared_seeds is not seeds.own
@@ -253,3 +258,6 @@ DESIGNS = {
         append_only=False,
     ),
 }
+
+IMPORTED = tuple(name for name, design in DESIGNS.items() if design.imported)
+"""Designs whose rows come from a file."""

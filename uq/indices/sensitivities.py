@@ -31,6 +31,7 @@ from uq.indices.targets import (
 )
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.in_regime import within_regime
+from uq.rows.variables import is_category
 from uq.tails import lacks_variance
 
 _GROUPED: dict[str, tuple[Callable[..., Any], Callable[..., Indices]]] = {
@@ -261,7 +262,7 @@ def _no_variance(target: Target) -> str:
 
 def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
     """Return what quantiles of a target are called: B10 of a life is where its rate is high."""
-    if target.element is not None and target.element.kind == "lifetime":
+    if target.element is not None and target.element.is_lifetime:
         return {"B10": 0.9 if target.name.startswith("rate(") else 0.1, "B50": 0.5}
     return {f"Q{probability!r}": probability for probability in asked}
 
@@ -334,7 +335,7 @@ def _output_in(inside: str) -> str:
 
 def _targets(ds: xr.Dataset, name: str, every: bool = False) -> list[Target]:
     """Return the targets of an output or of one element of it."""
-    if name in ds and ds[name].attrs.get("kind") == "category" and ds[name].ndim == 1:
+    if is_category(ds, name) and ds[name].ndim == 1:
         return list(category_targets(ds, name))
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
     make = all_targets if every else targets

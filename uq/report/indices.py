@@ -10,8 +10,8 @@ from uq.drawing.index_plot import bars, subject
 from uq.errors import InputError
 from uq.indices.sensitivities import methods, sensitivities
 from uq.indices.targets import FORMS, split_name
+from uq.report.cells import Cell, Table
 from uq.report.pictures import Picture, picture
-from uq.report.table import Cell, Table
 from uq.wording import index, index_interval
 
 _SHARES, _LEAST = ("S1", "ST", "shapley"), 0.05

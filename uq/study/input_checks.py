@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from uq.contract import Model, Parameter
-from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS
+from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS, IMPORTED
 from uq.errors import nearest
 from uq.inputs.conditioning import (
     OUTSIDE_AT_MOST,
@@ -99,10 +99,10 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
         value = ranks[wrong.place[0]][wrong.place[1]] if wrong.place else None
         yield Fault(("dependence", "rank_correlation", *wrong.place), wrong.text, value)
     method = tables["design"].get("method")
-    if method == "imported":
+    if method in IMPORTED:
         yield Fault(("dependence",), "imported rows are as dependent as they are; take it out")
     elif method is not None and not DESIGNS[method].feeds_with(dependent=True):
-        able = [n for n, d in DESIGNS.items() if d.draw and d.feeds_with(dependent=True)]
+        able = [n for n, d in DESIGNS.items() if not d.imported and d.feeds_with(dependent=True)]
         problem = (
             f"supposes independent inputs, and [dependence] says they are not; use"
             f" {' or '.join(able)}, which feed {' and '.join(FOR_DEPENDENT_INPUTS)}"
@@ -115,7 +115,7 @@ def import_faults(
 ) -> Iterator[Fault]:
     """Yield what keeps the rows of a file from being a design."""
     table = tables["design"]
-    if table.get("method") != "imported":
+    if table.get("method") not in IMPORTED:
         if "file" in table and "method" in table:
             yield Fault(("design", "file"), "only for method = 'imported'", table["file"])
         return

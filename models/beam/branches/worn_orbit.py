@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from models.beam.branches.bifurcations import Event, cause_of_loss, kind_of
-from models.beam.events import RIGHT
-from models.beam.flow import Passage, passage
-from models.beam.modal import Array
-from models.beam.orbits import TOLERANCE, Orbit, defect, orbit_of
-from models.beam.tuning import Beam
+from models.beam.branches.orbits import TOLERANCE, Orbit, defect, orbit_of
+from models.beam.exact.events import RIGHT
+from models.beam.exact.passage import Passage, passage
+from models.beam.exact.tuning import Beam
+from models.beam.structure.modal import Array
 from models.numerics.newton import find_root
 
 ATTEMPTS = 5000  # steps, at most
@@ -208,7 +208,7 @@ def _contacts(place: _Place) -> list[int]:
 
 
 def _end(here: _Place, stop: float, last_rate: float) -> str:
-    """Tell why wear goes no further, empty if it does."""
+    """Return why wear ends here, empty if it does not."""
     if here.rate <= last_rate:
         return "no-impact"
     return "stop" if stop - here.at[:2].max() < _ARRIVED else ""

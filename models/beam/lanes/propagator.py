@@ -1,0 +1,61 @@
+"""The fast propagator: many beams abreast over whole forcing periods, and their tangents."""
+
+import numpy as np
+
+from models.beam.lanes.lines import Lines, Load
+from models.beam.lanes.steps import advance_blocks, room
+from models.beam.lanes.systems import System
+from models.beam.lanes.tangents import carry
+from models.beam.structure.modal import Array
+from models.beam.structure.propagation import Record
+from models.numerics.elementary import cos, sin
+
+CLOCK = -1
+
+_NOWHERE = 1e6  # displacement, over the gap and what the tip reaches without contact
+
+
+def advance(
+    system: System, state: Array, gaps: Array, growth: Array, periods: int, trace: bool = False
+) -> Record:
+    """Advance n beams; gaps grow at the end of each period.
+
+    Record and state are NaN of a beam that is thrown out of all bounds.
+    """
+    n, _, m = system.modes.shape
+    beams = system.beams
+    record = Record.empty(n, periods, system.steps if trace else 0)
+    phase = 2 * np.pi * np.arange(1, system.steps + 1) / system.steps
+    advance_blocks(
+        system.modes,
+        system.sigma,
+        system.modal.sum(axis=1),
+        Load(beams.load, system.oscillators, system.begin, beams.forcing),
+        state,
+        gaps,
+        growth,
+        cos(phase),
+        sin(phase),
+        *room(m),
+        Lines.room(bool(beams.is_random.any()), system.steps, system.oscillators.shape[2]),
+        tuple(record),
+    )
+    # Steps too long for a beam that long contacts make ring feed it: that is no motion of the beam.
+    lost = np.flatnonzero(~(np.abs(state[:, 2 * m + 1]) <= _NOWHERE * (1 + system.reach)))
+    for field in (state, *record):
+        field[lost] = np.nan
+    return record
+
+
+def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
+    """Return the derivative, zero for the clock.
+
+    It is that of the scheme itself, not of the beam that the scheme approximates.
+    """
+    record = advance(system, state.copy(), gaps.copy(), np.zeros_like(gaps), periods, trace=True)
+    n, size = state.shape
+    tangents = np.tile(np.eye(size - 1), (n, 1, 1))
+    carry(system, state, gaps, record.trace, tangents)
+    out = np.zeros((n, size, size))
+    out[:, :CLOCK, :CLOCK] = tangents
+    return out

@@ -1,0 +1,143 @@
+"""Lifetimes under a random load: the gaps grow by increments, with a time mean of the wear at each.
+
+A random load leaves no branches to follow and no memory of the path: the mean wear of a site
+depends on the gaps alone, and its life is the integral of dx over it (eqs 10 to 12 of Knudsen &
+Massih 2002). An accelerated life would take each burst of the load for a hundred, and each lull.
+"""
+
+import numpy as np
+
+from models.beam.response.averages import SHORTEST, time_mean
+from models.beam.response.settling import NINE_IN_TEN
+from models.beam.structure.modal import Array
+from models.beam.structure.propagation import Propagator, System
+from models.beam.wear.fitted_wear import FittedWear
+from models.beam.wear.lives import Lives
+from models.numerics.elementary import expm1, log1p
+
+INCREMENTS = 12  # in which the faster gap grows to the last depth
+_OVERTIME = 3  # times as many for the slower one
+_LONGEST = 82  # over the accuracy: periods at each increment
+_ANY = 1e9  # error of a mean whose length is given
+_MEMORY = 0.3  # weight of the newest node in the sites' shares of wear
+
+
+def find_random_lives(
+    propagator: Propagator,
+    system: System,
+    state: Array,
+    gaps: Array,
+    work: Array,
+    error: Array,
+    share: Array,
+    growths: Array,
+    accuracy: float,
+) -> Lives:
+    """Integrate the lives of n beams.
+
+    Parameters
+    ----------
+    propagator, system, state, gaps, work, share, growths
+        As in `models.beam.wear.accelerated_life.run_life`.
+    error : ndarray, shape (n, 2)
+        Standard error of `work`.
+    accuracy : float
+        Sets how long a time mean is taken at each increment. Their
+        errors show what accuracy the lives have.
+
+    Returns
+    -------
+    Lives
+        With the errors within which nine in ten lie.
+    """
+    n = len(state)
+    periods = SHORTEST << max(0, round(np.log2(_LONGEST / accuracy / SHORTEST)))
+    periods = min(periods, system.longest)
+    nodes = 1 + _OVERTIME * INCREMENTS
+    grown = np.zeros((nodes, n, 2))
+    rate, doubt = np.full((2, nodes, n, 2), np.nan)
+    rate[0], doubt[0] = work * share, error * share
+    running = rate[0].copy()
+    left, state, last = np.arange(n), state.copy(), np.zeros(n, int)
+    for node in range(1, nodes):
+        grown[node, left] = _step(grown[node - 1, left], running[left], growths[left])
+        left = left[~np.isnan(grown[node, left]).any(axis=1)]
+        if not len(left):
+            break
+        now, here = state[left], gaps[left] + grown[node, left]
+        mean = time_mean(propagator, system.take(left), now, here, _ANY, periods)
+        state[left], last[left] = now, node
+        rate[node, left], doubt[node, left] = mean.work * share[left], mean.error * share[left]
+        running[left] += _MEMORY * (rate[node, left] - running[left])
+    out = Lives.nothing(n, growths.shape[1])
+    for i in range(n):
+        some = slice(0, last[i] + 1)
+        narrow = (gaps[i] + grown[last[i], i]).min()
+        silent = not rate[last[i], i].any() and system.reach[i] < narrow
+        _note(i, out, gaps[i], grown[some, i], rate[some, i], doubt[some, i], growths[i], silent)
+        # A random load knows one regime until contact ends.
+        out.changes[i] = float(silent and bool(rate[0, i].any()))
+    out.error[:] *= NINE_IN_TEN
+    return out
+
+
+def _step(grown: Array, rate: Array, growths: Array) -> Array:
+    """Return what the gaps of n beams have grown to at the next node, NaN where there is none.
+
+    The faster of the sites that have not finished goes to its next grid point; the grid is finer
+    where the gap is new. A site that has finished long ago may be very much faster still: its
+    growth, with the last depth, no more than doubles.
+    """
+    head_start = growths[:, :1] / 2
+    whole = log1p(growths[:, -1:] / head_start)
+    unfinished = grown < growths[:, -1:] * (1 - 1e-9)
+    control = np.where(unfinished, rate, 0.0)
+    fast = control.argmax(axis=1)[:, None]
+    here, top = (np.take_along_axis(a, fast, axis=1) for a in (grown, control))
+    point = log1p(here / head_start) / whole * INCREMENTS
+    goal = head_start * expm1((np.floor(point + 1e-6) + 1) / INCREMENTS * whole)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        step = (goal - here) * rate / top
+        most = grown.max(axis=1, keepdims=True) + growths[:, -1:]
+        step *= np.minimum(1.0, most / step.max(axis=1, keepdims=True))
+        return np.where(top > 0, grown + step, np.nan)
+
+
+def _note(
+    i: int,
+    out: Lives,
+    gaps: Array,
+    grown: Array,
+    rate: Array,
+    doubt: Array,
+    growths: Array,
+    silent: bool,
+) -> None:
+    """Note the lives of beam i, from how its sites had grown and wore at the nodes."""
+    if np.isnan(rate).any():
+        return
+    at = np.full((2, len(growths)), np.nan)
+    simulated = 0.0
+    for site in range(2):
+        x = grown[:, site]
+        if x[-1] == 0:
+            continue
+        wear = FittedWear(x, rate[:, site], doubt[:, site])
+        whole, _ = wear.life(x[-1])
+        simulated = max(simulated, whole if np.isfinite(whole) else 0.0)
+        for depth in np.flatnonzero(growths <= x[-1] * (1 + 1e-9)).tolist():
+            life, uncertainty = wear.life(growths[depth])
+            if not np.isfinite(life):  # a fit of next to nothing
+                break
+            out.time[i, site, depth], out.error[i, site, depth] = life, uncertainty
+            out.reached[i, site, depth] = True
+            at[site, depth] = np.interp(growths[depth], x, np.arange(len(x)))
+    out.time[i, :2][~out.reached[i, :2]] = np.inf if silent else simulated
+    for depth, goal in enumerate(growths):
+        times = np.where(out.reached[i, :2, depth], out.time[i, :2, depth], np.inf)
+        first = int(times.argmin())
+        for field in (out.time, out.error, out.reached):
+            field[i, 2, depth] = field[i, first, depth]
+        if out.reached[i, 2, depth]:
+            other = np.interp(at[first, depth], np.arange(len(grown)), grown[:, 1 - first])
+            out.ratio[i, depth] = (gaps[1 - first] + other) / (gaps[first] + goal)

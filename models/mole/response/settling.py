@@ -1,0 +1,96 @@
+"""From the start to the settled response.
+
+The transient ends when the motion repeats itself over common periods of control and mains. Where
+there is no common period, it ends when the tangent flow has forgotten all but a millionth of the
+start.
+"""
+
+import numpy as np
+
+from models.mole.lanes.block import LONGEST_PERIOD, MEASURED
+from models.mole.lanes.rows import GROWTH, OUTCOME, REPEATING
+from models.mole.response.machines import Machines
+from models.mole.response.measured import Counts, Response
+from models.mole.response.verdict import SURE
+from models.numerics.batch_means import mean_and_error
+
+LONGEST = 120.0  # s of transient
+LATEST = 1200.0  # s more where the tangent flow says that the motion is still settling
+_FORGOTTEN = np.log(1e-6)
+_LOOK = 1.0  # s between two looks at the tangent flow
+
+
+def settle(machines: Machines, transient: int) -> tuple[Counts, Counts]:
+    """Take n moles from their start to their settled response.
+
+    Parameters
+    ----------
+    machines : Machines
+        Their record is updated.
+    transient : int
+        Control periods to be left out; 0: until the motion has settled, 120 s at most.
+
+    Returns
+    -------
+    repeating, other : ndarray of int
+        Rows whose motion repeats, and rows whose motion does not.
+    """
+    common = machines.system.common
+    rows = np.arange(len(common))
+    longest = np.maximum(np.ceil(LONGEST * machines.system.control_frequency), 1).astype(np.int64)
+    alone = common == 0
+    if transient:
+        reached = machines.run(rows, np.full(len(rows), transient))
+        longest = transient + (LONGEST_PERIOD + 1) * common
+        other = reached[alone[reached]]
+        rows = reached[~alone[reached]]
+    else:
+        other = _forget(machines, rows[alone], longest[alone])
+        rows = rows[~alone]
+    rows = rows[machines.run(rows, longest[rows], repeat=True)]
+    repeats = machines.record[rows, OUTCOME] == REPEATING
+    return rows[repeats], np.concatenate([other, rows[~repeats]])
+
+
+def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
+    """Run moles until their start is forgotten; return those that got so far."""
+    done = [np.empty(0, np.int64)]
+    look = np.maximum(np.round(_LOOK * machines.system.control_frequency[rows]), 1).astype(np.int64)
+    tangents, growth = np.ones((len(rows), MEASURED)), np.zeros(len(rows))
+    limit = look.copy()
+    while len(rows):
+        reached = machines.run(rows, np.minimum(limit, longest), tangents)
+        growth += machines.record[rows, GROWTH]
+        settled = (growth < _FORGOTTEN) | (limit >= longest)
+        done.append(rows[reached[settled[reached]]])
+        keep = reached[~settled[reached]]
+        rows, longest, look, limit = rows[keep], longest[keep], look[keep], (limit + look)[keep]
+        tangents, growth = tangents[keep], growth[keep]
+    return np.concatenate(done)
+
+
+def settle_late(machines: Machines, rows: Counts, known: Response) -> Counts:
+    """Go on with moles whose motion does not repeat yet but draws nearer to one that does.
+
+    Parameters
+    ----------
+    machines : Machines
+        Their record is updated.
+    rows : ndarray of int
+        Moles whose motion does not repeat.
+    known : Response
+        What is known of them; forgotten where the motion has come to repeat.
+
+    Returns
+    -------
+    ndarray of int
+        Rows whose motion has come to repeat.
+    """
+    mean, error = mean_and_error(known.growth[rows])
+    system = machines.system
+    rows = rows[(system.common[rows] > 0) & (mean < -SURE * error)]
+    limit = machines.periods(rows) + np.ceil(LATEST * system.control_frequency[rows]).astype(int)
+    rows = rows[machines.run(rows, limit, repeat=True)]
+    rows = rows[machines.record[rows, OUTCOME] == REPEATING]
+    known.forget(rows)
+    return rows

@@ -1,0 +1,90 @@
+"""What ``uq status``, ``uq extend``, ``uq rerun`` and ``uq verify`` do."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from uq.cli import progress
+from uq.cli.printing import console, duration, grid, heading, print_json
+from uq.cli.run import carried_out, end
+from uq.cli.simulate import literal
+from uq.compilation import compilation
+from uq.errors import InputError
+from uq.rows import results
+from uq.running.options import RunOptions
+from uq.upkeep import extending, verification
+from uq.upkeep.rerunning import rerun_failed
+from uq.upkeep.status import RunStatus, run_status
+from uq.upkeep.stored_study import study_of
+
+
+def status(path: Path, json: bool) -> None:
+    """Print where a run stands."""
+    found = run_status(path)
+    print_json(asdict(found)) if json else _show_status(found)
+
+
+def _show_status(found: RunStatus) -> None:
+    writer = found.process
+    by = f" (process {writer.pid} on {writer.host})" if writer else ""
+    heading(f"{found.output}: {found.state}{by}")
+    rate, left = found.rate, found.seconds_left
+    time_left = (duration(left) or f"{left:.0f} s") if left else ""
+    statuses = [f"{count} {label}" for label, count in found.status.items()]
+    grid(
+        [
+            ("done", f"{found.done} of {found.rows} rows"),
+            ("failed", str(found.failed)),
+            ("left", ", ".join(filter(None, (str(found.left), time_left)))),
+            ("rate", f"{rate:.3g} rows/s" if rate else "-"),
+            ("by status", ", ".join(statuses) or "-"),
+        ]
+    )
+    if found.state != "complete" and found.complete_rows is not None:
+        console.print(f"\nUntil then the result with {found.complete_rows} rows stays.")
+
+
+def extend(path: Path, samples: int, model: str | None, quiet: bool, options: RunOptions) -> int:
+    """Give a result more samples and show it; return the exit code."""
+    ds, note = carried_out(
+        path, quiet, options, lambda chosen: extending.extend(path, samples, model, chosen)
+    )
+    return end(study_of(path, model), ds, path, quiet, note, options.mixed)
+
+
+def rerun(
+    path: Path,
+    failed: bool,
+    settings: Sequence[str],
+    model: str | None,
+    quiet: bool,
+    options: RunOptions,
+) -> int:
+    """Compute failed rows again and show the result; return the exit code."""
+    if not failed:
+        raise InputError("uq rerun: say which rows: --failed")
+    changes = dict(literal(text) for text in settings)
+    ds, note = carried_out(
+        path, quiet, options, lambda chosen: rerun_failed(path, changes, model, chosen)
+    )
+    return end(study_of(path, model), ds, path, quiet, note, options.mixed)
+
+
+def verify(path: Path, model: str | None) -> int:
+    """Check a result and print what was found; return the exit code."""
+    holds = verification.checksum_holds(path)
+    words = {True: "right", False: "WRONG: the file is not what was written", None: "none"}
+    console.print(f"checksum  {words[holds]}")
+    ds = results.open_result(path)
+    others = verification.other_versions(ds, model)
+    for other in others:
+        console.print(f"{other.name}  {other.made} made it, {other.here} is here")
+    if not others:
+        console.print("versions  the same as here")
+    with compilation(progress.say_compiling):
+        rows, differences = verification.recompute(path, model)
+    for line in differences:
+        console.print(f"computed again, differs in {line}")
+    equal = len(rows) - len(differences)
+    console.print(f"rows      {equal} of {len(rows)} computed again are equal to the bit")
+    return 1 if differences or holds is False else 0

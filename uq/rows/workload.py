@@ -1,0 +1,70 @@
+"""What is to be computed: some rows of one model, whoever asks for them."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.contract import Model
+from uq.rows import results
+from uq.rows.sampling import Rows, group_size, row_block, rows
+
+if TYPE_CHECKING:
+    from uq.study.definition import Study
+
+Finish = Callable[
+    [Rows, Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[str, str]], xr.Dataset
+]
+
+
+class Workload(NamedTuple):
+    """Rows to be computed, and what becomes of them.
+
+    Attributes
+    ----------
+    model : Model
+    model_reference : str
+        What `uq.study.registry.find_model` finds the model by, in another process too.
+    settings : object
+        An instance of ``model.settings``.
+    total : int
+        Rows in all.
+    group : int
+        Rows that go to one kernel call together.
+    block : callable
+        ``block(start, stop)`` -> those `Rows`, the same bits for any start and stop.
+    finish : callable
+        ``finish(rows, columns, status, failures)`` -> Dataset, once all rows are there; None where
+        nobody wants one.
+    output : str
+        The only output, where a cheap one is computed alone; see `uq.contract.Model.cheap`.
+    shown : tuple of str
+        Outputs that are of interest while rows arrive.
+    """
+
+    model: Model
+    model_reference: str
+    settings: Any
+    total: int
+    group: int
+    block: Callable[[int, int], Rows]
+    finish: Finish | None = None
+    output: str = ""
+    shown: tuple[str, ...] = ()
+
+
+def workload_of(study: "Study") -> Workload:
+    """Return the work that a study is."""
+    return Workload(
+        study.model,
+        study.model_reference,
+        study.settings,
+        rows(study),
+        group_size(study),
+        partial(row_block, study),
+        partial(results.build, study),
+        shown=study.analysis.outputs,
+    )
