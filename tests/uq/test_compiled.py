@@ -102,11 +102,11 @@ def test_an_edited_helper_has_another_folder(kern, plant, monkeypatch, base):
 
 
 def test_our_own_kernels_stay_where_they_are(kern):
-    from models.numerics import jit
+    from models.numerics import cache
     from models.numerics.multipliers import _square
 
-    assert Path(_square._cache.cache_path).is_relative_to(jit.CACHE_FOLDER)
-    assert compiled.SourcesLocator.from_function(_square.py_func, jit.__file__) is None
+    assert Path(_square._cache.cache_path).is_relative_to(cache.folder_of(_square))
+    assert compiled.SourcesLocator.from_function(_square.py_func, cache.__file__) is None
 
 
 @pytest.mark.slow
