@@ -121,6 +121,15 @@ def test_an_edit_of_a_helper_takes_effect_at_once(house):
         assert result(package) == (5.0, False)
 
 
+def test_a_package_from_outside_may_use_a_machine(house):
+    edit(house / "plant/motion.py", "plant.helper", "house.beam.parts.helper")
+    assert result("plant") == (3.0, False)
+    edit(house / "house/mole/parts/helper.py", "3.0 * x", "5.0 * x")
+    assert result("plant") == (3.0, True)
+    edit(house / "house/beam/parts/helper.py", "3.0 * x", "5.0 * x")
+    assert result("plant") == (5.0, False)
+
+
 def test_an_edit_of_what_they_share_reaches_all(house):
     packages = ("house.beam", "house.mole", "plant")
     assert [result(one) for one in packages] == 3 * [(3.0, False)]
