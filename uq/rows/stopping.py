@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import xarray as xr
 
-from uq import intervals
-from uq.intervals import Interval
+from uq import intervals, order_statistics
+from uq.estimate import NOTHING, Estimate
 from uq.moments import moments
 from uq.rows.elements import Element, independent_rows, named_elements
 
@@ -21,25 +21,23 @@ if TYPE_CHECKING:
 _FIRST = 32  # samples of the first look at least
 
 
-class Look(NamedTuple):
+class InterimEstimate(NamedTuple):
     """What a run sees when it looks.
 
     Attributes
     ----------
-    value : float
-    interval : Interval
-        With the confidence of one look.
+    estimate : Estimate
+        Its interval has the confidence of one look.
     reached : bool
         Whether every element asked for is known as well as asked for; the numbers are those of the
         one known worst.
     """
 
-    value: float
-    interval: Interval
+    estimate: Estimate
     reached: bool
 
 
-def looks(design: "DesignTable") -> tuple[int, ...]:
+def interim_sizes(design: "DesignTable") -> tuple[int, ...]:
     """Return the numbers of samples at which a run looks, the last being all of them."""
     size = design.samples
     sizes = [size]
@@ -50,10 +48,10 @@ def looks(design: "DesignTable") -> tuple[int, ...]:
 
 def confidence(design: "DesignTable") -> float:
     """Return the confidence of the interval of one look (Bonferroni)."""
-    return 1 - (1 - intervals.CONFIDENCE) / len(looks(design))
+    return 1 - (1 - intervals.CONFIDENCE) / len(interim_sizes(design))
 
 
-def look(design: "DesignTable", ds: xr.Dataset) -> Look:
+def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
     """Look at the rows of a run so far.
 
     Parameters
@@ -65,7 +63,7 @@ def look(design: "DesignTable", ds: xr.Dataset) -> Look:
 
     Returns
     -------
-    Look
+    InterimEstimate
     """
     until = design.until
     assert until is not None
@@ -75,15 +73,15 @@ def look(design: "DesignTable", ds: xr.Dataset) -> Look:
         _estimate(element, until, replicate, confidence(design))
         for element in named_elements(rows, until.output)
     ]
-    halves = [(interval.high - interval.low) / 2 for _, interval in seen]
+    halves = [(one.high - one.low) / 2 for one in seen]
     worst = int(np.argmax(np.nan_to_num(halves, nan=np.inf)))
-    return Look(*seen[worst], bool(halves[worst] <= until.half_width))
+    return InterimEstimate(seen[worst], bool(halves[worst] <= until.half_width))
 
 
 def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
     """Return whether a result that is smaller than its budget is where the run ends."""
     size = _latest(design, ds)
-    return size > 0 and look(design, _first(ds, size)).reached
+    return size > 0 and interim_estimate(design, _first(ds, size)).reached
 
 
 def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
@@ -93,7 +91,7 @@ def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
     """
     if design.until is None:
         return 0
-    return max((size for size in looks(design) if size <= ds.attrs["samples"]), default=0)
+    return max((size for size in interim_sizes(design) if size <= ds.attrs["samples"]), default=0)
 
 
 def _first(ds: xr.Dataset, samples: int) -> xr.Dataset:
@@ -105,10 +103,10 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     until, samples = design.until, int(ds.attrs["samples"])
     assert until is not None
     size = _latest(design, ds)
-    seen = look(design, _first(ds, size))
+    seen = interim_estimate(design, _first(ds, size))
     what = f"{until.estimate} of {until.output}"
-    known = f"{seen.value:.6g}, {seen.interval.low:.6g} to {seen.interval.high:.6g}"
-    if np.isnan(seen.interval).all():
+    known = "{:.6g}, {:.6g} to {:.6g}".format(*seen.estimate.numbers)
+    if np.isnan(seen.estimate.low) and np.isnan(seen.estimate.high):
         return f"the budget of {samples} samples is spent, and {what} has no interval"
     known += _lost(design, ds)
     if not seen.reached:
@@ -116,11 +114,11 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
             f"the budget of {samples} samples is spent: {what} is {known}, and a half-width of"
             f" {until.half_width:g} was asked for"
         )
-    number = 1 + looks(design).index(size)
+    number = 1 + interim_sizes(design).index(size)
     first = "" if size == samples else f" with the first {size} of {samples} samples"
     return (
         f"{what} is {known}: the asked half-width of {until.half_width:g} was reached at look"
-        f" {number} of at most {len(looks(design))}{first}. This interval,"
+        f" {number} of at most {len(interim_sizes(design))}{first}. This interval,"
         f" {confidence(design):.2%} at each look, is one of 95 % for a run that stops so; the"
         " others are for a number of rows fixed beforehand"
     )
@@ -136,23 +134,23 @@ def _lost(design: "DesignTable", ds: xr.Dataset) -> str:
 
 def _estimate(
     element: Element, until: "Until", replicate: intervals.Replicates, level: float
-) -> tuple[float, Interval]:
+) -> Estimate:
     kept = ~element.failed
     if until.threshold is not None:
         values = element.for_thresholds
         if (element.censored & (values < until.threshold)).any():
-            return np.nan, intervals.UNKNOWN
+            return NOTHING
         hits = values > until.threshold if until.above is not None else values < until.threshold
         within = None if replicate is None else replicate[kept]
         value = hits[kept].mean() if kept.any() else np.nan
-        return float(value), intervals.share_interval(hits[kept], within, level)
+        return Estimate(float(value), *intervals.share_interval(hits[kept], within, level))
     present = element.present
     within = None if replicate is None else replicate[present]
     values = element.at_most
     if until.quantile is not None:
-        value = intervals.quantile(values, until.quantile)
-        return value, intervals.quantile_interval(values, until.quantile, within, level)
+        value = order_statistics.quantile(values, until.quantile)
+        ends = order_statistics.quantile_interval(values, until.quantile, within, level)
+        return Estimate(value, *ends)
     if not len(values) or not np.isfinite(values).all():
-        return np.nan, intervals.UNKNOWN
-    found = moments(values, within, level)
-    return found.mean, found.mean_interval
+        return NOTHING
+    return moments(values, within, level).mean
