@@ -16,7 +16,7 @@ from pydantic import BaseModel
 
 from uq.cli.app import app
 from uq.contract import Status
-from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS
+from uq.designs.registry import DESIGNS, FOR_DEPENDENT_INPUTS
 from uq.study.file import (
     LAWS,
     AnalysisTable,

@@ -7,8 +7,8 @@ from benchmarks.coverage.problems import NAME, ishigami_ppf, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.analysis.statistics import summarise
 from uq.analysis.twin import with_twin
-from uq.indices.few_rows import few_hits
-from uq.indices.sobol import crossed, sobol_indices
+from uq.methods.few_rows import few_hits
+from uq.methods.sobol import crossed, sobol_indices
 from uq.indices.targets import RefusedError, Target
 from uq.intervals import share_interval
 

@@ -9,7 +9,7 @@ from SALib.sample import sobol as salib_sobol
 from scipy.stats import kstest, qmc
 
 from uq.designs.streams import replicate_seed
-from uq.designs.table import DESIGNS, block_names
+from uq.designs.registry import DESIGNS, block_names
 from uq.designs.trajectories import STEP
 
 SIZE = 64

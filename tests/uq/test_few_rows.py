@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from computed import linear, with_output
 
-from uq.indices.few_rows import effective_rows
+from uq.methods.few_rows import effective_rows
 from uq.indices.sensitivities import sensitivities
 
 ATTRS = {

@@ -10,7 +10,7 @@ from SALib.analyze import pawn, rbd_fast
 from SALib.analyze.delta import calc_delta
 from scipy import stats
 
-from uq.indices.given_data import DUMMIES, given_data_indices
+from uq.methods.given_data import DUMMIES, given_data_indices
 from uq.indices.sensitivities import sensitivities
 
 

@@ -8,7 +8,7 @@ from uq.analysis.comparison import compare
 from uq.analysis.convergence import running_estimates
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities, sensitivity
 from uq.rows.sampling import group_size, row_block, rows

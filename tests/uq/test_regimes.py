@@ -8,7 +8,7 @@ from uq.analysis.regime_split import between_share
 from uq.analysis.statistics import summarise
 from uq.contract import Status
 from uq.errors import InputError
-from uq.indices.given_data import DUMMIES
+from uq.methods.given_data import DUMMIES
 from uq.indices.sensitivities import sensitivities
 
 

@@ -20,7 +20,7 @@ from SALib.analyze import morris as salib_morris
 
 from uq.analysis.overview import summary
 from uq.analysis.statistics import summarise
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.designs.trajectories import LEVELS, STEP, TAIL
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities, sensitivity

@@ -5,8 +5,8 @@ import pytest
 from asked_indices import indices
 from computed import asking, linear, with_output
 
-from uq.indices.given_data import given_data_indices
-from uq.indices.slices import slice_of
+from uq.methods.given_data import given_data_indices
+from uq.methods.slices import slice_of
 from uq.indices.targets import RefusedError
 
 N = 3000

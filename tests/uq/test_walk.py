@@ -11,7 +11,7 @@ import uq
 from uq.analysis.convergence import enough, running_estimates
 from uq.analysis.statistics import summarise
 from uq.analysis.twin import with_twin
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
 from uq.rows import stopping

@@ -9,10 +9,10 @@ import xarray as xr
 
 from uq.analysis.accuracy import error_name, stated_error
 from uq.analysis.statistics import summarise
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
-from uq.indices.sobol import MIN_GROUPS
+from uq.methods.sobol import MIN_GROUPS
 from uq.indices.targets import split_name
 from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
 

@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq import intervals, two_samples
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.rows.elements import (
     Floats,
     Mask,

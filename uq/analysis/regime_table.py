@@ -9,7 +9,7 @@ import xarray as xr
 from uq.analysis.regime_split import between_share
 from uq.analysis.statistics import regime_shares
 from uq.errors import InputError
-from uq.indices.given_data import given_data_indices
+from uq.methods.given_data import given_data_indices
 from uq.indices.targets import RefusedError, Target, category_targets, number_of
 from uq.intervals import is_within
 from uq.moments import moments

@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import stats
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.indices.targets import lightened, number_of
 from uq.intervals import is_within
 from uq.rows.elements import (

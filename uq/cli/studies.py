@@ -15,7 +15,7 @@ import xarray as xr
 from uq.cli import progress, say_when_interrupted, tables
 from uq.cli.printing import console, grid, heading, number
 from uq.contract import Status
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.literals import plain_line
 from uq.rows import results
 from uq.rows.sampling import group_size, rows

@@ -7,16 +7,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS
+from uq.designs.registry import DESIGNS, FOR_DEPENDENT_INPUTS
 from uq.errors import InputError, nearest
-from uq.indices.fast import curves, fast_indices
-from uq.indices.few_rows import few_hits
-from uq.indices.given_data import given_data_indices
-from uq.indices.groups import whole_groups
+from uq.methods.fast import curves, fast_indices
+from uq.methods.few_rows import few_hits
+from uq.methods.given_data import given_data_indices
+from uq.methods.groups import whole_groups
 from uq.indices.independent_inputs import independent_inputs, notes_on_inputs, why_dependent
-from uq.indices.morris import morris_indices, trajectories
-from uq.indices.shapley import paths, shapley_indices
-from uq.indices.sobol import crossed, sobol_indices
+from uq.methods.morris import morris_indices, trajectories
+from uq.methods.shapley import paths, shapley_indices
+from uq.methods.sobol import crossed, sobol_indices
 from uq.indices.targets import (
     Index,
     Indices,

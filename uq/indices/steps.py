@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
-from uq.indices.groups import grouped_rows
+from uq.methods.groups import grouped_rows
 from uq.rows.elements import Floats
 from uq.study.file import Tied
 from uq.study.reading import read_study_text

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from uq.columns import censored_name, lacking
 from uq.designs.seeds import of_curves
-from uq.designs.table import DESIGNS, NOISE
+from uq.designs.registry import DESIGNS, NOISE
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.results import elements, failed

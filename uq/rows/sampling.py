@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.designs.table import DESIGNS, block_names
+from uq.designs.registry import DESIGNS, block_names
 from uq.inputs.conditioning import factor_ends, ppf_between, ppf_within
 from uq.inputs.data_files import numbers
 from uq.inputs.dependence import correlated

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from uq.contract import Model
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.inputs.values import parameter_problem, read_settings, unknown_name

@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 
-from uq.designs.table import DESIGNS, MAX_SAMPLES
+from uq.designs.registry import DESIGNS, MAX_SAMPLES
 from uq.errors import nearest
 from uq.inputs.distributions import Law
 from uq.inputs.law import BaseLaw

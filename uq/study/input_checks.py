@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from uq.contract import Model, Parameter
-from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS
+from uq.designs.registry import DESIGNS, FOR_DEPENDENT_INPUTS
 from uq.errors import nearest
 from uq.inputs.conditioning import (
     OUTSIDE_AT_MOST,

@@ -7,7 +7,7 @@ from pydantic import TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
 from uq.contract import Model
-from uq.designs.table import DESIGNS, MAX_SAMPLES, Design
+from uq.designs.registry import DESIGNS, MAX_SAMPLES, Design
 from uq.errors import InputError
 from uq.inputs.values import setting_types
 from uq.study.file import StudyFile

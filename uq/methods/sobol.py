@@ -8,9 +8,9 @@ import xarray as xr
 from numpy.typing import NDArray
 from SALib.analyze.sobol import first_order, second_order, total_order
 
-from uq.designs.table import NOISE
-from uq.indices.few_rows import effective_rows, one_more_row, widened
-from uq.indices.groups import grouped_rows, whole_groups
+from uq.designs.registry import NOISE
+from uq.methods.few_rows import effective_rows, one_more_row, widened
+from uq.methods.groups import grouped_rows, whole_groups
 from uq.indices.targets import Index, Indices, RefusedError
 from uq.intervals import is_constant, scatter_interval
 from uq.rows.elements import Floats

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from uq.indices.slices import MOST_CATEGORIES
+from uq.methods.slices import MOST_CATEGORIES
 from uq.indices.targets import RefusedError
 from uq.rows.elements import Floats
 

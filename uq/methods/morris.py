@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq.designs.trajectories import STEP
-from uq.indices.groups import whole_groups
+from uq.methods.groups import whole_groups
 from uq.indices.steps import steps
 from uq.indices.targets import Index, Indices, RefusedError
 from uq.intervals import ROUNDING, is_constant, scatter_interval

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.indices.slices import even_cuts, slice_of, tells_nothing
+from uq.methods.slices import even_cuts, slice_of, tells_nothing
 from uq.indices.targets import RefusedError
 from uq.rows.elements import Floats
 

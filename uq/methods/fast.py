@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from SALib.analyze.fast import compute_orders
 
 from uq.designs.curves import HARMONICS
-from uq.indices.groups import grouped_rows, whole_groups
+from uq.methods.groups import grouped_rows, whole_groups
 from uq.indices.targets import ALL_NOISE, Index, Indices, RefusedError
 from uq.intervals import is_constant
 from uq.rows.elements import Floats

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from SALib.analyze.rbd_fast import permute_outputs, unskew_S1
 from scipy.fft import rfft
 
-from uq.indices.hdmr import hdmr_indices
-from uq.indices.quantile_oriented import quantile_indices, without_optimism
-from uq.indices.regional import ks_distances
-from uq.indices.slices import delta, pawn
+from uq.methods.hdmr import hdmr_indices
+from uq.methods.quantile_oriented import quantile_indices, without_optimism
+from uq.methods.regional import ks_distances
+from uq.methods.slices import delta, pawn
 from uq.indices.targets import Index, Indices, RefusedError
 from uq.intervals import is_constant
 from uq.rows.elements import Floats
@@ -61,7 +61,7 @@ def given_data_indices(
     -------
     Indices
         ``S1`` (RBD-FAST), ``delta``, ``pawn`` (the median over slices), ``KS`` (regional), one for
-        each of `quantiles`, or those of `uq.indices.hdmr`; without intervals, with `dummy`.
+        each of `quantiles`, or those of `uq.methods.hdmr`; without intervals, with `dummy`.
 
     Raises
     ------

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.indices.groups import whole_groups
+from uq.methods.groups import whole_groups
 from uq.indices.steps import steps
 from uq.indices.targets import ALL_NOISE, Index, Indices, RefusedError
 from uq.intervals import UNKNOWN, Interval, is_constant, scatter_interval
