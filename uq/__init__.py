@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from uq.analysis.twin import two_fidelities
     from uq.drawing.motion_plot import plot_history, plot_phase_portrait, plot_section
     from uq.drawing.response_plot import plot_basins, plot_bifurcation, plot_curve
-    from uq.indices.sensitivities import sensitivity
+    from uq.indices.dataset import sensitivity
     from uq.rows.elements import labels
     from uq.rows.results import open_result
     from uq.running.attraction import basins
@@ -68,7 +68,7 @@ _MODULES = {
     "regimes": "analysis.regime_table",
     "run": "running.runner",
     "running_estimates": "analysis.convergence",
-    "sensitivity": "indices.sensitivities",
+    "sensitivity": "indices.dataset",
     "simulate": "running.simulation",
     "summary": "analysis.overview",
     "survival": "analysis.lifetime",

@@ -17,6 +17,7 @@ from uq.cli.printing import console, grid, heading, number
 from uq.contract import Status
 from uq.designs.registry import DESIGNS
 from uq.literals import plain_line
+from uq.methods.registry import fed_by
 from uq.rows import results
 from uq.rows.sampling import group_size, rows
 from uq.running import runner
@@ -37,7 +38,7 @@ def check(path: str, model: str | None) -> None:
     stated = ", stated to be independent" * design.independent
     unsaid = DESIGNS[design.method].draw is None and not design.independent
     dependent = study.dependence is not None or unsaid
-    feeds = ", ".join(DESIGNS[design.method].feeds_with(dependent))
+    feeds = ", ".join(fed_by(DESIGNS[design.method], dependent))
     grid(
         [
             ("model", f"{study.model.name}, version {study.model.version}"),

@@ -1,4 +1,4 @@
-"""Indices whose variance rests on few rows: when they are refused, warned of, or widened.
+"""Indices whose variance rests on few rows: by how much their intervals are widened.
 
 A replicate with three hits of an event, or three rows of the regime that scatters, says little of
 what the next three would do, and eight such replicates may agree by chance. Measured on 37 events
@@ -8,18 +8,11 @@ widened ones in 94 to 100 %.
 """
 
 import numpy as np
-import xarray as xr
 from scipy import stats
 
-from uq.indices.targets import RefusedError, Target
-from uq.intervals import CONFIDENCE, Interval
-from uq.rows.elements import Floats, independent_rows, why_no_statistics
-
-FEWEST_HITS = 5
-"""Fewer in each replicate give no indices of an event."""
-
-ENOUGH_HITS = 20
-"""With fewer in each replicate the indices are given with a warning."""
+from uq.estimate import Estimate
+from uq.intervals import CONFIDENCE
+from uq.methods.sample import Floats
 
 ENOUGH_ROWS, ENOUGH_SHARE = 50, 0.22
 """Where the variance rests on fewer rows of each replicate, and on less than this share of them,
@@ -65,46 +58,8 @@ def one_more_row(deviations: Floats, groups: int, replicates: int) -> float:
     return float(student * (deviations**2).max() / groups)
 
 
-def widened(value: float, interval: Interval, by: float) -> Interval:
-    """Return an interval about `value` with half-widths sqrt(half^2 + by^2)."""
-    below, above = (np.hypot(end - value, by) for end in interval)
-    return Interval(float(value - below), float(value + above))
-
-
-def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
-    """Return the warning for an event with few hits, or misses; any two values are an event.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        The result that the target is of.
-    target : Target
-
-    Returns
-    -------
-    tuple of str
-        One sentence or none.
-
-    Raises
-    ------
-    RefusedError
-        Fewer than `FEWEST_HITS` in each replicate.
-    """
-    values, replicates = target.values, int(ds.attrs.get("replicates", 1))
-    if not why_no_statistics(ds):
-        chosen = np.arange(ds.sizes["sample"])
-        values = values[independent_rows(ds.assign(place=("sample", chosen)))["place"].values]
-    known = values[np.isfinite(values)]
-    hits = known > known.min(initial=np.inf)
-    rarer = int(min(hits.sum(), (~hits).sum()))
-    two_values = target.event or bool((known[hits] == known.max(initial=-np.inf)).all())
-    if not two_values or not 0 < rarer < ENOUGH_HITS * replicates:
-        return ()  # with none the methods refuse themselves
-    side = "hits" if rarer == hits.sum() else "misses"
-    each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
-    more = ENOUGH_HITS * replicates / rarer
-    remedy = f"about {more:.2g} times the samples would give {ENOUGH_HITS}"
-    seen = f"only {rarer} {side} in {len(hits)} rows{each}"
-    if rarer < FEWEST_HITS * replicates:
-        raise RefusedError(f"{seen}: {FEWEST_HITS} are needed for an index; {remedy}")
-    return (f"{seen}: the indices are rough, and intervals may be too narrow; {remedy}",)
+def widened(estimate: Estimate, by: float) -> Estimate:
+    """Return an estimate whose half-widths are sqrt(half^2 + by^2)."""
+    value = estimate.value
+    below, above = (np.hypot(end - value, by) for end in (estimate.low, estimate.high))
+    return Estimate(value, float(value - below), float(value + above))

@@ -1,57 +1,56 @@
-"""Where the rows of a design with groups stand in a result."""
+"""What methods share whose rows come in groups: intervals from the scatter between replicates."""
+
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-import xarray as xr
-from numpy.typing import NDArray
 
-from uq.errors import InputError
-from uq.rows.elements import Floats, flags
+from uq.estimate import Estimate
+from uq.intervals import scatter_interval
+from uq.methods.indices import Kind
+from uq.methods.sample import Floats
 
-
-def grouped_rows(ds: xr.Dataset) -> tuple[NDArray[np.intp], tuple[str, ...]]:
-    """Find the groups of a design.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        A result, its rows in any order.
-
-    Returns
-    -------
-    order : ndarray of int, shape (R, N, blocks)
-        Row of each replicate, group and block.
-    labels : tuple of str
-        Names of the blocks.
-
-    Raises
-    ------
-    InputError
-        When a group lacks rows.
-    """
-    labels = flags(ds["block"])
-    keys = np.stack([ds[name].values for name in ("replicate", "group", "block")])
-    order = np.lexsort(keys[::-1])
-    if order.size % len(labels) == 0:
-        groups = keys[:, order].reshape(3, -1, len(labels))
-        whole = (np.ptp(groups[:2], axis=2) == 0).all()
-        if whole and (groups[2] == [code for code, _ in labels]).all():
-            order = order.reshape(ds.attrs["replicates"], -1, len(labels))
-            return order, tuple(label for _, label in labels)
-    raise InputError("rows of the design are missing: its indices need whole groups")
+Name = tuple[Kind, str]
+"""A kind of index, and the input that it is of."""
 
 
-def whole_groups(values: Floats, order: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Return which groups have a value in each of their rows.
+def by_replicates(
+    estimate: Callable[[Floats], Mapping[Name, float]],
+    pooled: Floats,
+    replicates: Sequence[Floats],
+    what: str,
+    lacking: str = "",
+) -> tuple[dict[Name, Estimate], tuple[str, ...]]:
+    """Estimate from all groups together, with intervals from the same estimate by replicates.
 
     Parameters
     ----------
-    values : ndarray of float64, shape (S,)
-        NaN where a row has none.
-    order : ndarray of int, shape (..., rows of a group)
-        The rows of each group.
+    estimate : callable
+        Whole groups, along the first axis -> indices.
+    pooled : ndarray
+        All whole groups.
+    replicates : sequence of ndarray
+        Those of each replicate.
+    what : str
+        What a sentence calls them.
+    lacking : str
+        Why the replicates cannot be estimated from alone, or "".
 
     Returns
     -------
-    ndarray of bool, shape (...)
+    estimates : dict
+    notes : tuple of str
+        Why there are no intervals.
     """
-    return np.asarray(np.isfinite(values[order]).all(axis=-1))
+    scatter: list[Mapping[Name, float]] = []
+    notes: tuple[str, ...] = ()
+    if len(replicates) == 1:
+        notes = (f"no intervals: with replicates = 1 nothing shows the scatter of the {what}",)
+    elif lacking:
+        notes = (f"no intervals: {lacking}",)
+    else:
+        scatter = [estimate(own) for own in replicates]
+    found = {}
+    for key, value in estimate(pooled).items():
+        interval = scatter_interval(value, np.array([one[key] for one in scatter]))
+        found[key] = Estimate(value, *interval)
+    return found, notes

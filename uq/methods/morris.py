@@ -1,77 +1,32 @@
 """Morris' elementary effects: which inputs matter at all, from few rows."""
 
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
-import xarray as xr
-from numpy.typing import NDArray
 
 from uq.designs.trajectories import STEP
-from uq.methods.groups import whole_groups
-from uq.indices.steps import steps
-from uq.indices.targets import Index, Indices, RefusedError
-from uq.intervals import ROUNDING, is_constant, scatter_interval
-from uq.rows.elements import Floats
+from uq.estimate import Estimate
+from uq.intervals import ROUNDING, is_constant
+from uq.methods.groups import by_replicates
+from uq.methods.indices import Indices, Kind, RefusedError
+from uq.methods.method import NO_EFFECT
+from uq.methods.sample import Floats, Sample
 
 MIN_TRAJECTORIES = 4
 """Fewer trajectories than this give no mean worth the name."""
 
-_CORNERS = (
-    "trajectories chosen far apart favour the corners of the inputs: the effects are theirs, tens"
-    " of per cent off those of all trajectories, which the design 'morris' estimates"
-)
+MU = Kind("mu", "mean effect (mu)", "output")
+SIGMA = Kind("sigma", "scatter of effects (sigma)", "output")
+MU_STAR = Kind("mu_star", "mean magnitude of effects (mu*)", "output")
 
 
-class Trajectories(NamedTuple):
-    """Where the rows of a Morris design stand.
-
-    Attributes
-    ----------
-    order : ndarray of int, shape (R, N, d + 1)
-        Row of each replicate, trajectory and point on it.
-    parameters : tuple of str
-        The inputs that change, d of them.
-    direction : ndarray, shape (R, N, d, d)
-        Whether a step (third axis) raises an input (last axis), 1, lowers it, -1, or neither, 0,
-        in probability.
-    optimised : bool
-        Whether they were chosen far apart.
-    """
-
-    order: NDArray[np.intp]
-    parameters: tuple[str, ...]
-    direction: Floats
-    optimised: bool
-
-
-def trajectories(ds: xr.Dataset) -> Trajectories:
-    """Find the trajectories of a Morris design.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        A result, its rows in any order.
-
-    Returns
-    -------
-    Trajectories
-
-    Raises
-    ------
-    InputError
-        When rows are missing or are not those of the design.
-    """
-    return Trajectories(*steps(ds), optimised=ds.attrs["design"] == "morris-optimised")
-
-
-def morris_indices(design: Trajectories, values: Floats) -> Indices:
+def morris_indices(sample: Sample) -> Indices:
     """Estimate mean, mean magnitude and standard deviation of the elementary effects.
 
     Parameters
     ----------
-    design : Trajectories
-    values : ndarray, shape (n,)
-        One number per row of the result, NaN where there is none: its whole trajectory is left out.
+    sample : Sample
+        Of trajectories.
 
     Returns
     -------
@@ -83,58 +38,53 @@ def morris_indices(design: Trajectories, values: Floats) -> Indices:
     Raises
     ------
     RefusedError
-        Too few trajectories, or a constant output.
+        A constant output.
 
     Notes
     -----
     Trajectories chosen far apart favour the corners. There the intervals are of what such
     trajectories give on average, which differs from the mean over all trajectories by tens of per
-    cent; a note says so.
+    cent; the design says so.
 
     References
     ----------
     F. Campolongo, J. Cariboni, A. Saltelli, "An effective screening design for sensitivity analysis
     of large models", Environ. Model. Softw. 22, 1509-1518 (2007).
     """
-    whole = whole_groups(values, design.order)
-    kept = int(whole.sum())
-    if kept < MIN_TRAJECTORIES:
-        raise RefusedError(
-            f"only {kept} of {whole.size} trajectories are whole; {MIN_TRAJECTORIES} are needed"
-        )
-    y = values[design.order]
+    y, whole = sample.values[sample.groups], sample.whole
     if is_constant(y[whole]):
-        raise RefusedError("the same value in all rows: nothing depends on the inputs")
+        raise RefusedError(NO_EFFECT)
     # A step within one of several discrete values changes no input, and has no effect.
-    effects = np.einsum("rns,rnsp->rnp", np.diff(y, axis=2), design.direction) / STEP
+    effects = np.einsum("rns,rnsp->rnp", np.diff(y, axis=2), sample.direction) / STEP
 
     replicates = [own[rows] for own, rows in zip(effects, whole, strict=True)]
     rounding = ROUNDING * np.abs(y[whole]).max()
-    scatter: list[dict[str, Floats]] = []
-    notes = [_CORNERS] if design.optimised else []
-    if len(replicates) == 1:
-        notes.append("no intervals: with replicates = 1 nothing shows the scatter of the effects")
-    elif any(len(own) < 2 for own in replicates):
-        notes.append("no intervals: some replicates have fewer than two whole trajectories")
-    else:
-        scatter = [_estimates(own, rounding) for own in replicates]
-    indices: dict[str, dict[str, Index]] = {}
-    for kind, found in _estimates(effects[whole], rounding).items():
-        indices[kind] = {
-            name: Index(
-                float(value),
-                *scatter_interval(float(value), np.array([one[kind][i] for one in scatter])),
-            )
-            for i, (name, value) in enumerate(zip(design.parameters, found, strict=True))
-        }
-    return Indices(indices, tuple(notes))
+    few = any(len(own) < 2 for own in replicates)
+    found, notes = by_replicates(
+        lambda groups: _estimates(list(sample.inputs), groups, rounding),
+        effects[whole],
+        replicates,
+        "effects",
+        "some replicates have fewer than two whole trajectories" if few else "",
+    )
+    indices: dict[Kind, dict[str, Estimate]] = {MU: {}, SIGMA: {}, MU_STAR: {}}
+    for (kind, name), estimate in found.items():
+        indices[kind][name] = estimate
+    return Indices(indices, notes)
 
 
-def _estimates(effects: Floats, rounding: float) -> dict[str, Floats]:
-    """Return each measure, shape (d,), from effects of shape (n, d); no sigma below rounding."""
+def _estimates(
+    names: Sequence[str], effects: Floats, rounding: float
+) -> dict[tuple[Kind, str], float]:
+    """Return each measure from effects of shape (n, d); no sigma below rounding."""
     sigma = effects.std(axis=0, ddof=1)
+    measures = {
+        MU: effects.mean(axis=0),
+        SIGMA: np.where(sigma > rounding, sigma, 0.0),
+        MU_STAR: np.abs(effects).mean(axis=0),
+    }
     return {
-        "mu": effects.mean(axis=0),
-        "sigma": np.where(sigma > rounding, sigma, 0.0),
-        "mu_star": np.abs(effects).mean(axis=0),
+        (kind, name): float(value)
+        for kind, found in measures.items()
+        for name, value in zip(names, found, strict=True)
     }

@@ -1,68 +1,24 @@
 """Shapley effects: shares of the variance that sum to one, whatever the inputs do together."""
 
-from typing import NamedTuple
-
 import numpy as np
-import xarray as xr
-from numpy.typing import NDArray
 
-from uq.methods.groups import whole_groups
-from uq.indices.steps import steps
-from uq.indices.targets import ALL_NOISE, Index, Indices, RefusedError
+from uq.estimate import Estimate
 from uq.intervals import UNKNOWN, Interval, is_constant, scatter_interval
-from uq.rows.elements import Floats
+from uq.methods.indices import ALL_NOISE, SHAPLEY, Indices, RefusedError
+from uq.methods.method import NO_VARIANCE
+from uq.methods.sample import Floats, Sample
 
 MIN_PATHS = 32
 """Fewer paths than this have a mean whose interval Student's law does not give."""
 
 
-class Paths(NamedTuple):
-    """Where the rows of a Shapley design stand.
-
-    Attributes
-    ----------
-    order : ndarray of int, shape (n, d + 1)
-        Row of each path and point on it, of all replicates.
-    parameters : tuple of str
-    changed : ndarray of bool, shape (n, d, d)
-        Whether a step (second axis) changes an input (last axis).
-    """
-
-    order: NDArray[np.intp]
-    parameters: tuple[str, ...]
-    changed: NDArray[np.bool_]
-
-
-def paths(ds: xr.Dataset) -> Paths:
-    """Find the paths of a Shapley design.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        A result, its rows in any order.
-
-    Returns
-    -------
-    Paths
-
-    Raises
-    ------
-    InputError
-        When rows are missing or are not those of the design.
-    """
-    order, parameters, direction = steps(ds)
-    d = len(parameters)
-    return Paths(order.reshape(-1, d + 1), parameters, direction.reshape(-1, d, d) != 0)
-
-
-def shapley_indices(design: Paths, values: Floats) -> Indices:
+def shapley_indices(sample: Sample) -> Indices:
     """Estimate the Shapley effect of each input.
 
     Parameters
     ----------
-    design : Paths
-    values : ndarray, shape (n,)
-        One number per row of the result, NaN where there is none: its whole path is left out.
+    sample : Sample
+        Of paths.
 
     Returns
     -------
@@ -73,7 +29,7 @@ def shapley_indices(design: Paths, values: Floats) -> Indices:
     Raises
     ------
     RefusedError
-        Too few paths, a constant output, or one that is constant along each path.
+        A constant output, or one that is constant along each path.
 
     Notes
     -----
@@ -87,29 +43,23 @@ def shapley_indices(design: Paths, values: Floats) -> Indices:
     .. [1] T. Goda, "A simple algorithm for global sensitivity analysis with Shapley effects",
        Reliab. Eng. Syst. Saf. 213, 107702 (2021).
     """
-    whole = whole_groups(values, design.order)
-    kept = int(whole.sum())
-    if kept < MIN_PATHS:
-        raise RefusedError(f"only {kept} of {whole.size} paths are whole; {MIN_PATHS} are needed")
-    y = values[design.order][whole]
+    whole = sample.whole
+    y = sample.values[sample.groups][whole]
     if is_constant(y):
-        raise RefusedError("the same value in all rows: there is no variance to apportion")
+        raise RefusedError(NO_VARIANCE)
     before, after = y[:, :-1], y[:, 1:]
     steps = (y[:, :1] - (before + after) / 2) * (before - after)
-    parts = np.einsum("ns,nsp->np", steps, design.changed[whole])
+    parts = np.einsum("ns,nsp->np", steps, sample.direction[whole] != 0)
     total = parts.sum(axis=1)
     if is_constant(y - y[:, :1]):
         raise RefusedError(ALL_NOISE)
     shares = parts.mean(axis=0) / total.mean()
     errors = (parts - shares * total[:, None]) / total.mean()
-    return Indices(
-        {
-            "shapley": {
-                name: Index(float(share), *_interval(float(share), error))
-                for name, share, error in zip(design.parameters, shares, errors.T, strict=True)
-            }
-        }
-    )
+    found = {
+        name: Estimate(float(share), *_interval(float(share), error))
+        for name, share, error in zip(sample.inputs, shares, errors.T, strict=True)
+    }
+    return Indices({SHAPLEY: found})
 
 
 def _interval(share: float, errors: Floats) -> Interval:

@@ -1,78 +1,32 @@
 """Sobol' indices of a crossed design: SALib's estimators, intervals from the replicates."""
 
+from collections.abc import Sequence
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
-from numpy.typing import NDArray
-from SALib.analyze.sobol import first_order, second_order, total_order
 
-from uq.designs.registry import NOISE
+from uq.designs.layouts import NOISE
+from uq.estimate import Estimate
+from uq.intervals import is_constant
 from uq.methods.few_rows import effective_rows, one_more_row, widened
-from uq.methods.groups import grouped_rows, whole_groups
-from uq.indices.targets import Index, Indices, RefusedError
-from uq.intervals import is_constant, scatter_interval
-from uq.rows.elements import Floats
+from uq.methods.groups import by_replicates
+from uq.methods.indices import S1, S2, ST, Indices, Kind, RefusedError
+from uq.methods.method import NO_VARIANCE
+from uq.methods.sample import Floats, Sample
 
 MIN_GROUPS = 8
 """Fewer groups than this give no index worth the name."""
 
-
-class Crossed(NamedTuple):
-    """Where the rows of a crossed design stand.
-
-    Attributes
-    ----------
-    order : ndarray of int, shape (R, N, blocks)
-        Row of each replicate, group and block.
-    place : dict of str to int
-        Label of a block (``A``, ``AB_x1``, ..., ``B``) -> its place in a group.
-    """
-
-    order: NDArray[np.intp]
-    place: dict[str, int]
-
-    @property
-    def parameters(self) -> tuple[str, ...]:
-        """The parameters, in the design's order."""
-        return tuple(label[3:] for label in self.place if label.startswith("AB_"))
-
-    @property
-    def ends(self) -> list[int]:
-        """The places of A and B, the independent rows of a group."""
-        return [self.place["A"], self.place["B"]]
+_NOISE = Kind(NOISE, "share of noise", "variance")
 
 
-def crossed(ds: xr.Dataset) -> Crossed:
-    """Find the groups of a crossed design.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        A result, its rows in any order.
-
-    Returns
-    -------
-    Crossed
-
-    Raises
-    ------
-    InputError
-        When a group lacks rows.
-    """
-    order, labels = grouped_rows(ds)
-    return Crossed(order, {label: i for i, label in enumerate(labels)})
-
-
-def sobol_indices(design: Crossed, values: Floats) -> Indices:
+def sobol_indices(sample: Sample) -> Indices:
     """Estimate first-order, total and, where the design has them, second-order indices.
 
     Parameters
     ----------
-    design : Crossed
-    values : ndarray, shape (n,)
-        One number per row of the result, NaN where there is none: its whole group is left out.
+    sample : Sample
+        Of a crossed design.
 
     Returns
     -------
@@ -84,7 +38,7 @@ def sobol_indices(design: Crossed, values: Floats) -> Indices:
     Raises
     ------
     RefusedError
-        Too few groups, or a constant output.
+        A constant output.
 
     Notes
     -----
@@ -98,58 +52,78 @@ def sobol_indices(design: Crossed, values: Floats) -> Indices:
     A. Saltelli et al., "Variance based sensitivity analysis of model output. Design and estimator
     for the total sensitivity index", Comput. Phys. Commun. 181, 259-270 (2010).
     """
-    y, whole = values[design.order], whole_groups(values, design.order)
-    kept = int(whole.sum())
-    if kept < MIN_GROUPS:
-        raise RefusedError(f"only {kept} of {whole.size} groups are whole; {MIN_GROUPS} are needed")
-    ends = y[whole][:, design.ends]
-    if is_constant(ends):
-        raise RefusedError("the same value in all rows: there is no variance to apportion")
+    y, whole = sample.values[sample.groups], sample.whole
+    ends = [sample.blocks.index("A"), sample.blocks.index("B")]
+    independent = y[whole][:, ends]
+    if is_constant(independent):
+        raise RefusedError(NO_VARIANCE)
     # The estimators lose digits, and scatter more, on values far from zero (Sobol' 2001).
-    y = (y - ends.mean()) / ends.std()
+    y = (y - independent.mean()) / independent.std()
 
-    values_of = _estimates(design, y[whole])
     replicates = [group[rows] for group, rows in zip(y, whole, strict=True)]
-    scatter, notes = [], []
-    if len(replicates) == 1:
-        notes.append("no intervals: with replicates = 1 nothing shows the scatter of the indices")
-    elif any(len(r) < 2 or is_constant(r[:, design.ends]) for r in replicates):
-        notes.append("no intervals: in some replicates too few rows differ")
-    else:
-        scatter = [_estimates(design, replicate) for replicate in replicates]
-    independent = y[whole][:, design.ends].ravel()
-    more = one_more_row(independent, kept, len(replicates))
-    if scatter and more:
+    few = any(len(own) < 2 or is_constant(own[:, ends]) for own in replicates)
+    lacking = "in some replicates too few rows differ" if few else ""
+    found, notes = by_replicates(
+        lambda groups: _estimates(sample.blocks, groups), y[whole], replicates, "indices", lacking
+    )
+    independent = y[whole][:, ends].ravel()
+    more = one_more_row(independent, int(whole.sum()), len(replicates))
+    if more and not notes:
         rows = effective_rows(independent) / len(replicates)
-        notes.append(
+        notes += (
             f"the variance rests on some {rows:.2g} rows of each replicate: intervals are widened"
-            " by what one more such row might do, and are conservative"
+            " by what one more such row might do, and are conservative",
         )
-    indices: dict[str, dict[str, Index]] = {}
-    for (kind, label), value in values_of.items():
-        interval = scatter_interval(value, np.array([found[kind, label] for found in scatter]))
-        interval = widened(value, interval, more)
-        indices.setdefault(kind, {})[label] = Index(value, *interval)
-    noise = indices.pop(NOISE, {}).get("")
-    inert = [name for name in design.parameters if indices["ST"][name].value == 0]
+    indices: dict[Kind, dict[str, Estimate]] = {}
+    for (kind, label), estimate in found.items():
+        indices.setdefault(kind, {})[label] = widened(estimate, more)
+    noise = indices.pop(_NOISE, {}).get("")
+    inert = [name for name, total in indices[ST].items() if total.value == 0]
     if inert:
-        notes.append(f"no effect in any row, hence no interval: {', '.join(inert)}")
-    return Indices(indices, tuple(notes), noise=noise)
+        notes += (f"no effect in any row, hence no interval: {', '.join(inert)}",)
+    return Indices(indices, notes, noise=noise)
 
 
-def _estimates(design: Crossed, y: Floats) -> dict[tuple[str, str], float]:
+def _parameters(blocks: Sequence[str]) -> list[str]:
+    return [label.removeprefix("AB_") for label in blocks if label.startswith("AB_")]
+
+
+def _estimates(blocks: Sequence[str], y: Floats) -> dict[tuple[Kind, str], float]:
     """Return each index from groups y, shape (n, blocks)."""
-    block = {label: y[:, place] for label, place in design.place.items()}
+    from SALib.analyze.sobol import first_order, second_order, total_order
+
+    block = dict(zip(blocks, y.T, strict=True))
     a, b = block["A"], block["B"]
     found = {}
-    for name in design.parameters:
-        found["S1", name] = first_order(a, block[f"AB_{name}"], b)
-        found["ST", name] = total_order(a, block[f"AB_{name}"], b)
+    for name in _parameters(blocks):
+        found[S1, name] = first_order(a, block[f"AB_{name}"], b)
+        found[ST, name] = total_order(a, block[f"AB_{name}"], b)
     if NOISE in block:
-        found[NOISE, ""] = total_order(a, block[NOISE], b)
+        found[_NOISE, ""] = total_order(a, block[NOISE], b)
     if any(label.startswith("BA_") for label in block):
-        for one, other in combinations(design.parameters, 2):
-            found["S2", f"{one},{other}"] = second_order(
+        for one, other in combinations(_parameters(blocks), 2):
+            found[S2, f"{one},{other}"] = second_order(
                 a, block[f"AB_{one}"], block[f"AB_{other}"], block[f"BA_{one}"], b
             )
     return {key: float(value) for key, value in found.items()}
+
+
+def pilot(sample: Sample) -> dict[Kind, float]:
+    """Return the largest standard deviation of what a group adds to S1 and to ST, over inputs.
+
+    Parameters
+    ----------
+    sample : Sample
+        A few groups of a crossed design, of which some are whole.
+
+    Returns
+    -------
+    dict of Kind to float
+    """
+    y = sample.values[sample.groups][sample.whole]
+    block = dict(zip(sample.blocks, ((y - y.mean()) / y.std()).T, strict=True))
+    mixed = [block[f"AB_{name}"] for name in _parameters(sample.blocks)]
+    return {
+        S1: max(np.std(block["B"] * (one - block["A"])) for one in mixed),
+        ST: max(np.std(0.5 * (block["A"] - one) ** 2) for one in mixed),
+    }
