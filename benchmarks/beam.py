@@ -10,8 +10,9 @@ import numpy as np
 
 from benchmarks import newmark
 from models.beam import lanes
-from models.beam.modal import beams
 from models.beam.parameters import Params, Settings
+from models.beam.structure.modal import beams
+from models.numerics.blocks import LANES
 
 KNOWN = {32.3591: (3.394367, 3.919359), 57.1042: (29.56878, 82.55679)}  # light, heavy site
 TRANSIENT, PERIODS = 1500, 200
@@ -38,7 +39,7 @@ def error_of(rates, known):
 
 
 def by_lanes(frequency, steps):
-    n = lanes.LANES
+    n = LANES
     settings = Settings(steps_per_period=steps)
     b = beams(nominal(frequency, n), settings)
     ((_, system),) = lanes.groups(b, settings)

@@ -12,11 +12,14 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from models.beam import MODEL, lanes, response, wear
-from models.beam.batch import initial_gaps
-from models.beam.looks import changes_of, confirmed_regimes
-from models.beam.modal import beams
+from models.beam import MODEL, lanes
 from models.beam.parameters import REGIMES, Params, Settings
+from models.beam.response.settling import settle
+from models.beam.start import initial_gaps
+from models.beam.structure.modal import beams
+from models.beam.wear.accelerated_life import run
+from models.beam.wear.regimes import changes_of, confirmed_regimes
+from models.numerics.blocks import LANES
 from uq.rows.sampling import row_block
 from uq.study.definition import load_study
 
@@ -45,7 +48,7 @@ def costs(name, accuracy):
     print(f"{name}, accuracy {accuracy}: {each:.2f} core-ms per row")
     for code, regime in enumerate(REGIMES):
         mine = np.flatnonzero(outputs["regime"] == code)
-        if len(mine) >= lanes.LANES:
+        if len(mine) >= LANES:
             some = SimpleNamespace(x=rows.x[mine], seed=rows.seed[mine])
             print(f"    {regime:20s} {len(mine):4d} rows {lives(some, accuracy)[1]:8.2f}")
 
@@ -74,19 +77,19 @@ def regimes(name, periods=16_384):
         q = Params._make(field[chosen] for field in p)
         gaps, x0 = initial_gaps(q), q.initial_gap
         state = lanes.start(system, q.initial_displacement / x0, q.initial_velocity / x0)
-        work = response.settle(lanes, system, state, gaps).work
+        work = settle(lanes, system, state, gaps).work
         told = []
 
         def advance(system, state, gaps, growth, periods, told=told):
             record = lanes.advance(system, state, gaps, growth, periods)
-            settled = response.settle(lanes, system, state.copy(), gaps.copy())
+            settled = settle(lanes, system, state.copy(), gaps.copy())
             told.append((gaps.copy(), settled.regime))
             return record
 
         share = np.stack([np.ones_like(x0), q.wear_coefficient_ratio], axis=1)
         growths = np.asarray(DEPTHS) / x0[:, None]
         spy = SimpleNamespace(advance=advance)
-        life = wear.run(spy, system, state, gaps, work, share, growths, periods).history
+        life = run(spy, system, state, gaps, work, share, growths, periods).history
         truth = np.full_like(life.regime, -1)
         for look, (at, regime) in enumerate(told):
             here = np.abs(life.gaps[:, look, None] - at).max(axis=2)

@@ -11,8 +11,8 @@ import numpy as np
 from benchmarks.beam import KNOWN, clock, nominal
 from models.beam import lanes
 from models.beam.batch import simulate_rows
-from models.beam.modal import beams
 from models.beam.parameters import Settings
+from models.beam.structure.modal import beams
 
 ROWS, PERIODS = 16, 200
 REFERENCE = {"elements": 40}

@@ -15,14 +15,15 @@ import numpy as np
 from benchmarks.compare import Rival, clock, compare
 from benchmarks.mole_modes import ELECTRIC, IMPACT, JOULE, PROGRESS
 from benchmarks.mole_rivals import by_runge_kutta, by_scipy
-from models.mole import MODEL, exact
-from models.mole import lane_rows as row_at
-from models.mole.equations import ELECTRICAL_WORK, IMPACT_WORK, MOLE_DISPLACEMENT, SIZE
-from models.mole.lane_modes import mole_of
-from models.mole.lane_rows import SCALES
+from models.mole import MODEL
+from models.mole.exact import propagation as exact
+from models.mole.lanes import rows as row_at
+from models.mole.lanes.modes import mole_of
+from models.mole.lanes.rows import SCALES
 from models.mole.parameters import Params
-from models.mole.response import Machines
-from models.mole.system import mole
+from models.mole.response.settling import Machines
+from models.mole.theory.equations import ELECTRICAL_WORK, IMPACT_WORK, MOLE_DISPLACEMENT, SIZE
+from models.mole.theory.system import mole
 from uq.rows.sampling import row_block
 from uq.study.definition import load_study
 

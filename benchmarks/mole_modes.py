@@ -1,14 +1,15 @@
 """The mole's modes as numbers, for tools that follow it from event to event.
 
 The equations have one form in all modes: a column of constants says which one holds, and how far
-from its end it is. The rules of friction are those of `models.mole.friction`. Work of impacts and
-supply is counted in kilojoules and the voltage in hundreds of volts, so that no quantity is large.
+from its end it is. The rules of friction are those of `models.mole.theory.friction`. Work of
+impacts and supply is counted in kilojoules and the voltage in hundreds of volts, so that no
+quantity is large.
 """
 
 import math
 
-from models.mole.friction import bar_hold, decide, mole_hold, response
-from models.mole.lane_modes import force_on_bar, mole_of
+from models.mole.lanes.modes import force_on_bar, mole_of
+from models.mole.theory.friction import bar_hold, decide, mole_hold, response
 from models.numerics.jit import kernel
 
 U, V, X, CURRENT, P, SINE, COSINE, PROGRESS, IMPACT, ELECTRIC = range(10)
@@ -55,7 +56,7 @@ _NUDGE = 1e-13  # [m s-1] off rest: there a slip's end would be found again
 
 @kernel
 def begin(table, lane, record, y, c, mode):
-    """Let a lane go on from a record of `models.mole.lane_rows`."""
+    """Let a lane go on from a record of `models.mole.lanes.rows`."""
     q = mole_of(table, lane)
     y[:, lane] = 0.0
     for j in range(5):

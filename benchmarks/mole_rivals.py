@@ -6,8 +6,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks import mole_modes as modes
-from models.mole.lane_modes import mole_of
-from models.mole.lane_rows import HALF
+from models.mole.lanes.modes import mole_of
+from models.mole.lanes.rows import HALF
 from models.numerics.jit import kernel
 
 _SCALES = np.array([1e-2, 1.0, 0.1, 1.0, 1.0, 1.0, 1.0, 1e-2, 1e-4, 1e-3])

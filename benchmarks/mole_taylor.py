@@ -8,7 +8,7 @@ import heyoka as hy
 import numpy as np
 
 from benchmarks import mole_modes as modes
-from models.mole.lane_modes import mole_of
+from models.mole.lanes.modes import mole_of
 
 
 class Taylor:

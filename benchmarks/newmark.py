@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-from models.beam.modal import Beams, Record
+from models.beam.structure.modal import Beams
+from models.beam.structure.record import Record
 
 
 class System(NamedTuple):
@@ -26,7 +27,7 @@ def newmark(frequency, decay, mobility, force, stiffness, forcing, gaps, steps, 
     Parameters
     ----------
     frequency, decay, mobility : ndarray, shape (m,)
-        As in `models.beam.modal.Beams`.
+        As in `models.beam.structure.modal.Beams`.
     force, stiffness, forcing : float
     gaps : ndarray, shape (2,)
     steps : int

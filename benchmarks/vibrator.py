@@ -15,11 +15,15 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.compare import Rival, clock, compare
 from benchmarks.shooting import rates, shoot
-from models.vibrator import MODEL, equations, exact, exact_orbit, lanes, theory
-from models.vibrator.machine import prepare
+from models.vibrator import MODEL
+from models.vibrator.equations import rigid_motion
+from models.vibrator.equations.system import systems
+from models.vibrator.exact import orbit, propagator
+from models.vibrator.exact.budgeted import prepare
+from models.vibrator.lanes import fixed_steps
 from models.vibrator.parameters import Params
-from models.vibrator.synchronous import Machines, propose
-from models.vibrator.system import systems
+from models.vibrator.start.synchronous import Machines, propose
+from models.vibrator.theory import averaged
 from uq.rows.sampling import row_block
 from uq.study.definition import load_study
 
@@ -47,8 +51,10 @@ def scattered(n):
 
 P = scattered(ROWS)
 SYSTEM = systems(P)
-START = equations.initial_state(P)
-CONSTANTS = np.repeat(lanes.pack(SYSTEM), lanes.LANES, axis=1)  # of each row, in all lanes
+START = rigid_motion.initial_state(P)
+CONSTANTS = np.repeat(
+    fixed_steps.pack(SYSTEM), fixed_steps.LANES, axis=1
+)  # of each row, in all lanes
 
 
 def angle_of(states):
@@ -58,7 +64,7 @@ def angle_of(states):
 def by_scipy(rows, tolerance):
     ends = []
     for i in range(rows):
-        c, scales = CONSTANTS[i], exact.scales_of(SYSTEM.row(i), equations.DEGREES)
+        c, scales = CONSTANTS[i], propagator.scales_of(SYSTEM.row(i), rigid_motion.DEGREES)
         run = solve_ivp(
             rates,
             (0.0, DURATION),
@@ -74,16 +80,18 @@ def by_scipy(rows, tolerance):
 
 
 def by_exact(rows, tolerance):
-    runs = (exact.propagate(SYSTEM.row(i), START[i], DURATION, tolerance) for i in range(rows))
+    runs = (propagator.propagate(SYSTEM.row(i), START[i], DURATION, tolerance) for i in range(rows))
     return np.array([run.state for run in runs])
 
 
 def by_lanes(rows, steps):
     """Return the states at the end, with all that has to be set up."""
     p = Params._make(field[:rows] for field in P)
-    state, constants = equations.initial_state(p), lanes.pack(systems(p))
+    state, constants = rigid_motion.initial_state(p), fixed_steps.pack(systems(p))
     nowhere = np.full(rows, np.nan)
-    lanes.advance(constants, np.full(rows, DURATION / steps), state, nowhere, steps, 0.0, True)
+    fixed_steps.advance(
+        constants, np.full(rows, DURATION / steps), state, nowhere, steps, 0.0, True
+    )
     return state
 
 
@@ -136,11 +144,9 @@ def steady_states():
     ones = [
         prepare(Params._make(float(field[i]) for field in P), "small", budget) for i in range(KNOWN)
     ]
-    guesses = [exact_orbit.proposal(one) for one in ones]
-    orbits = [
-        exact_orbit.find_orbit(one, guess, 1e-12) for one, guess in zip(ones, guesses, strict=True)
-    ]
-    known = np.array([orbit.measures.disphasing for orbit in orbits])
+    guesses = [orbit.proposal(one) for one in ones]
+    orbits = [orbit.find_orbit(one, guess, 1e-12) for one, guess in zip(ones, guesses, strict=True)]
+    known = np.array([found.measures.disphasing for found in orbits])
 
     def by_shooting(n, steps):
         return np.array(
@@ -180,7 +186,7 @@ def study():
 def averaged_theory():
     n = 8 * ROWS
     p = scattered(n)
-    _, seconds = clock(lambda: theory.disphasing(p))
+    _, seconds = clock(lambda: averaged.disphasing(p))
     print(f"Averaged theory: {n / seconds:.3g} machines per second")
 
 

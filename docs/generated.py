@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import fields
 from html import escape
 from importlib import import_module
-from inspect import isfunction
+from inspect import isclass, isfunction
 from math import inf, pi
 from pathlib import Path
 from types import ModuleType
@@ -157,7 +157,7 @@ def outputs(name: str) -> str:
         more += ["may be undefined"] if one.may_be_undefined else []
         late = one.has_censored_flag and not one.never_known_at_once
         more += ["may never end if censored"] if late else []
-        more += ["never censored"] if one.kind == "lifetime" and not one.may_be_censored else []
+        more += ["never censored"] if one.is_lifetime and not one.may_be_censored else []
         dims = f" ({', '.join(one.dims)})" if one.dims else ""
         lines.append((f"`{output}`{dims}", unit(one.unit), meaning, ", ".join(more)))
     return table(("output", "unit", "meaning", ""), lines)
@@ -303,12 +303,15 @@ def _spellings(option: Any) -> Iterator[str]:
 
 
 def functions(name: str) -> str:
-    """Return the directives that document every public function of a module, from its docstring."""
-    module = import_module(name.replace("-", "."))
+    """Return the directives that document what a module offers, each from its docstring."""
+    name = name.replace("-", ".")
+    module = import_module(name)
     public = getattr(module, "__all__", None) or [
         one for one, found in vars(module).items() if _is_own(found, module)
     ]
-    lines = [f".. autofunction:: {module.__name__}.{one}" for one in public]
+    offered = {one: getattr(module, one) for one in public}
+    lines = [f".. autofunction:: {name}.{one}" for one, f in offered.items() if isfunction(f)]
+    lines += [f".. autoexception:: {name}.{one}" for one, f in offered.items() if isclass(f)]
     return "\n".join(["```{eval-rst}", *lines, "```"])
 
 

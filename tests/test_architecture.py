@@ -1,6 +1,7 @@
 """Which module may import which: every import of the house, read from the source."""
 
 import ast
+import re
 import subprocess
 import sys
 from graphlib import TopologicalSorter
@@ -20,12 +21,12 @@ GROUND = {
     "interrupts",
     "intervals",
     "literals",
+    "json_form",
     "moments",
+    "order_statistics",
     "places",
     "provenance",
     "tails",
-    "threads",
-    "time_units",
     "two_samples",
     "wording",
 }
@@ -39,6 +40,7 @@ LAYERS = (
     {"study"},
     {"rows", "store"},
     {"running"},
+    {"upkeep", "exploring"},
     {"indices"},
     {"analysis"},
     {"drawing", "plots"},
@@ -48,12 +50,47 @@ LAYERS = (
 """Modules and packages of ``uq``, from the ground up: a layer may use itself and what is below."""
 
 STRANGERS = {
-    ("indices", "running"),
-    ("analysis", "running"),
-    ("drawing", "running"),
-    ("report", "running"),
-}
+    (above, below)
+    for above in ("indices", "analysis", "drawing", "report")
+    for below in ("running", "upkeep", "exploring")
+} | {("upkeep", "exploring"), ("exploring", "upkeep")}
 """What may not use the other although it stands above."""
+
+STOREYS = {
+    "beam": (
+        {"parameters"},
+        {"structure"},
+        {"exact", "lanes"},
+        {"start"},
+        {"response"},
+        {"wear"},
+        {"batch", "trajectory"},
+        {"branches"},
+        {"explore"},
+        {"paper"},
+    ),
+    "vibrator": (
+        {"parameters"},
+        {"theory"},
+        {"equations"},
+        {"lanes", "exact"},
+        {"start"},
+        {"paper", "batch", "trajectory"},
+    ),
+    "mole": (
+        {"parameters"},
+        {"theory"},
+        {"exact", "lanes"},
+        {"response"},
+        {"batch", "trajectory"},
+        {"explore"},
+        {"paper"},
+    ),
+}
+"""Modules and packages of each machine, from the ground up: one may use itself and those below."""
+
+SIDE_BY_SIDE = 12
+"""Modules that one folder of a machine may hold, its ``__init__`` apart."""
 
 
 def modules(package):
@@ -122,7 +159,7 @@ def test_models_know_neither_dask_nor_files_nor_xarray():
         for name, found in edges("models").items()
         for other in found
         if other.split(".")[0]
-        in (foreign if name.endswith(".explore") else foreign | allowed_in_explore)
+        in (foreign if "explore" in name.split(".") else foreign | allowed_in_explore)
     }
     assert not guilty
 
@@ -139,6 +176,42 @@ def test_one_machine_does_not_import_another():
     assert not guilty
 
 
+@pytest.mark.parametrize("machine", STOREYS)
+def test_a_machine_depends_one_way(machine):
+    height = {name: i for i, names in enumerate(STOREYS[machine]) for name in names}
+    package = ["models", machine]
+    guilty = set()
+    for name, found in edges(f"models/{machine}").items():
+        here = name.split(".")[2:3]
+        if not here:  # MODEL, which imports what it declares, and the rest when it computes
+            continue
+        for other in found:
+            parts = other.split(".")
+            if parts[:2] == package and parts[2:3] != here:
+                below = height.get(".".join(parts[2:3]), len(height))
+                guilty |= {(name, other)} if below >= height[here[0]] else set()
+    assert not guilty
+
+
+@pytest.mark.parametrize("machine", STOREYS)
+def test_few_files_stand_side_by_side(machine):
+    folder = HOUSE / "models" / machine
+    files = [path.parent for path in folder.rglob("*.py") if path.name != "__init__.py"]
+    assert {place for place in files if files.count(place) > SIDE_BY_SIDE} == set()
+
+
+@pytest.mark.parametrize("machine", ["beam"])
+def test_each_package_says_what_to_read(machine):
+    silent = set()
+    for path in (HOUSE / "models" / machine).rglob("*.py"):
+        package = path.parent if path.name != "__init__.py" else path.parent.parent
+        name = path.stem if path.name != "__init__.py" else path.parent.name
+        if package != HOUSE / "models":
+            said = ast.get_docstring(ast.parse((package / "__init__.py").read_text()))
+            silent |= set() if re.search(rf"\b{name}\b", said) else {path}
+    assert silent == set()
+
+
 def test_the_platform_depends_one_way():
     guilty = set()
     for name, found in edges("uq").items():
@@ -146,7 +219,7 @@ def test_the_platform_depends_one_way():
             continue
         here, layer = place_of(name)
         for other in found:
-            if other.split(".")[0] != "uq" or other == "uq":
+            if other.split(".")[0] != "uq" or other in ("uq", "uq.__version__"):
                 continue
             there, below = place_of(other)
             if below > layer or (here, there) in STRANGERS:
@@ -156,7 +229,7 @@ def test_the_platform_depends_one_way():
 
 def test_a_worker_imports_no_more_than_it_needs():
     heavy = "{'pydantic', 'scipy', 'xarray'}"
-    program = f"import sys, uq.running.task; print(*{heavy} & set(sys.modules))"
+    program = f"import sys, uq.running.dask_task; print(*{heavy} & set(sys.modules))"
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert (ended.stdout, ended.stderr) == ("\n", "")
 

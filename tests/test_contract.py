@@ -110,7 +110,7 @@ def test_outputs_are_documented(model, settings):
         assert output.unit.strip() and output.meaning.strip() and "\n" not in output.meaning, name
         assert output.unit not in TIME_UNITS, name
         assert output.kind in get_args(Kind), name
-        assert (output.kind == "category") == bool(output.categories), name
+        assert output.is_category == bool(output.categories), name
         assert len(set(output.categories)) == len(output.categories), name
         assert not any(" " in label or label == "none" for label in output.categories), name
         for dim in output.dims:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from benchmarks.coverage import further, known_indices, noise, problems
+from benchmarks.coverage import fewer_rows, known_indices, noise, problems
 from benchmarks.coverage.page import page
 from benchmarks.coverage.parts import PARTS
 from benchmarks.coverage.tally import Tally
@@ -73,8 +73,8 @@ def test_indices_of_the_life_are_those_of_many_rows(big):
 
 def test_the_rare_jump_is_as_rare_as_it_is_said_to_be():
     u = np.random.default_rng(0).standard_normal((ROWS * 10, 3))
-    hits = int((further._jump(u) > 0).sum())
-    expected = further._jump_probability() * len(u)
+    hits = int((fewer_rows._jump(u) > 0).sum())
+    expected = fewer_rows._jump_probability() * len(u)
     assert abs(hits - expected) < 4 * np.sqrt(expected)
 
 

@@ -1,4 +1,4 @@
-"""The arrays that a model's ``batch`` must return, and where they lack a value."""
+"""The arrays that a model's ``batch`` must return, and the rows of them that failed."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
@@ -52,17 +52,8 @@ def censored_name(output: str) -> str:
     return f"{output}_censored"
 
 
-def lacking(kind: str, values: NDArray[Any]) -> NDArray[np.bool_]:
-    """Return where an output of some kind has no value, of the shape of `values`."""
-    if kind == "category":
-        return values < 0
-    if kind == "lifetime":
-        return np.isnan(values) | np.isneginf(values)
-    return ~np.isfinite(values)
-
-
 def failed_rows(
-    status: NDArray[np.int8], required: Iterable[tuple[str, NDArray[Any]]]
+    status: NDArray[np.int8], required: Iterable[tuple[Output, NDArray[Any]]]
 ) -> NDArray[np.bool_]:
     """Return which rows failed.
 
@@ -71,20 +62,20 @@ def failed_rows(
     Parameters
     ----------
     status : ndarray of int8, shape (n,)
-    required : iterable of (str, ndarray)
-        Kind and values, shape (n, *dims), of each output that may not be undefined.
+    required : iterable of (Output, ndarray)
+        Each output that may not be undefined, and its values, shape (n, *dims).
 
     Returns
     -------
     ndarray of bool, shape (n,)
     """
     incomplete = np.zeros(len(status), dtype=np.bool_)
-    for kind, values in required:
-        incomplete |= lacking(kind, values).any(axis=tuple(range(1, values.ndim)))
+    for output, values in required:
+        incomplete |= output.is_absent(values).any(axis=tuple(range(1, values.ndim)))
     return np.where(status == Status.OUT_OF_BUDGET, incomplete, status != Status.OK)
 
 
 def _column(output: Output, shape: tuple[int, ...]) -> Column:
-    if output.kind == "category":
+    if output.is_category:
         return Column(np.dtype(np.int8), -1, shape)
     return Column(np.dtype(np.float64), np.nan, shape)

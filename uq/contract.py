@@ -104,9 +104,36 @@ class Output:
     never_known_at_once: bool = True
 
     @property
+    def is_lifetime(self) -> bool:
+        """Whether it is a time until something happens, +inf where it never does."""
+        return self.kind == "lifetime"
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether its sign is a direction and not a size."""
+        return self.kind == "angle"
+
+    @property
+    def is_category(self) -> bool:
+        """Whether it is one of several `categories` and no number."""
+        return self.kind == "category"
+
+    @property
     def has_censored_flag(self) -> bool:
         """Whether ``batch`` returns ``<name>_censored`` beside this output."""
-        return self.kind == "lifetime" and self.may_be_censored
+        return self.is_lifetime and self.may_be_censored
+
+    def is_absent(self, values: NDArray[Any]) -> NDArray[np.bool_]:
+        """Return which values are none, in the shape of `values`."""
+        if self.is_category:
+            return values < 0
+        if self.is_lifetime:
+            return np.isnan(values) | np.isneginf(values)
+        return ~np.isfinite(values)
+
+    def for_thresholds(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return what thresholds are compared with: the magnitude of an angle, else `values`."""
+        return np.abs(values) if self.is_angle else values
 
 
 class Status(IntEnum):

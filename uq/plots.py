@@ -24,6 +24,7 @@ from uq.indices.independent_inputs import independent_inputs
 from uq.indices.sensitivities import methods, sensitivities
 from uq.places import refuse_standard_output
 from uq.rows.elements import analysis_of, independent_rows, shown_outputs
+from uq.rows.variables import outputs_of
 
 __all__ = [
     "convergence",
@@ -76,15 +77,16 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
 
 
 def _figures(ds: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    kinds = {output: ds[output].attrs["kind"] for output in shown_outputs(ds, analysis_of(ds))}
-    numbers = {output: kind for output, kind in kinds.items() if kind != "category"}
+    declared = outputs_of(ds)
+    shown = shown_outputs(ds, analysis_of(ds))
+    numbers = [output for output in shown if not declared[output].is_category]
     rows = independent_rows(ds)
-    drawn = numbers if rows.sizes["sample"] else {}
+    drawn = numbers if rows.sizes["sample"] else []
     several = len(occurring_regimes(rows)) > 1
     entries = summarise(ds)["outputs"] if drawn else {}
     running = running_or_none(ds) if drawn else None
-    for output, kind in drawn.items():
-        if kind == "lifetime":
+    for output in drawn:
+        if declared[output].is_lifetime:
             yield file_name("lifetime", output), lifetime(ds, output)
         else:
             yield file_name("histogram", output), histogram(ds, output)

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
+__version__ = importlib.metadata.version("vibrolife")
+
 _LIBRARIES = ("vibrolife", "numpy", "numba", "scipy", "SALib")
 _COMPUTING = ("vibrolife", "numpy", "numba", "scipy", "distributed")
 

@@ -2,10 +2,9 @@
 
 from collections.abc import Mapping
 from math import floor, isfinite, log10
-from typing import Any
+from typing import Any, NamedTuple
 
 from uq.literals import shown
-from uq.time_units import time_unit
 
 Entry = Mapping[str, Any]
 """An estimate in plain data: ``value``, ``low``, ``high``, and why one of them is None."""
@@ -154,3 +153,26 @@ def law(stated: Any) -> str:
         del given["values"]
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
     return f"{stated.distribution}({arguments})"
+
+
+class TimeUnit(NamedTuple):
+    """A unit of time, its length [s], and the time [s] from which people use it."""
+
+    name: str
+    seconds: float
+    used_from: float
+
+
+_DAY = 86400.0
+_YEAR = 365.25 * _DAY
+_TIME_UNITS = (
+    TimeUnit("seconds", 1.0, 0.0),
+    TimeUnit("hours", 3600.0, 3600.0),
+    TimeUnit("days", _DAY, 2 * _DAY),
+    TimeUnit("years", _YEAR, 2 * _YEAR),
+)
+
+
+def time_unit(seconds: float) -> TimeUnit:
+    """Return the unit in which people say a time [s] that is not negative."""
+    return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]

@@ -14,8 +14,8 @@ from models.beam.explore import (
     phase_portrait,
     wear_history,
 )
+from models.beam.paper.facts import HIGH, LOW, lifetime_ratios, nominal
 from models.beam.parameters import Params, Settings
-from models.beam.table import HIGH, LOW, lifetime_ratios, nominal
 
 X_0 = Params().initial_gap
 REACH = 0.2  # of omega, on either side of where a branch is begun

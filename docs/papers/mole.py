@@ -9,9 +9,9 @@ from shown import Shown, name_panels, sheet
 
 import uq
 from models.mole.explore import history, poincare_section
+from models.mole.paper.table import CLAIMS, closed_curves, described, responses
 from models.mole.parameters import QUASI_PERIODIC, Params, Settings
-from models.mole.periods import common_periods
-from models.mole.table import CLAIMS, closed_curves, described, responses
+from models.mole.theory.periods import common_periods
 
 PRINTED, PHYSICAL = Settings(formulation="as-printed"), Settings(formulation="physical")
 LONG = 10.0  # s, of a whole time history
@@ -29,7 +29,7 @@ Nonlinear Dynamics 63 (2011) 35-49. The paper's equation (20) lacks the friction
 bar, so that energy is not conserved; the formulation `as-printed` is what it computed, `physical`
 restores what is lost. Figures show the former, and both in the narrow time windows. Figure 2
 compares with an inductance that was measured and is not published. A period counts common periods
-of control and half a mains cycle. The claims as a table: `python -m models.mole.table`."""
+of control and half a mains cycle. The claims as a table: `python -m models.mole.paper.table`."""
 
 
 class Case(NamedTuple):

@@ -8,9 +8,10 @@ import numpy as np
 from shown import Shown, table
 
 import uq
-from models.vibrator import start, theory
+from models.vibrator.paper.table1 import machines
 from models.vibrator.parameters import Settings
-from models.vibrator.table1 import machines
+from models.vibrator.start import fast
+from models.vibrator.theory import averaged
 
 VARIED = ("damping_ratio", "stiffness_x", "support_offset")
 SYMMETRIC = (2, 6)  # rows of the table, from 0: equally stiff supports level with the centre
@@ -20,9 +21,10 @@ machines*, Archives of Mining Sciences 59 (2014). Our copy has lost its signs, m
 single numbers of Table 1, so that the table is compared by the ranges that are legible.
 
 Sections 4 and 5 have no figure that is legible. Of section 4, equations (9) to (11) of a motor set
-on elastic mounts are in `models.vibrator.closed_forms`, and theory and simulation carry the set on
-such mounts; each vibrator on a mount of its own (4.1) is not modelled. Of section 5, theory and
-simulation follow a feed that is thrown and lands without rebound (`studies/vibrator-feed.toml`).
+on elastic mounts are in `models.vibrator.paper.closed_forms`, and theory and simulation carry the
+set on such mounts; each vibrator on a mount of its own (4.1) is not modelled. Of section 5, theory
+and simulation follow a feed that is thrown and lands without rebound
+(`studies/vibrator-feed.toml`).
 The paper has the largest disphasing near a throw coefficient of 1.75, a small one near 2.7 and none
 at 2.97. Ours is largest at 1.71 if the weight of the feed is the same at each throw coefficient, at
 1.34 if its mass is; at 2.7 it has fallen to 32 or 18 % of that; it changes sign at 2.97 to 2.98."""
@@ -31,7 +33,7 @@ at 2.97. Ours is largest at 1.71 if the weight of the feed is the same at each t
 def shown() -> Iterator[Shown]:
     """Yield Table 1 and the figures."""
     p = machines()
-    found, _ = start.outcomes(p, Settings())
+    found, _ = fast.outcomes(p, Settings())
     yield table_1(p, found)
     for row in range(4):
         yield run_up(p, found, row)
@@ -39,7 +41,7 @@ def shown() -> Iterator[Shown]:
 
 def table_1(p: Any, found: Any) -> Shown:
     """Return Table 1 by theory and by simulation."""
-    guess = theory.disphasing(p)
+    guess = averaged.disphasing(p)
     rows = [
         (
             f"{i + 1}",

@@ -6,17 +6,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam import exact, lanes, response
-from models.beam.lives import Lives, find_lives
-from models.beam.modal import Array, beams
 from models.beam.parameters import Params, Rows, Settings
-from models.beam.random_lives import find_random_lives
-from models.beam.random_load import has_band
-from models.beam.second_looks import add_second_looks
-from models.beam.step_error import add_step_error
+from models.beam.response.neighbouring_starts import add_neighbour_error
+from models.beam.response.response import Response
+from models.beam.response.settling import NINE_IN_TEN, settle
+from models.beam.response.step_error import add_step_error
+from models.beam.start import PROPAGATORS, initial_gaps, initial_state
+from models.beam.structure.modal import Array, beams
+from models.beam.structure.random_load import has_band
+from models.beam.wear.lives import Lives, find_lives
+from models.beam.wear.random_lives import find_random_lives
 from uq.contract import Status
-
-PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
 
 # They scale lifetimes and nothing else (eq 12): rows that differ only here share a simulation.
 _SCALES = [Params._fields.index(name) for name in ("wear_coefficient", "contact_area")]
@@ -26,7 +26,7 @@ _BAND = [Params._fields.index(name) for name in ("random_force_low", "random_for
 class Simulated(NamedTuple):
     """The dimensionless results of n beams."""
 
-    response: response.Response
+    response: Response
     lives: Lives
     fundamental: Array
 
@@ -84,7 +84,7 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     b = beams(p, settings, seed)
     propagator = PROPAGATORS[settings.propagator]
     n, depths = len(p.length), len(settings.depths)
-    whole = Simulated(response.Response.nothing(n), Lives.nothing(n, depths), b.frequency[:, 0])
+    whole = Simulated(Response.nothing(n), Lives.nothing(n, depths), b.frequency[:, 0])
     possible = np.flatnonzero(has_band(p))
     for some, system in propagator.groups(b.take(possible), settings):
         rows = possible[some]
@@ -96,24 +96,17 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     return whole
 
 
-def initial_gaps(p: Rows) -> Array:
-    """Return the right and the left gap when new, in initial gaps, shape (n, 2)."""
-    return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
-
-
 def _simulate_group(
     propagator: ModuleType, system: Any, p: Rows, settings: Settings
-) -> tuple[response.Response, Lives]:
-    gaps = initial_gaps(p)
-    x0 = p.initial_gap
-    state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
+) -> tuple[Response, Lives]:
+    gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     begin = state.copy()
-    settled = response.settle(propagator, system, state, gaps)
+    settled = settle(propagator, system, state, gaps)
     work, error = settled.work.copy(), settled.error.copy()
     add_step_error(propagator, system, state, gaps, settled)
-    add_second_looks(propagator, system, begin, gaps, settled)
-    share = np.stack([np.ones_like(x0), p.wear_coefficient_ratio], axis=1)
-    growths = np.asarray(settings.depths) / x0[:, None]
+    add_neighbour_error(propagator, system, begin, gaps, settled)
+    share = np.stack([np.ones_like(p.initial_gap), p.wear_coefficient_ratio], axis=1)
+    growths = np.asarray(settings.depths) / p.initial_gap[:, None]
     lives = Lives.nothing(*growths.shape)
     known = np.isfinite(settled.work).all(axis=1)
     for is_random in (False, True):
@@ -123,7 +116,7 @@ def _simulate_group(
         start = (propagator, system.take(rows), state[rows], gaps[rows], work[rows])
         wear = (share[rows], growths[rows], settings.accuracy)
         part = (
-            find_random_lives(*start, error[rows] / response.NINE_IN_TEN, *wear)
+            find_random_lives(*start, error[rows] / NINE_IN_TEN, *wear)
             if is_random
             else find_lives(*start, *wear)
         )
@@ -134,7 +127,7 @@ def _simulate_group(
 
 def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
     return Simulated(
-        response.Response._make(a[rows] for a in s.response),
+        Response._make(a[rows] for a in s.response),
         Lives._make(a[rows] for a in s.lives),
         s.fundamental[rows],
     )

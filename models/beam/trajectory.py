@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from models.beam import exact, random_load
-from models.beam.batch import PROPAGATORS, initial_gaps
-from models.beam.modal import beams
 from models.beam.parameters import Params, Rows, Settings
-from models.beam.random_load import has_band
+from models.beam.start import initial_gaps, initial_state, one_system
+from models.beam.structure.modal import beams
+from models.beam.structure.random_lines import force as random_force
+from models.beam.structure.random_load import has_band
 from uq.contract import Trajectory
 
 PERIODS = 100
@@ -29,17 +29,10 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     """
     p: Rows = Params._make(np.array([value], float) for value in params)
     b = beams(p, settings, np.array([seed], np.uint64))
-    propagator = PROPAGATORS[settings.propagator]
-    groups = list(propagator.groups(b, settings))
-    if not groups:  # contact too stiff, or a random force too fast, for fixed steps
-        propagator = exact
-        groups = list(exact.groups(b, settings))
-    ((_, system),) = groups
-    gaps = initial_gaps(p)
-    x0 = p.initial_gap
-    state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
+    propagator, system = one_system(b, settings)
+    gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     record = propagator.advance(system, state, gaps, np.zeros_like(gaps), PERIODS, trace=True)
-    x = np.concatenate([p.initial_displacement / x0, record.trace[0]])
+    x = np.concatenate([p.initial_displacement / p.initial_gap, record.trace[0]])
     time = np.arange(len(x)) / (params.forcing_frequency * (len(x) - 1) / PERIODS)
     contact = params.contact_stiffness * params.initial_gap
     force = params.force_amplitude * np.cos(2 * np.pi * params.forcing_frequency * time)
@@ -53,7 +46,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         "force": ("N", "harmonic force at the tip", force),
     }
     if params.random_force_level > 0:
-        random = params.initial_gap * random_load.force(b.load[0], time * params.forcing_frequency)
+        random = params.initial_gap * random_force(b.load[0], time * params.forcing_frequency)
         quantities["random_force"] = ("N", "random force at the tip", random)
     if not has_band(p)[0]:
         quantities = {

@@ -2,6 +2,10 @@
 
 After J.-H. Ho, V.-D. Nguyen and K.-C. Woo, "Nonlinear dynamics of a new electro-vibro-impact
 system", Nonlinear Dyn. 63 (2011) 35.
+
+Read `parameters` first, then the storeys, each of which imports those before it alone: `theory`
+(equations), `exact` (one mole, the yardstick) and `lanes` (sixteen abreast), `response` (settled
+motion), `batch` and `trajectory` (what a `Model` must offer), `explore` (for notebooks), `paper`.
 """
 
 from typing import Any

@@ -5,15 +5,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.mole.lane_rows import OUT_OF_BUDGET, OUTCOME, table_of
+from models.mole.lanes.rows import OUT_OF_BUDGET, OUTCOME, table_of
 from models.mole.parameters import (
     NO_IMPACT,
     PERIODIC,
     Params,
     Settings,
 )
-from models.mole.periods import common_periods
-from models.mole.response import (
+from models.mole.response.settling import (
     BATCHES,
     Machines,
     Response,
@@ -22,7 +21,8 @@ from models.mole.response import (
     settle,
     settle_late,
 )
-from models.mole.system import mole
+from models.mole.theory.periods import common_periods
+from models.mole.theory.system import mole
 from models.numerics.batch_means import mean_and_error
 from uq.contract import Status
 

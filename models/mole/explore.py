@@ -11,13 +11,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from models.mole import equations, exact
 from models.mole.batch import batch
-from models.mole.lane_rows import CONTACTS, CURRENT, HIGH, PROGRESS, P, U, V, X, table_of
+from models.mole.exact import propagation as exact
+from models.mole.lanes.rows import CONTACTS, CURRENT, HIGH, PROGRESS, P, U, V, X, table_of
 from models.mole.parameters import REGIMES, Params, Settings
-from models.mole.periods import common_periods
-from models.mole.response import Machines
-from models.mole.system import mole
+from models.mole.response.settling import Machines
+from models.mole.theory import equations
+from models.mole.theory.periods import common_periods
+from models.mole.theory.system import mole
 
 Array = NDArray[np.float64]
 

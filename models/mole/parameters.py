@@ -12,132 +12,62 @@ from typing import Annotated, Any, Literal, NamedTuple
 from uq.contract import Output, Parameter, Setting
 
 PAPER = "Ho, Nguyen & Woo 2011"
+GIVEN, FITTED, ZERO = f"{PAPER}: given", f"{PAPER}: fitted", f"{PAPER}: zero in the simulations"
+DIFFERENTIATED = f"{GIVEN}, estimated there from displacements differentiated twice"
+RMS_GIVEN, MAINS = f"{PAPER}: 58 V RMS given", "assumed: European mains"
+TURN = 2 * pi
+
 REGIMES = ("no-impact", "periodic", "quasi-periodic", "chaotic", "undecided")
 FORMULATIONS = ("physical", "paper", "as-printed")
 NO_IMPACT, PERIODIC, QUASI_PERIODIC, CHAOTIC, UNDECIDED = range(5)
 PHYSICAL, PAPERS, AS_PRINTED = range(3)
 
 
+# fmt: off
 class Params(NamedTuple):
     """Physical inputs of the mole."""
 
-    bar_mass: Annotated[
-        float, Parameter("m_1", "kg", "mass of the bar", (0.0099, 8.91), f"{PAPER}: given")
-    ] = 0.297
-    mole_mass: Annotated[
-        float,
-        Parameter("m_2", "kg", "mass of the mole without bar", (0.098, 88.2), f"{PAPER}: given"),
-    ] = 2.94
-    stop_gap: Annotated[
-        float,
-        Parameter(
-            "G",
-            "m",
-            "displacement u at which the bar meets the stop",
-            (-0.06, 0.06),
-            f"{PAPER}: given",
-        ),
-    ] = -2e-3
-    spring_stiffness: Annotated[
-        float,
-        Parameter("k_1", "N m-1", "stiffness of the return spring", (0.0, 6e3), f"{PAPER}: given"),
-    ] = 200.0
-    spring_rest: Annotated[
-        float,
-        Parameter(
-            "X_0",
-            "m",
-            "displacement u at which the spring is slack",
-            (-0.66, 0.66),
-            f"{PAPER}: given",
-        ),
-    ] = -22e-3
-    contact_stiffness: Annotated[
-        float,
-        Parameter(
-            "k_0",
-            "N m-1",
-            "stiffness of the stop",
-            (4e3, 3.8e6),
-            f"{PAPER}: given, estimated there from displacements differentiated twice",
-        ),
-    ] = 1.24e5
-    viscous_damping: Annotated[
-        float,
-        Parameter("c", "kg s-1", "viscous damping of the bar", (0.0, 4.8), f"{PAPER}: fitted"),
-    ] = 0.155
-    bar_friction: Annotated[
-        float,
-        Parameter("mu_1", "1", "friction of the bar in the mole", (0.0, 9.0), f"{PAPER}: fitted"),
-    ] = 0.295
-    mole_friction: Annotated[
-        float,
-        Parameter("mu_2", "1", "friction of the mole on the ground", (0.0, 7.1), f"{PAPER}: given"),
-    ] = 0.235
-    coil_inductance: Annotated[
-        float,
-        Parameter("L_0", "H", "inductance of the coil without bar", (5e-3, 5.0), f"{PAPER}: given"),
-    ] = 0.1658
-    inductance_coefficient: Annotated[
-        float,
-        Parameter(
-            "A", "H m", "what the bar adds: the area below L - L_0", (8e-4, 0.75), f"{PAPER}: given"
-        ),
-    ] = 0.02494
-    inductance_width: Annotated[
-        float,
-        Parameter(
-            "sigma",
-            "m",
-            "how far from the middle the bar adds it",
-            (1.6e-3, 1.45),
-            f"{PAPER}: given",
-        ),
-    ] = 0.0483
-    resistance: Annotated[
-        float, Parameter("R", "ohm", "resistance of the coil", (0.9, 825.0), f"{PAPER}: given")
-    ] = 27.5
-    capacitance: Annotated[
-        float, Parameter("C", "F", "capacitance in series", (1e-6, 9.6e-4), f"{PAPER}: given")
-    ] = 32e-6
-    supply_voltage: Annotated[
-        float,
-        Parameter(
-            "V_s", "V", "amplitude of the supply voltage", (2.7, 2500.0), f"{PAPER}: 58 V RMS given"
-        ),
-    ] = 82.02
-    supply_frequency: Annotated[
-        float,
-        Parameter(
-            "Omega/(2 pi)",
-            "Hz",
-            "frequency of the supply",
-            (1.6, 1500.0),
-            "assumed: European mains",
-        ),
-    ] = 50.0
-    control_frequency: Annotated[
-        float,
-        Parameter("F_ctr", "Hz", "switching cycles a second", (0.08, 400.0), f"{PAPER}: given"),
-    ] = 8.0
-    supply_phase: Annotated[
-        float,
-        Parameter(
-            "phi",
-            "rad",
-            "phase of the supply when the relay first closes",
-            (-2 * pi, 2 * pi),
-            f"{PAPER}: zero in the simulations",
-        ),
-    ] = 0.0
-    initial_displacement: Annotated[
-        float,
-        Parameter("u(0)", "m", "displacement u at the start", (-0.66, 0.66), f"{PAPER}: given"),
-    ] = -0.022
-    initial_velocity: Annotated[
-        float,
-        Parameter("v(0)", "m s-1", "rate of u at the start", (-10.0, 10.0), f"{PAPER}: given"),
-    ] = 0.0
+    bar_mass: Annotated[float, Parameter(
+        "m_1", "kg", "mass of the bar", (0.0099, 8.91), GIVEN)] = 0.297
+    mole_mass: Annotated[float, Parameter(
+        "m_2", "kg", "mass of the mole without bar", (0.098, 88.2), GIVEN)] = 2.94
+    stop_gap: Annotated[float, Parameter(
+        "G", "m", "displacement u at which the bar meets the stop", (-0.06, 0.06), GIVEN)] = -2e-3
+    spring_stiffness: Annotated[float, Parameter(
+        "k_1", "N m-1", "stiffness of the return spring", (0.0, 6e3), GIVEN)] = 200.0
+    spring_rest: Annotated[float, Parameter(
+        "X_0", "m", "displacement u at which the spring is slack", (-0.66, 0.66), GIVEN)] = -22e-3
+    contact_stiffness: Annotated[float, Parameter(
+        "k_0", "N m-1", "stiffness of the stop", (4e3, 3.8e6), DIFFERENTIATED)] = 1.24e5
+    viscous_damping: Annotated[float, Parameter(
+        "c", "kg s-1", "viscous damping of the bar", (0.0, 4.8), FITTED)] = 0.155
+    bar_friction: Annotated[float, Parameter(
+        "mu_1", "1", "friction of the bar in the mole", (0.0, 9.0), FITTED)] = 0.295
+    mole_friction: Annotated[float, Parameter(
+        "mu_2", "1", "friction of the mole on the ground", (0.0, 7.1), GIVEN)] = 0.235
+    coil_inductance: Annotated[float, Parameter(
+        "L_0", "H", "inductance of the coil without bar", (5e-3, 5.0), GIVEN)] = 0.1658
+    inductance_coefficient: Annotated[float, Parameter(
+        "A", "H m", "what the bar adds: the area below L - L_0", (8e-4, 0.75), GIVEN)] = 0.02494
+    inductance_width: Annotated[float, Parameter(
+        "sigma", "m", "how far from the middle the bar adds it", (1.6e-3, 1.45), GIVEN)] = 0.0483
+    resistance: Annotated[float, Parameter(
+        "R", "ohm", "resistance of the coil", (0.9, 825.0), GIVEN)] = 27.5
+    capacitance: Annotated[float, Parameter(
+        "C", "F", "capacitance in series", (1e-6, 9.6e-4), GIVEN)] = 32e-6
+    supply_voltage: Annotated[float, Parameter(
+        "V_s", "V", "amplitude of the supply voltage", (2.7, 2500.0), RMS_GIVEN)] = 82.02
+    supply_frequency: Annotated[float, Parameter(
+        "Omega/(2 pi)", "Hz", "frequency of the supply", (1.6, 1500.0), MAINS)] = 50.0
+    control_frequency: Annotated[float, Parameter(
+        "F_ctr", "Hz", "switching cycles a second", (0.08, 400.0), GIVEN)] = 8.0
+    supply_phase: Annotated[float, Parameter(
+        "phi", "rad", "phase of the supply when the relay first closes", (-TURN, TURN), ZERO)] = 0.0
+    initial_displacement: Annotated[float, Parameter(
+        "u(0)", "m", "displacement u at the start", (-0.66, 0.66), GIVEN)] = -0.022
+    initial_velocity: Annotated[float, Parameter(
+        "v(0)", "m s-1", "rate of u at the start", (-10.0, 10.0), GIVEN)] = 0.0
+# fmt: on
 
 
 @dataclass(frozen=True)

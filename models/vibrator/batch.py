@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator import exact_start, start, theory
-from models.vibrator.outcome import Outcome
 from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.start import exact, fast
+from models.vibrator.start.regimes import Outcome
+from models.vibrator.theory import averaged
 from uq.contract import Status
 
 
@@ -32,12 +33,12 @@ def batch(
     status : ndarray of int8, shape (n,)
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
-    fast = is_rigid(p) & (settings.kinematics == "small") & (settings.propagator == "fast")
+    quick = is_rigid(p) & (settings.kinematics == "small") & (settings.propagator == "fast")
     outcome, status = Outcome.nothing(len(x)), np.full(len(x), Status.OK, np.int8)
-    _run(start.outcomes, p, np.flatnonzero(fast), settings, outcome, status)
+    _run(fast.outcomes, p, np.flatnonzero(quick), settings, outcome, status)
     # The exact propagator also follows what is too stiff for fixed steps.
-    slow = ~fast | (status == Status.NON_FINITE)
-    _run(exact_start.outcomes, p, np.flatnonzero(slow), settings, outcome, status)
+    slow = ~quick | (status == Status.NON_FINITE)
+    _run(exact.outcomes, p, np.flatnonzero(slow), settings, outcome, status)
     return {
         "disphasing_angle": outcome.disphasing,
         "theory_disphasing_angle": _theory_angle(p),
@@ -64,7 +65,7 @@ def theory_batch(
 
 
 def _theory_angle(p: Rows) -> NDArray[np.float64]:
-    found = theory.disphasing(p)
+    found = averaged.disphasing(p)
     return np.where(found.stable, found.angle, np.nan)
 
 

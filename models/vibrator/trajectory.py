@@ -5,9 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator import equations, exact, extended
+from models.vibrator.equations import general, rigid_motion
+from models.vibrator.equations.system import system
+from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params, Settings
-from models.vibrator.system import system
 from uq.contract import Trajectory
 
 LONGEST = 10.0  # s
@@ -38,10 +39,12 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     speed = max(m.synchronous_speed_1, m.synchronous_speed_2)
     count = math.ceil(duration * speed / (2 * np.pi) * SAMPLES_PER_TURN)
     time = np.linspace(0.0, duration, count + 1)
-    motion = exact.propagate(m, exact.start(params, m), duration, settings.tolerance, times=time)
+    motion = propagator.propagate(
+        m, propagator.start(params, m), duration, settings.tolerance, times=time
+    )
     reached = time <= motion.time
     q, v = np.split(motion.samples[reached].T, 2)
-    x, y, alpha, psi_1, psi_2 = q[: equations.DEGREES]
+    x, y, alpha, psi_1, psi_2 = q[: rigid_motion.DEGREES]
 
     def displacement(along: float, above: float) -> tuple[Series, Series]:
         """Of a point of the body, by where it is at rest, from C."""
@@ -62,7 +65,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         "displacement_left": ("m", "left deck end along xi", left),
         "displacement_right": ("m", "right deck end along xi", right),
     }
-    if len(q) == extended.DEGREES:
+    if len(q) == general.DEGREES:
         quantities |= {
             "mount_displacement": ("m", "motor set on its mount", q[5]),
             "mount_rotation": ("rad", "rotation on the mount", q[6]),

@@ -18,8 +18,8 @@ from uq.contract import Status
 from uq.errors import InputError
 from uq.rows.evaluate import KernelError
 from uq.rows.results import open_result
-from uq.rows.work import work_of
-from uq.running import cluster, flight, isolation, runner
+from uq.rows.workload import work_of
+from uq.running import cluster, isolation, runner, sent_chunks
 from uq.study.definition import load_study
 
 COMMAND = Path(sys.executable).with_name("uq")
@@ -90,7 +90,7 @@ class Killer:
         return [child for children in workers.values() for child in children]
 
 
-CHILD, WORKER = "uq.running.child", "uq.running.worker"
+CHILD, WORKER = "uq.running.child", "uq.running.dask_worker"
 
 
 @pytest.mark.parametrize(
@@ -116,9 +116,9 @@ def test_killed_processes_leave_no_trace(
 def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monkeypatch, injected):
     study = study_of(seconds=0.1, samples=60)
     failed = []
-    real = flight.Flight._failed
+    real = sent_chunks.Flight._failed
     monkeypatch.setattr(
-        flight.Flight,
+        sent_chunks.Flight,
         "_failed",
         lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
     )
@@ -348,7 +348,7 @@ def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
 
     def kill_on():
         while not stop.wait(0.05):
-            for process in processes("uq.running.worker"):
+            for process in processes("uq.running.dask_worker"):
                 process.send_signal(signal.SIGKILL)
 
     injected("workers killed again and again")

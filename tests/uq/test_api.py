@@ -1,8 +1,11 @@
 """What ``import uq`` offers, and what it does not cost."""
 
+import ast
+import importlib.metadata
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -32,25 +35,44 @@ def test_everything_promised_is_there():
             "running_estimates",
             "enough",
             "compare",
+            "plots",
             "plot_basins",
             "plot_bifurcation",
             "plot_curve",
             "plot_history",
             "plot_phase_portrait",
             "plot_section",
+            "InputError",
+            "RunError",
+            "__version__",
         }
     )
-    for name in uq.__all__:
+    for name in set(uq.__all__) - {"plots", "__version__"}:
         assert callable(getattr(uq, name))
+
+
+def test_the_version_and_the_errors_are_those_of_the_package():
+    assert uq.__version__ == importlib.metadata.version("vibrolife")
+    with pytest.raises(uq.InputError, match="no such model"):
+        uq.simulate("bean")
+    assert issubclass(uq.RunError, Exception)
+
+
+def test_what_an_editor_reads_is_what_is_there():
+    """The stub of the package names each thing once, where it is defined."""
+    stub = ast.parse(Path(uq.__file__).with_suffix(".pyi").read_text())
+    named = [one for node in stub.body if isinstance(node, ast.ImportFrom) for one in node.names]
+    assert [one.name for one in named] == [one.asname for one in named]
+    assert sorted(one.name for one in named) == uq.__all__
 
 
 def test_no_module_bears_the_name_of_a_function():
     files = {path.split(".")[0] for path in os.listdir(uq.__path__[0])}
-    assert not files & set(uq.__all__)
+    assert files & set(uq.__all__) == {"plots"}
 
 
 def test_an_unknown_name_is_an_attribute_error():
-    with pytest.raises(AttributeError, match="module 'uq' has no attribute 'runn'"):
+    with pytest.raises(AttributeError, match="uq attribute runn"):
         _ = uq.runn
 
 

@@ -17,9 +17,9 @@ import sample_models
 import uq
 from uq import provenance
 from uq.errors import InputError
-from uq.running import cluster, job, runner
+from uq.running import cluster, dispatch, runner
 from uq.running.child import Task
-from uq.running.task import evaluate_rows
+from uq.running.dask_task import evaluate_rows
 from uq.study.definition import load_study
 
 
@@ -28,7 +28,7 @@ def workers():
     found = set()
     for child in psutil.Process().children():
         with contextlib.suppress(psutil.NoSuchProcess):  # also one that is just ending
-            if {"uq.running.worker", "uq.running.child"} & set(child.cmdline()):
+            if {"uq.running.dask_worker", "uq.running.child"} & set(child.cmdline()):
                 found.add(child)
     return found
 
@@ -82,8 +82,8 @@ def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeyp
 def test_workers_are_started_for_longer_studies_only(
     write_study, tidy, monkeypatch, seconds, processes
 ):
-    monkeypatch.setattr(job, "CHUNK_SECONDS", 0.05)
-    monkeypatch.setattr("uq.running.computing.SHORT_SECONDS", seconds)
+    monkeypatch.setattr(dispatch, "CHUNK_SECONDS", 0.05)
+    monkeypatch.setattr("uq.running.executor.SHORT_SECONDS", seconds)
     monkeypatch.setattr(cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = runner.compute(load_study(path, "sample_models:PROCESS"))

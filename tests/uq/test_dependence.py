@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from input_studies import BELL, UNIFORM, inputs_of, refusal, tables
 from scipy import stats
 
-from uq.analysis.realised import realised_inputs, realised_ranks
+from uq.analysis.sampled_inputs import realised_inputs, realised_ranks
 from uq.errors import InputError
 from uq.inputs.dependence import correlated, matrix_problem
 from uq.rows.sampling import row_block

@@ -12,7 +12,7 @@ import pytest
 import uq as api
 from uq.cli import progress
 from uq.cli.progress import details, sentence
-from uq.running.job import Progress
+from uq.running.dispatch import Progress
 
 MUCH = Progress(
     123_456_789,

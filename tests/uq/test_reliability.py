@@ -12,11 +12,11 @@ from scipy import integrate, stats
 
 import uq as api
 from uq.errors import InputError
+from uq.exploring.design_points import design_points, drawn_around
+from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
+from uq.exploring.rare_events import rare_event
+from uq.exploring.subset_simulation import Found, subset_simulation
 from uq.rows.sampling import row_block
-from uq.running.design_points import design_points, drawn_around
-from uq.running.reliability import rare_event
-from uq.running.subset import Found, subset_simulation
-from uq.running.supported import log_scatter_interval, subset_interval
 
 UNIFORMS = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
 LAST = 10.0 - 576e-6**0.25  # P(x1 + 2 x2 + 3 x3 + 4 x4 > 10 - h) = h^4/576 for h < 1

@@ -19,9 +19,9 @@ from matplotlib.figure import Figure
 
 from uq.contract import Status
 from uq.report import page
+from uq.report.cells import Cell, Table
 from uq.report.inputs import mark
 from uq.report.pictures import HEAVIEST_SVG, picture
-from uq.report.table import Cell, Table
 from uq.rows import results
 from uq.store.files import write_result
 

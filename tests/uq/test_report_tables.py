@@ -6,11 +6,11 @@ from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_ou
 
 from uq.analysis.statistics import summarise
 from uq.contract import Status
+from uq.report.cells import Cell, Table, estimate, without_empty_columns
 from uq.report.convergence import convergence_of
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
 from uq.report.outcomes import life_table, outcomes, regime_table, result_tables, status_table
-from uq.report.table import Cell, Table, estimate, without_empty_columns
 
 DAY = 86400.0
 

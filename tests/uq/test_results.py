@@ -13,9 +13,9 @@ from computed import computed, linear, study_of
 from uq import store
 from uq.contract import Status
 from uq.errors import InputError
+from uq.exploring.simulation import simulate
 from uq.rows import results
 from uq.running import runner
-from uq.running.simulation import simulate
 from uq.study.definition import load_study, study_from_text
 
 

@@ -16,8 +16,8 @@ from uq.errors import InputError
 from uq.rows import results
 from uq.rows.evaluate import KernelError, evaluate
 from uq.rows.sampling import row_block
-from uq.rows.work import work_of
-from uq.running import job, runner
+from uq.rows.workload import work_of
+from uq.running import dispatch, runner
 from uq.store import MemoryStore
 from uq.study.definition import load_study
 
@@ -42,7 +42,7 @@ def test_every_design_gives_the_same_bits_for_any_chunk_size(write_study, design
 
 @pytest.mark.parametrize(("seconds", "rows"), [(1e-3, 1024), (0.004, 1024), (0.1, 50), (20.0, 1)])
 def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_study, seconds, rows):
-    assert job.chunk_rows(work_of(load_study(write_study())), seconds) == rows
+    assert dispatch.chunk_rows(work_of(load_study(write_study())), seconds) == rows
 
 
 @settings(

@@ -5,7 +5,7 @@ import pytest
 from asked_indices import sensitivities
 from computed import computed, study_of
 
-from uq.analysis.realised import compare, stated_and_realised
+from uq.analysis.sampled_inputs import compare, stated_and_realised
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 

@@ -12,10 +12,11 @@ from uq.analysis.statistics import summarise
 from uq.errors import InputError
 from uq.rows import stopping
 from uq.rows.results import open_result
-from uq.rows.work import work_of
-from uq.running import cluster, further, runner
-from uq.running.standing import standing
+from uq.rows.workload import work_of
+from uq.running import cluster, runner
 from uq.study.definition import study_from_text
+from uq.upkeep import extending
+from uq.upkeep.status import standing
 
 
 @pytest.mark.parametrize(
@@ -124,7 +125,7 @@ def test_extending_gives_as_many_as_are_asked_for_whatever_is_known(folder):
     of = study(0.2, samples=1000)
     stopped = runner.run(of, "out.nc").attrs["samples"]
     assert stopped == 500
-    assert further.extend(folder / "out.nc", 700).attrs["samples"] == 700
+    assert extending.extend(folder / "out.nc", 700).attrs["samples"] == 700
     (note,) = summarise(open_result(folder / "out.nc"))["notes"]
     assert "with the first 500 of 700 samples" in note
     again = runner.run(of, "out.nc", progress=pytest.fail)
@@ -196,7 +197,7 @@ def test_intervals_stay_honest_under_stopping(estimate, half_width, truth):
     for seed in range(300):
         one = with_seed(of, seed)
         ds = runner.compute(one, workers=0, chunk_rows=4096)
-        low, high = stopping.look(one.design, ds).interval
+        low, high = stopping.look(one.design, ds).estimate.numbers[1:]
         held.append(low <= truth <= high)
         stopped.append(ds.attrs["samples"])
     print(f"\n{estimate or 'mean'}: {np.mean(held):.1%}, {np.mean(stopped):.0f} samples")

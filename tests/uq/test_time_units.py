@@ -3,7 +3,7 @@
 import pytest
 
 from uq.cli.printing import duration
-from uq.time_units import time_unit
+from uq.wording import time_unit
 
 
 @pytest.mark.parametrize(

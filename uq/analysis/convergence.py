@@ -172,7 +172,7 @@ def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[tuple[str, str, E
         for name, found in sensitivities(ds, method, targets).targets.items():
             for kind, values in found.kinds().items():
                 for parameter, index in values.items():
-                    yield name, f"{kind.key} {parameter}", (index.value, index.low, index.high)
+                    yield name, f"{kind.key} {parameter}", index.numbers
 
 
 def _numbers(entry: dict[str, Any]) -> Estimate:

@@ -53,7 +53,7 @@ def with_failed_bounds(
     found = describe(element)
     if not element.failed.any():
         return found
-    is_life = element.kind == "lifetime"
+    is_life = element.is_lifetime
     least = 0.0 if is_life else -np.inf
     lowest, highest = (describe(with_failed_at(element, end)) for end in (least, np.inf))
     for part in ("quantiles", "b_lives"):
@@ -63,7 +63,7 @@ def with_failed_bounds(
             if all("kaplan_meier" in one for one in (entry, low, high)):
                 guess, low, high = (one["kaplan_meier"] for one in (entry, low, high))
                 guess |= _ends(low, high, guess, is_life)
-    if element.kind == "angle":  # thresholds are of the magnitude
+    if element.is_angle:  # thresholds are of the magnitude
         lowest = describe(with_failed_at(element, 0.0))
     for name, entry in found["thresholds"].items():
         ends = lowest["thresholds"][name], highest["thresholds"][name]
@@ -121,10 +121,10 @@ def failed_share_bounds(hits: Mask, failed: Mask, replicate: Replicates) -> Entr
         return {}
     ends = {}
     plain = share_interval(hits[~failed], None if replicate is None else replicate[~failed])
-    for key, some, end in ((LOW, hits & ~failed, "low"), (HIGH, hits | failed, "high")):
-        bound = getattr(share_interval(some, replicate), end)
+    for key, some, end in ((LOW, hits & ~failed, 0), (HIGH, hits | failed, 1)):
+        bound = share_interval(some, replicate)[end]
         bound = bound if np.isfinite(bound) else some.mean()
-        ends[key] = float(outer(key, bound, getattr(plain, end)))
+        ends[key] = float(outer(key, bound, plain[end]))
     return ends
 
 

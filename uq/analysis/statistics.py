@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq import intervals
+from uq import intervals, json_form, order_statistics
 from uq.analysis.accuracy import accuracy_missed
 from uq.analysis.b_lives import b_lives, ended_by, entry, life_quantiles, quantile_entry
 from uq.analysis.failed_rows import failed_note, failed_share_bounds, with_failed_bounds
@@ -14,9 +14,10 @@ from uq.analysis.life_fit import fits_of
 from uq.analysis.regime_split import between_share
 from uq.contract import Status
 from uq.designs.registry import DESIGNS
+from uq.estimate import NOTHING
 from uq.indices.targets import number_of
-from uq.intervals import Interval, Replicates
-from uq.moments import moments
+from uq.intervals import Replicates
+from uq.moments import Moments, moments
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
@@ -167,7 +168,7 @@ def _points(
             repr(threshold): _threshold(element, threshold, replicate)
             for threshold in analysis.thresholds.get(element.output, ())
         },
-        "b_lives": b_lives(element, replicate) if element.kind == "lifetime" else {},
+        "b_lives": b_lives(element, replicate) if element.is_lifetime else {},
     }
 
 
@@ -177,7 +178,7 @@ def _quantiles(
     """Return quantiles, and beside those that censored rows leave open Kaplan and Meier's."""
     within = _of(replicate, element.present)
     found = {name: quantile_entry(element, p, within) for name, p in asked.items()}
-    if element.kind == "lifetime":
+    if element.is_lifetime:
         for name, guess in life_quantiles(element, asked, replicate).items():
             if "assumes" in guess:
                 found[name]["kaplan_meier"] = guess
@@ -187,19 +188,27 @@ def _quantiles(
 def _moments(element: Element, within: Replicates) -> dict[str, Any]:
     values = element.at_least
     if not len(values) or element.never.any() or element.censored.any():
-        nothing = _ends(intervals.UNKNOWN)
+        nothing = json_form.ends(NOTHING)
         numbers = {"mean": None, "mean_interval": nothing, "sd": None, "sd_interval": nothing}
         return numbers | {"tail": None, "reasons": {}, "caution": None}
     found = moments(values, within)
     return {
-        "mean": _plain(found.mean),
-        "mean_interval": _ends(found.mean_interval),
-        "sd": _plain(found.sd),
-        "sd_interval": _ends(found.sd_interval),
+        "mean": _plain(found.mean.value),
+        "mean_interval": json_form.ends(found.mean),
+        "sd": _plain(found.sd.value),
+        "sd_interval": json_form.ends(found.sd),
         "tail": found.tail and found.tail._asdict(),
-        "reasons": found.reasons,
+        "reasons": _reasons(found),
         "caution": found.caution,
     }
+
+
+def _reasons(found: Moments) -> dict[str, str]:
+    reasons = {"sd_interval": found.sd.reason, "mean_interval": found.mean.reason}
+    for name, one in (("sd", found.sd), ("mean", found.mean)):
+        if np.isnan(one.value):
+            reasons[name] = one.reason
+    return {name: reason for name, reason in reasons.items() if reason}
 
 
 def _tolerance(
@@ -208,14 +217,14 @@ def _tolerance(
     if analysis.tolerance is None or replicate is not None:
         return None
     failed = int(element.failed.sum())
-    early = intervals.tolerance_bounds(element.at_least, failed, *analysis.tolerance)
-    late = intervals.tolerance_bounds(element.at_most, failed, *analysis.tolerance)
-    bounds = entry(lower=(early.low, early.low), upper=(early.high, late.high))
-    return bounds | {"rows_needed": intervals.rows_needed(*analysis.tolerance, failed)}
+    early = order_statistics.tolerance_bounds(element.at_least, failed, *analysis.tolerance)
+    late = order_statistics.tolerance_bounds(element.at_most, failed, *analysis.tolerance)
+    bounds = entry(lower=(early[0], early[0]), upper=(early[1], late[1]))
+    return bounds | {"rows_needed": order_statistics.rows_needed(*analysis.tolerance, failed)}
 
 
 def _fitted(element: Element, fits: bool) -> bool:
-    return fits and element.kind == "lifetime"
+    return fits and element.is_lifetime
 
 
 def _between(
@@ -224,11 +233,10 @@ def _between(
     target = number_of(element)
     if codes is None or target.refused:
         return {}
-    value, interval = between_share(target.values, codes, replicate)
-    if not np.isfinite(value):
+    split = between_share(target.values, codes, replicate)
+    if not np.isfinite(split.value):
         return {}
-    ends = {"low": _plain(interval.low), "high": _plain(interval.high)}
-    return {"between_regimes": {"value": _plain(value)} | ends | {"of": target.name}}
+    return {"between_regimes": json_form.numbers(split) | {"of": target.name}}
 
 
 def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:
@@ -263,20 +271,15 @@ def event(element: Element, threshold: float) -> tuple[Mask, Mask] | None:
     values, censored = element.values, element.censored
     if (censored & (values < threshold)).any():
         return None
-    if element.kind == "angle":
-        values = np.abs(values)
+    values = element.for_thresholds
     above = (values > threshold) | (censored & (values == threshold))
     return above, (values < threshold) & ~censored
 
 
 def _share(hits: Mask, replicate: Replicates) -> dict[str, Any]:
-    interval = intervals.share_interval(hits, replicate)
+    low, high = intervals.share_interval(hits, replicate)
     value = hits.mean() if len(hits) else np.nan
-    return {"value": _plain(value), "low": _plain(interval.low), "high": _plain(interval.high)}
-
-
-def _ends(interval: Interval) -> dict[str, float | None]:
-    return {"low": _plain(interval.low), "high": _plain(interval.high)}
+    return {"value": _plain(value), "low": _plain(low), "high": _plain(high)}
 
 
 def _of(replicate: Replicates, rows: Mask) -> Replicates:
@@ -295,6 +298,6 @@ def _notes(ds: xr.Dataset) -> list[str]:
     if design.until is not None:
         notes.append(stopping.sentence(design, ds))
     if not are_independent(ds) and ds.attrs["replicates"] == 1:
-        reason = NO_INTERVALS if DESIGNS[ds.attrs["design"]].draw else NOT_STATED
+        reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
         notes.append(reason.format(design=ds.attrs["design"]))
     return notes

@@ -13,13 +13,15 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
+from uq import json_form
 from uq.analysis.control_variate import FEWEST, Controlled, controlled_mean, controlled_share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.statistics import event
 from uq.errors import InputError
+from uq.estimate import Estimate
 from uq.exact_shares import FEW
 from uq.inputs.values import read_settings
-from uq.intervals import Interval, share_interval
+from uq.intervals import share_interval
 from uq.literals import toml
 from uq.moments import moments
 from uq.rows.elements import Element, elements_of, shown_outputs
@@ -126,20 +128,20 @@ def _estimates(
     present = element.present
     if present.any() and not (element.never | element.censored).any():
         alone = moments(element.values[present])
-        if "mean_interval" not in alone.reasons:
+        if not alone.mean.reason:
             found = controlled_mean(element.values, present, *map(_filled, (control, many)))
-            yield "mean", _entry(found, alone.mean, alone.mean_interval)
+            yield "mean", _entry(found, alone.mean)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         sides = event(element, threshold)
         kept = ~element.failed
         if sides is None or not kept.any():
             continue
         for sign, hits in zip("><", sides, strict=True):
-            found = controlled_share(hits, kept, _sized(control), _sized(many))
-            plain = share_interval(hits[kept])
+            found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
+            plain = Estimate(float(hits[kept].mean()), *share_interval(hits[kept]))
             lost = failed_share_bounds(hits, element.failed, None)
             few = few_hits(int(hits[kept].sum()), int(kept.sum()))
-            yield f"P({sign}{threshold!r})", _entry(found, hits[kept].mean(), plain) | lost | few
+            yield f"P({sign}{threshold!r})", _entry(found, plain) | lost | few
 
 
 def few_hits(hits: int, rows: int) -> dict[str, str]:
@@ -154,14 +156,10 @@ def few_hits(hits: int, rows: int) -> dict[str, str]:
     return {"note": f"{seen} lie there: {told}"}
 
 
-def _entry(found: Controlled, plain: float, interval: Interval) -> dict[str, Any]:
-    def numbers(value: float, ends: Interval) -> dict[str, Any]:
-        named = {"value": value, "low": ends.low, "high": ends.high}
-        return {key: float(one) if np.isfinite(one) else None for key, one in named.items()}
-
+def _entry(found: Controlled, plain: Estimate) -> dict[str, Any]:
     return {
-        **numbers(found.value, found.interval),
-        "plain": numbers(plain, interval),
+        **json_form.numbers(found.estimate),
+        "plain": json_form.numbers(plain),
         "reduction": found.reduction,
     }
 
@@ -170,11 +168,6 @@ def _filled(control: Element) -> Floats:
     """Return what a mean is controlled by, (n, 2): the value, and where there is none."""
     finite = np.isfinite(control.values)
     return np.stack([np.where(finite, control.values, 0.0), ~finite], axis=1)
-
-
-def _sized(control: Element) -> Floats:
-    """Return what a probability is controlled by: angles count by their magnitude."""
-    return np.abs(control.values) if control.kind == "angle" else control.values
 
 
 def _inputs(ds: xr.Dataset, study: Study) -> Floats:

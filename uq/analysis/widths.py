@@ -13,11 +13,11 @@ from scipy import stats
 
 from uq.designs.registry import DESIGNS
 from uq.indices.targets import lightened, number_of
-from uq.intervals import is_within
 from uq.methods.indices import Kind
 from uq.methods.method import Method
 from uq.methods.registry import METHODS, piloted_by
 from uq.methods.sample import Sample
+from uq.order_statistics import is_within
 from uq.rows.elements import (
     Element,
     Floats,
@@ -117,7 +117,7 @@ def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> floa
 
 
 def _share(element: Element, threshold: float, rows: int, factor: float | None) -> float | None:
-    values = np.abs(element.at_least) if element.kind == "angle" else element.at_least
+    values = element.for_thresholds[element.present]
     if factor is None or len(values) < _ENOUGH_ROWS:
         return None
     # As with two more rows on each side: a pilot without a hit does not prove that there is none.

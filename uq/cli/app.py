@@ -58,9 +58,9 @@ Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version
+        from uq import __version__
 
-        print(f"vibrolife {version('vibrolife')}")
+        print(f"vibrolife {__version__}")
         raise typer.Exit
 
 
@@ -116,9 +116,9 @@ def simulate(
     ] = None,
 ) -> int:
     """Run a model once, at its nominal values but for what is set."""
-    from uq.cli import single
+    from uq.cli import simulation
 
-    return single.simulate(model, set_ or [], setting or [], json, output, plot)
+    return simulation.simulate(model, set_ or [], setting or [], json, output, plot)
 
 
 @app.command()
@@ -203,11 +203,11 @@ Regime = Annotated[str | None, typer.Option(metavar="NAME", help="Only the rows 
 @app.command()
 def status(result: ResultFile, json: Json = False) -> None:
     """Show where a run stands, also while it runs."""
-    from uq.cli import keeping
+    from uq.cli import upkeep
     from uq.cli.printing import print_json
-    from uq.running.standing import standing
+    from uq.upkeep.status import standing
 
-    print_json(standing(result)) if json else keeping.show_status(standing(result))
+    print_json(standing(result)) if json else upkeep.show_status(standing(result))
 
 
 @app.command()
@@ -222,11 +222,11 @@ def extend(
     quiet: Quiet = False,
 ) -> int:
     """Give a result more samples; nothing is computed again."""
-    from uq.cli import keeping
+    from uq.cli import upkeep
 
     options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
     options |= {"row_limit": row_limit, "mixed": mixed}
-    return keeping.extend(result, samples, model, quiet, options)
+    return upkeep.extend(result, samples, model, quiet, options)
 
 
 @app.command()
@@ -242,19 +242,19 @@ def rerun(
     quiet: Quiet = False,
 ) -> int:
     """Compute the failed rows of a result again."""
-    from uq.cli import keeping
+    from uq.cli import upkeep
 
     options: dict[str, Any] = {"workers": workers, "scheduler": scheduler}
     options |= {"row_limit": row_limit, "mixed": mixed}
-    return keeping.rerun(result, failed, setting or [], model, quiet, options)
+    return upkeep.rerun(result, failed, setting or [], model, quiet, options)
 
 
 @app.command()
 def verify(result: ResultFile, model: ModelReference = None) -> int:
     """Check a result, and compute a few of its rows again."""
-    from uq.cli import keeping
+    from uq.cli import upkeep
 
-    return keeping.verify(result, model)
+    return upkeep.verify(result, model)
 
 
 @app.command()

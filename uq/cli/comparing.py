@@ -6,8 +6,7 @@ from typing import Any
 from uq.analysis.comparison import comparison, estimates_of
 from uq.cli.printing import console, grid, heading, paragraph, print_json
 from uq.rows.results import open_result
-from uq.time_units import time_unit
-from uq.wording import Entry, estimated, interval, known, number
+from uq.wording import Entry, estimated, interval, known, number, time_unit
 
 _TOLD = 6
 """Outputs of which it is said what a change of one input did."""

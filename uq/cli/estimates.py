@@ -26,7 +26,7 @@ def rare_event(
     options: dict[str, Any],
 ) -> int:
     """Estimate the probability of a rare event and show it; return the exit code."""
-    from uq.running.reliability import rare_event
+    from uq.exploring.rare_events import rare_event
 
     study = load_study(path, model)
     if (above is None) == (below is None):

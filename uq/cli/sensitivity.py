@@ -5,9 +5,9 @@ from math import isfinite
 from typing import Any
 
 from uq.cli.printing import grid, heading, paragraph
-from uq.estimate import Estimate
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import Sensitivities, TargetIndices
+from uq.json_form import numbers
 from uq.methods.indices import S1, Kind, Null
 
 
@@ -26,9 +26,9 @@ def _plain_target(one: TargetIndices) -> dict[str, Any]:
     if one.refused:
         return entry | {"refused": one.refused}
     for kind, values in one.indices.values.items():
-        entry[kind.key] = {label: _plain_estimate(index) for label, index in values.items()}
+        entry[kind.key] = {label: numbers(index) for label, index in values.items()}
     if one.indices.noise is not None:
-        entry["noise"] = _plain_estimate(one.indices.noise)
+        entry["noise"] = numbers(one.indices.noise)
     if one.indices.nulls:
         entry["dummy"] = {
             key: number
@@ -37,11 +37,6 @@ def _plain_target(one: TargetIndices) -> dict[str, Any]:
             if isfinite(number)
         }
     return entry | {"notes": list(one.indices.notes)}
-
-
-def _plain_estimate(estimate: Estimate) -> dict[str, float | None]:
-    ends = {"value": estimate.value, "low": estimate.low, "high": estimate.high}
-    return {name: end if isfinite(end) else None for name, end in ends.items()}
 
 
 def show(found: Sensitivities) -> None:

@@ -21,7 +21,7 @@ from uq.methods.registry import fed_by
 from uq.rows import results
 from uq.rows.sampling import group_size, rows
 from uq.running import runner
-from uq.running.job import Progress
+from uq.running.dispatch import Progress
 from uq.store import folder_of
 from uq.study.definition import Study, load_study
 from uq.wording import law
@@ -36,7 +36,7 @@ def check(path: str, model: str | None) -> None:
     parts = [f"{design.samples} samples"]
     parts += [f"{number} {name}" for name, number in factors.items() if number > 1]
     stated = ", stated to be independent" * design.independent
-    unsaid = DESIGNS[design.method].draw is None and not design.independent
+    unsaid = DESIGNS[design.method].imported and not design.independent
     dependent = study.dependence is not None or unsaid
     feeds = ", ".join(fed_by(DESIGNS[design.method], dependent))
     grid(
@@ -72,7 +72,7 @@ def _unit(study: Study, name: str) -> str:
 
 def _show_realised(study: Study) -> None:
     """Print each input as stated and as the rows have it."""
-    from uq.analysis.realised import MAX_ROWS, realised_inputs, realised_ranks
+    from uq.analysis.sampled_inputs import MAX_ROWS, realised_inputs, realised_ranks
 
     count = min(rows(study), MAX_ROWS)
     found = realised_inputs(study)

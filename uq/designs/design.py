@@ -53,6 +53,11 @@ class Design:
     caution: str = ""
 
     @property
+    def imported(self) -> bool:
+        """Whether its rows come from a file."""
+        return self.draw is None
+
+    @property
     def crossed(self) -> bool:
         """Whether each point becomes a group of rows A, AB_1 .. AB_d, (BA_1 .. BA_d,) B."""
         return self.layout is CROSSED

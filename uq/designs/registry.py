@@ -67,3 +67,6 @@ DESIGNS = {
         append_only=False,
     ),
 }
+
+IMPORTED = tuple(name for name, design in DESIGNS.items() if design.imported)
+"""Designs whose rows come from a file."""

@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 
 from uq.drawing.figure import COLOURS, LINES, is_wide, legend, place_in_words
 from uq.rows.elements import Element, Floats, flags
-from uq.time_units import time_unit
-from uq.wording import percent
+from uq.wording import percent, time_unit
 
 
 def look(i: int, element: Element, chosen: Sequence[Element]) -> tuple[str, str]:

@@ -19,7 +19,8 @@ from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
 from uq.indices.targets import FORMS, split_name
 from uq.rows.elements import named_elements
-from uq.time_units import time_unit
+from uq.rows.variables import is_category
+from uq.wording import time_unit
 
 
 def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:
@@ -115,7 +116,7 @@ def subject(ds: xr.Dataset, name: str) -> str:
     """Return in words what the indices of a name of `uq.indices.sensitivities` are about."""
     form, inside, threshold = split_name(name)
     category, _, label = inside.partition("=")
-    if category in ds and ds[category].attrs.get("kind") == "category":
+    if is_category(ds, category):
         return sentence(f"whether it is {label}: {ds[category].attrs['long_name']}", width=56)
     (element,) = named_elements(ds, inside)
     place = place_in_words(element, ds[element.output])

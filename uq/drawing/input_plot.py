@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.analysis.realised import EVERYWHERE, stated_and_realised
+from uq.analysis.sampled_inputs import EVERYWHERE, stated_and_realised
 from uq.drawing.figure import (
     COLOURS,
     WIDTH,

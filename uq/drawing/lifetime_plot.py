@@ -12,7 +12,7 @@ from uq.drawing.elements_plot import explain, label, look
 from uq.drawing.figure import is_wide, logarithmic, new_figure, sentence, styled, thinned
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
-from uq.time_units import TimeUnit, time_unit
+from uq.wording import TimeUnit, time_unit
 
 
 @styled

@@ -8,7 +8,7 @@ import xarray as xr
 
 from uq.drawing.figure import sentence
 from uq.errors import InputError, nearest
-from uq.time_units import time_unit
+from uq.wording import time_unit
 
 _PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "rad", "Hz"}
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}

@@ -16,6 +16,7 @@ from uq.indices.targets import (
 )
 from uq.methods.registry import METHODS
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
+from uq.rows.variables import is_category
 
 
 def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> list[Target]:
@@ -83,7 +84,7 @@ def _output_in(inside: str) -> str:
 
 def _targets(ds: xr.Dataset, name: str, every: bool = False) -> list[Target]:
     """Return the targets of an output or of one element of it."""
-    if name in ds and ds[name].attrs.get("kind") == "category" and ds[name].ndim == 1:
+    if is_category(ds, name) and ds[name].ndim == 1:
         return list(category_targets(ds, name))
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
     make = all_targets if every else targets

@@ -51,11 +51,11 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
     for kind, labels in kinds.items():
         dim = "pair" if kind.of_pairs else "parameter"
         coords[dim] = labels
-        table = [[_ends(_index(one, kind, label)) for label in labels] for one in targets]
+        table = [[_index(one, kind, label).numbers for label in labels] for one in targets]
         for end, numbers in zip(_ENDS, np.moveaxis(np.array(table), -1, 0), strict=True):
             data[f"{kind.key}{end}"] = (("output", dim), numbers)
     if any(one.indices.noise for one in targets):
-        shares = np.array([_ends(one.indices.noise or NOTHING) for one in targets])
+        shares = np.array([(one.indices.noise or NOTHING).numbers for one in targets])
         for end, numbers in zip(_ENDS, shares.T, strict=True):
             data[f"noise{end}"] = ("output", numbers)
     for kind in {kind: None for one in targets for kind in one.indices.nulls}:
@@ -67,10 +67,6 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
 
 
 _ENDS = ("", "_low", "_high")
-
-
-def _ends(estimate: Estimate) -> tuple[float, float, float]:
-    return estimate.value, estimate.low, estimate.high
 
 
 def _index(one: TargetIndices, kind: Kind, label: str) -> Estimate:

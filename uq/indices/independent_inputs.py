@@ -2,6 +2,7 @@
 
 import xarray as xr
 
+from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import factor_of
 from uq.rows.elements import Floats
 from uq.study.file import Tied
@@ -36,7 +37,7 @@ def why_dependent(ds: xr.Dataset) -> str:
     study = read_study_text(ds.attrs["study"], "study of this result")
     if study.dependence is not None:
         return "the inputs of this study depend on each other"
-    if study.design.method == "imported" and not study.design.independent:
+    if DESIGNS[study.design.method].imported and not study.design.independent:
         return "imported inputs may depend on each other"
     return ""
 

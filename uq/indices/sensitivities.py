@@ -177,7 +177,7 @@ def _no_variance(target: Target) -> str:
 
 def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
     """Return what quantiles of a target are called: B10 of a life is where its rate is high."""
-    if target.element is not None and target.element.kind == "lifetime":
+    if target.element is not None and target.element.is_lifetime:
         return {"B10": 0.9 if target.name.startswith("rate(") else 0.1, "B50": 0.5}
     return {f"Q{probability!r}": probability for probability in asked}
 

@@ -73,7 +73,7 @@ def number_of(element: Element) -> Target:
     A value or angle is such a number. A lifetime stands as its logarithm where every row's life is
     finite, uncensored and positive, else as its rank.
     """
-    if element.kind != "lifetime":
+    if not element.is_lifetime:
         return Target(element.name, element, element.values)
     found = _transformed(element, "log")
     return _transformed(element, "rank") if found.refused else found
@@ -91,12 +91,12 @@ def all_targets(
         T also the rate 1/T and the events T < t.
     """
     for element in elements:
-        if element.kind != "lifetime":
+        if not element.is_lifetime:
             yield number_of(element)
-        if element.kind != "angle":
+        if not element.is_angle:
             yield _transformed(element, "log")
             yield _transformed(element, "rank")
-        if element.kind == "lifetime":
+        if element.is_lifetime:
             yield _transformed(element, "rate")
         yield from _events(element, thresholds)
 
@@ -176,8 +176,9 @@ def with_tail_note(target: Target) -> Target:
 def _heaviness(target: Target) -> str:
     """Say why indices of the variance of a value say little, or return ""."""
     element = target.element
-    own = element is not None and element.kind == "value" and target.name == element.name
-    return heaviness(target.values) if own else ""
+    if element is None or element.is_lifetime or element.is_angle or target.name != element.name:
+        return ""
+    return heaviness(target.values)
 
 
 def _lighter_form(element: Element) -> str:
@@ -186,7 +187,7 @@ def _lighter_form(element: Element) -> str:
 
 
 def _events(element: Element, thresholds: Mapping[str, tuple[float, ...]]) -> Iterator[Target]:
-    if element.kind == "lifetime":
+    if element.is_lifetime:
         for threshold in thresholds.get(element.output, ()):
             yield _event(element, threshold)
 

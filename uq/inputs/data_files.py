@@ -15,6 +15,7 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.designs.registry import IMPORTED
 from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.literals import key
@@ -98,7 +99,7 @@ def _named(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[tuple[str,
     for name, entry in uncertain.items():
         if "file" in entry:
             yield ("uncertain", name, "file"), entry["file"], entry["column"]
-    if design.get("method") == "imported" and "file" in design:
+    if design.get("method") in IMPORTED and "file" in design:
         for name, entry in uncertain.items():
             if "equals" not in entry:
                 yield ("design", "file"), design["file"], name

@@ -3,7 +3,7 @@
 import numpy as np
 
 from uq.estimate import Estimate
-from uq.intervals import UNKNOWN, Interval, is_constant, scatter_interval
+from uq.intervals import UNKNOWN, Ends, is_constant, scatter_interval
 from uq.methods.indices import ALL_NOISE, SHAPLEY, Indices, RefusedError
 from uq.methods.method import NO_VARIANCE
 from uq.methods.sample import Floats, Sample
@@ -62,6 +62,6 @@ def shapley_indices(sample: Sample) -> Indices:
     return Indices({SHAPLEY: found})
 
 
-def _interval(share: float, errors: Floats) -> Interval:
+def _interval(share: float, errors: Floats) -> Ends:
     """Return the interval of a share from the errors of its paths, none of rounding alone."""
     return UNKNOWN if is_constant(share + errors) else scatter_interval(share, errors)

@@ -9,9 +9,9 @@ from uq.analysis.convergence import enough, running_estimates
 from uq.drawing.convergence_plot import convergence, index_convergence
 from uq.drawing.index_plot import subject
 from uq.errors import InputError
+from uq.report.cells import Cell, Table, without_empty_columns
 from uq.report.outcomes import Outcome
 from uq.report.pictures import Picture, picture
-from uq.report.table import Cell, Table, without_empty_columns
 from uq.wording import number
 
 

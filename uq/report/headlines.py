@@ -66,7 +66,7 @@ def _median(one: Outcome) -> Iterator[str]:
 def _bound(one: Outcome, tolerance: tuple[float, float] | None) -> Iterator[str]:
     """Yield what most lives surely reach."""
     lower = (one.entry["tolerance"] or {}).get("lower")
-    if tolerance is not None and one.kind == "lifetime" and lower is not None:
+    if tolerance is not None and one.declared.is_lifetime and lower is not None:
         coverage, confidence = (f"{100 * share:g} %" for share in tolerance)
         least = one.in_its_unit(lower)
         yield f"With {confidence} confidence, {coverage} of all take longer than {least}."
@@ -74,11 +74,12 @@ def _bound(one: Outcome, tolerance: tuple[float, float] | None) -> Iterator[str]
 
 def _probabilities(one: Outcome) -> Iterator[str]:
     """Yield the share on the far side of each threshold: of lives, those that have ended."""
-    side = "below" if one.kind == "lifetime" else "above"
-    words = {"lifetime": "end within {}", "angle": "lie beyond {} on either side"}
+    side = "below" if one.declared.is_lifetime else "above"
+    words = "end within {}" if one.declared.is_lifetime else "lie above {}"
+    words = "lie beyond {} on either side" if one.declared.is_angle else words
     for threshold, entry in one.entry["thresholds"].items():
         if entry[side]["value"] is not None:
-            where = words.get(one.kind, "lie above {}").format(one.in_its_unit(float(threshold)))
+            where = words.format(one.in_its_unit(float(threshold)))
             yield f"{percent_with_interval(entry[side])} {where}."
 
 

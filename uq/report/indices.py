@@ -14,8 +14,8 @@ from uq.indices.ranked import Values, lines, ranking, size
 from uq.indices.sensitivities import TargetIndices, methods, sensitivities
 from uq.indices.targets import FORMS, split_name
 from uq.methods.indices import S1, Kind, Null
+from uq.report.cells import Cell, Table
 from uq.report.pictures import Picture, picture
-from uq.report.table import Cell, Table
 
 _LEAST = 0.05
 """Less than this share of a variance is not worth a sentence of its own."""

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 
 import xarray as xr
 
-from uq.analysis.realised import compare, stated_and_realised
+from uq.analysis.sampled_inputs import compare, stated_and_realised
 from uq.drawing.figure import powers
 from uq.inputs.distributions import Law
-from uq.report.table import Cell, Table, without_empty_columns
+from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of
 from uq.study.file import Tied
 from uq.wording import law, number

@@ -5,13 +5,12 @@ from typing import Any
 
 import xarray as xr
 
-from uq.contract import Status
+from uq.contract import Output, Status
 from uq.drawing.figure import place_in_words, powers
 from uq.indices.targets import FORMS, split_name
-from uq.report.table import Cell, Table, count, estimate, without_empty_columns
+from uq.report.cells import Cell, Table, count, estimate, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
-from uq.time_units import TimeUnit, time_unit
-from uq.wording import number, percent, percent_interval, variance_between
+from uq.wording import TimeUnit, number, percent, percent_interval, time_unit, variance_between
 
 Summary = Mapping[str, Any]
 """What `uq.analysis.statistics.summarise` returns."""
@@ -57,14 +56,13 @@ class Outcome:
     name : str
     words : str
         Which element it is: ``time to wear depth, left, 250 µm``.
-    kind : str
-        As in `uq.contract.Output`.
+    declared : Output
     entry : dict
         Of ``outputs`` in what `uq.analysis.statistics.summarise` returns.
     """
 
-    def __init__(self, name: str, words: str, kind: str, entry: Mapping[str, Any]):
-        self.name, self.words, self.kind, self.entry = name, words, kind, entry
+    def __init__(self, name: str, words: str, declared: Output, entry: Mapping[str, Any]):
+        self.name, self.words, self.declared, self.entry = name, words, declared, entry
         found = [one["value"] for one in entry["quantiles"].values() if one["value"] is not None]
         typical = abs(found[len(found) // 2]) if found else 0.0
         is_time = entry["units"] == "s"
@@ -112,7 +110,7 @@ def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
         place = place_in_words(element, ds[element.output])
         words = f"{element.meaning}{', ' if place else ''}{place}"
         entry = summary["outputs"][element.name]
-        found.append(Outcome(element.name, words, element.kind, entry))
+        found.append(Outcome(element.name, words, element.declared, entry))
     return found
 
 

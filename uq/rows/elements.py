@@ -8,12 +8,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.columns import censored_name, lacking
+from uq.columns import censored_name
+from uq.contract import Output
 from uq.designs.layouts import CURVES, NOISE
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.results import elements, failed
+from uq.rows.variables import outputs_of
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 
@@ -31,11 +33,8 @@ class Element:
         ``work_rate[site=left]``.
     output : str
         ``work_rate``.
-    kind : str
-        As `uq.contract.Output` has it, but never ``"category"``.
-    units : str
-    meaning : str
-        One line: what the output is.
+    declared : Output
+        What the model says of the output; no category.
     place : dict of str to object
         Dimension -> coordinate; empty for an output without dimensions.
     values : ndarray, shape (n,)
@@ -44,20 +43,40 @@ class Element:
         Where the value is only a lower bound.
     failed : ndarray of bool, shape (n,)
         Where the value is lacking because the row failed.
-    never_known_at_once : bool
-        As `uq.contract.Output` has it: whether every censored row of a lifetime is one that ends.
     """
 
     name: str
     output: str
-    kind: str
-    units: str
-    meaning: str
+    declared: Output
     place: dict[str, Any]
     values: Floats
     censored: Mask
     failed: Mask
-    never_known_at_once: bool = True
+
+    @property
+    def units(self) -> str:
+        """CF unit string."""
+        return self.declared.unit
+
+    @property
+    def meaning(self) -> str:
+        """One line: what the output is."""
+        return self.declared.meaning
+
+    @property
+    def is_lifetime(self) -> bool:
+        """Whether it is a time until something happens."""
+        return self.declared.is_lifetime
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether its sign is a direction and not a size."""
+        return self.declared.is_angle
+
+    @property
+    def for_thresholds(self) -> Floats:
+        """The values, or of an angle their magnitudes, shape (n,)."""
+        return self.declared.for_thresholds(self.values)
 
     @property
     def undefined(self) -> Mask:
@@ -124,7 +143,7 @@ def replicates_of(rows: xr.Dataset) -> Replicates:
 def are_independent(ds: xr.Dataset) -> bool:
     """Whether the rows of a result, A and B where a design has these, are independent."""
     design = DESIGNS[ds.attrs["design"]]
-    return design.independent or (design.draw is None and study_file_of(ds).design.independent)
+    return design.independent or (design.imported and study_file_of(ds).design.independent)
 
 
 def flags(variable: xr.DataArray) -> list[tuple[int, str]]:
@@ -169,11 +188,7 @@ def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
 
 def output_names(ds: xr.Dataset) -> tuple[str, ...]:
     """Return the names of all outputs of a result."""
-    return tuple(
-        str(name)
-        for name, variable in ds.variables.items()
-        if variable.attrs.get("role") == "output"
-    )
+    return tuple(outputs_of(ds))
 
 
 def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
@@ -195,20 +210,20 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
     InputError
         When the result has no such output.
     """
-    unsound = failed(ds)
+    unsound, known = failed(ds), outputs_of(ds)
     for output in outputs:
-        if output not in (known := output_names(ds)):
+        if output not in known:
             raise InputError(
                 f"no such output '{output}'{nearest(output, known)} (allowed: {choices(known)})"
             )
-        variable = ds[output]
-        if variable.attrs["kind"] == "category":
+        variable, declared = ds[output], known[output]
+        if declared.is_category:
             continue
         flag = censored_name(output)
         for name, column in elements(variable):
             place = {str(dim): column[dim].item() for dim in variable.dims if dim != "sample"}
             values = column.values
-            absent = lacking(variable.attrs["kind"], values)
+            absent = declared.is_absent(values)
             censored = (
                 ds[flag].sel(place).values.astype(bool) & ~absent
                 if flag in ds
@@ -217,14 +232,11 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
             yield Element(
                 name,
                 output,
-                variable.attrs["kind"],
-                variable.attrs["units"],
-                variable.attrs["long_name"],
+                declared,
                 place,
                 np.where(absent, np.nan, values),
                 censored,
                 absent & unsound,
-                bool(variable.attrs.get("never_known_at_once", True)),
             )
 
 
@@ -273,7 +285,7 @@ def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
         Also when the output is not a lifetime.
     """
     found = named_elements(ds, name)
-    if found[0].kind != "lifetime":
-        lives = [one for one in output_names(ds) if ds[one].attrs["kind"] == "lifetime"]
+    if not found[0].is_lifetime:
+        lives = [one for one, output in outputs_of(ds).items() if output.is_lifetime]
         raise InputError(f"'{name}' is not a lifetime (lifetimes: {choices(lives)})")
     return found

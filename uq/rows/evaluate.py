@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.columns import Column, blank_rows, columns_of, lacking
+from uq.columns import Column, blank_rows, columns_of
 from uq.contract import Model, Status
 from uq.errors import InputError
 
@@ -177,7 +177,7 @@ def _check_names(
 
 def _check_categories(model: Model, columns: Mapping[str, NDArray[Any]]) -> None:
     for name, output in model.outputs.items():
-        if output.kind == "category":
+        if output.is_category:
             values = columns[name]
             if np.any((values < -1) | (values >= len(output.categories))):
                 raise KernelError(f"model '{model.name}': '{name}' has a category not declared")
@@ -191,10 +191,10 @@ def _find_non_finite(
 ) -> None:
     """Mark rows that say ok and hold a number that no such output can have."""
     for name, output in model.outputs.items():
-        if output.kind == "category":
+        if output.is_category:
             continue
         values = columns[name].reshape(len(status), -1)
-        legal = ~lacking(output.kind, values)
+        legal = ~output.is_absent(values)
         if output.may_be_undefined:
             legal |= np.isnan(values)
         guilty = (status == Status.OK) & ~legal.all(axis=1)

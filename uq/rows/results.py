@@ -28,6 +28,7 @@ from uq.rows.variables import (
     coordinates,
     model_attributes,
     output_variables,
+    outputs_of,
     parameter_variable,
     places,
     study_attributes,
@@ -241,9 +242,9 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
 def failed(ds: xr.Dataset) -> NDArray[np.bool_]:
     """Return which rows of a result failed, shape (n,), by the rule of `failed_rows`."""
     required = (
-        (variable.attrs["kind"], variable.values)
-        for variable in ds.variables.values()
-        if variable.attrs.get("role") == "output" and not variable.attrs["may_be_undefined"]
+        (output, ds[name].values)
+        for name, output in outputs_of(ds).items()
+        if not output.may_be_undefined
     )
     return failed_rows(ds["status"].values, required)
 

@@ -5,10 +5,11 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from uq.columns import censored_name
-from uq.contract import Model, Status
+from uq.contract import Model, Output, Status
 from uq.rows.sampling import block_labels
 from uq.study.code import made_here
 
@@ -58,9 +59,9 @@ def output_variables(
         }
         if output.accuracy:
             attrs["accuracy"] = float(getattr(settings, output.accuracy))
-        if output.kind == "lifetime":
+        if output.is_lifetime:
             attrs["never_known_at_once"] = int(output.never_known_at_once)
-        if output.kind == "category":
+        if output.is_category:
             attrs |= _flags(("none", *output.categories), np.int8, first=-1)
         variables[name] = (dims, columns[name], attrs)
         if output.has_censored_flag:
@@ -72,6 +73,32 @@ def output_variables(
     for label, message in failures.items():
         attrs[f"example_{label.replace('-', '_')}"] = message
     return variables | {"status": (("sample",), status, attrs)}
+
+
+def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
+    """Return the outputs of a result as its variables declare them, by name and in order.
+
+    Which setting asks for their accuracy is not among what a variable says.
+    """
+    return {
+        str(name): Output(
+            variable.attrs["units"],
+            variable.attrs["long_name"],
+            variable.attrs["kind"],
+            tuple(map(str, variable.dims[1:])),
+            bool(variable.attrs["may_be_undefined"]),
+            censored_name(str(name)) in ds,
+            tuple(variable.attrs.get("flag_meanings", "").split()[1:]),
+            never_known_at_once=bool(variable.attrs.get("never_known_at_once", True)),
+        )
+        for name, variable in ds.variables.items()
+        if variable.attrs.get("role") == "output"
+    }
+
+
+def is_category(ds: xr.Dataset, name: str) -> bool:
+    """Whether a name is that of an output of a result that is a category."""
+    return name in (known := outputs_of(ds)) and known[name].is_category
 
 
 def coordinates(model: Model, settings: Any) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """Dask workers for one run: processes on this computer, or somebody's running cluster.
 
-The local workers are plain child processes that import ``uq.running.worker``, so that the calling
-script needs no ``__main__`` guard; dask's scheduler runs in a thread of this process.
+The local workers are plain child processes that import ``uq.running.dask_worker``, so that the
+calling script needs no ``__main__`` guard; dask's scheduler runs in a thread of this process.
 """
 
 import gc
@@ -24,7 +24,7 @@ from uq.environment import command, inherited
 from uq.errors import InputError, RunError
 from uq.interrupts import undone
 from uq.provenance import differences, versions
-from uq.running.task import end_children
+from uq.running.dask_task import end_children
 
 CORES = CPU_COUNT
 """Cores this process may use: affinity and container limits included."""
@@ -239,7 +239,7 @@ class _Processes:
         self._started += 1
         with log.open("wb") as stream:
             process = subprocess.Popen(
-                command("uq.running.worker", self._address, str(self._folder)),
+                command("uq.running.dask_worker", self._address, str(self._folder)),
                 stdin=subprocess.PIPE,
                 stdout=stream,
                 stderr=stream,

@@ -28,7 +28,7 @@ from uq.running import child
 from uq.study.code import code_of
 
 if TYPE_CHECKING:
-    from uq.rows.work import Work
+    from uq.rows.workload import Work
 
 # Somebody else may have killed a process: three, that of its chunk included, make a row guilty.
 _SINGLE_CRASHES = 2

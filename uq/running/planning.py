@@ -19,10 +19,10 @@ from uq.interrupts import undone
 from uq.rows import results
 from uq.rows.evaluate import Chunk, joined
 from uq.rows.sampling import Rows
-from uq.rows.work import Work, work_of
-from uq.running import computing
+from uq.rows.workload import Work, work_of
+from uq.running import executor
+from uq.running.dispatch import CHUNK_SECONDS, chunk_rows
 from uq.running.isolation import Isolated, task_of
-from uq.running.job import CHUNK_SECONDS, chunk_rows
 from uq.store import row_bytes
 from uq.study.definition import Study
 
@@ -108,7 +108,7 @@ def pilot(
     constants = len(study.model.parameter_names) - len(study.uncertain)
     size = _FILE_BYTES + kept - 8 * constants * work.total  # a constant is one number in the result
     alone = row.seconds * work.total
-    if workers is None and alone < computing.SHORT_SECONDS:
+    if workers is None and alone < executor.SHORT_SECONDS:
         processes = 1
     beside = _RUN_LOADS * load_seconds
     if workers or processes > 1:

@@ -18,9 +18,9 @@ from uq import store
 from uq.errors import InputError
 from uq.rows import results, stopping
 from uq.rows.sampling import rows
-from uq.rows.work import Work, work_of
-from uq.running.computing import Computing
-from uq.running.job import Job, Progress, Report
+from uq.rows.workload import Work, work_of
+from uq.running.dispatch import Job, Progress, Report
+from uq.running.executor import Computing
 from uq.study.changes import refusal_to_extend, what_changed
 from uq.study.code import is_other_code
 from uq.study.definition import Study, load_study

@@ -15,7 +15,7 @@ from uq.errors import RunError
 from uq.rows import results
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
-from uq.rows.work import work_of
+from uq.rows.workload import work_of
 from uq.store.chunk_file import Block, Piece, joined, load, pack, row_type, save, unpack
 from uq.store.files import reason
 from uq.store.folder import JOURNAL, clear, folder_of

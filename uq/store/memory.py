@@ -9,7 +9,7 @@ from uq.columns import blank_rows, columns_of
 from uq.rows import results
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
-from uq.rows.work import Work, work_of
+from uq.rows.workload import Work, work_of
 from uq.store.tally import Tally, ended
 
 if TYPE_CHECKING:

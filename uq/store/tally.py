@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from uq.columns import columns_of, failed_rows
 from uq.contract import Status
-from uq.rows.glimpse import Glimpse
-from uq.rows.work import Work
+from uq.rows.preview import Glimpse
+from uq.rows.workload import Work
 
 if TYPE_CHECKING:
     from uq.rows.evaluate import Chunk
@@ -78,7 +78,7 @@ class Tally:
     def failed_in(self, chunk: "Chunk") -> int:
         """Return how many rows of a chunk failed."""
         required = (
-            (output.kind, chunk.columns[name])
+            (output, chunk.columns[name])
             for name, output in self.work.model.outputs.items()
             if not output.may_be_undefined
         )

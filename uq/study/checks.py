@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from uq.contract import Model
-from uq.designs.registry import DESIGNS
+from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
@@ -43,7 +43,7 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         if name not in model.outputs:
             problem = unknown_name("output", name, model, tuple(model.outputs))
             yield Fault(("design", "until", "output"), problem, until["output"])
-        elif model.outputs[name].kind == "category":
+        elif model.outputs[name].is_category:
             yield Fault(("design", "until", "output"), "is a category: it has no numbers", name)
 
 
@@ -74,7 +74,7 @@ def _output_faults(model: Model, analysis: Mapping[str, Any]) -> Iterator[Fault]
         path = ("analysis", "thresholds", name)
         if name not in known:
             yield Fault(path, unknown_name("output", name, model, known), value)
-        elif model.outputs[name].kind == "category":
+        elif model.outputs[name].is_category:
             yield Fault(path, "is a category: it has shares, not thresholds", value)
 
 
@@ -105,13 +105,13 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     if table.get("second_order") and not design.crossed:
         able = _names(name for name, other in DESIGNS.items() if other.crossed)
         yield Fault(("design", "second_order"), f"only for method = {able}", True)
-    stated = table.get("independent") and design.draw is None
+    stated = table.get("independent") and design.imported
     if table.get("independent") and not stated:
-        able = _names(name for name, other in DESIGNS.items() if other.draw is None)
+        able = _names(IMPORTED)
         yield Fault(("design", "independent"), f"only for method = {able}", True)
     if "tolerance" in analysis and not design.independent and not stated:
         able = _names(name for name, other in DESIGNS.items() if other.independent)
-        able += ", independent = true if they are" * (design.draw is None)
+        able += ", independent = true if they are" * (design.imported)
         yield Fault(
             ("analysis", "tolerance"),
             f"refused: its confidence holds for independent rows, and those of '{method}' are not;"
@@ -126,20 +126,15 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     elif table.get("until") and not design.independent and table.get("replicates", 1) < 2:
         problem = f"nothing shows how well a '{method}' design knows anything; set replicates = 8"
         yield Fault(("design", "until"), problem, True)
-    if analysis.get("twin") and stated:
-        yield Fault(
-            ("analysis", "twin"),
-            "needs rows that can be drawn, and imported rows cannot; use method = 'monte-carlo'",
-            analysis["twin"],
-        )
-    elif analysis.get("twin") and not design.independent:
+    if analysis.get("twin") and not design.independent:
         able = _names(name for name, other in DESIGNS.items() if other.independent)
-        yield Fault(
-            ("analysis", "twin"),
-            f"needs independent rows, and those of '{method}' are not; use method = {able}",
-            analysis["twin"],
+        why = (
+            "needs rows that can be drawn, and imported rows cannot"
+            if stated
+            else f"needs independent rows, and those of '{method}' are not"
         )
-    unsaid = design.draw is None and not stated
+        yield Fault(("analysis", "twin"), f"{why}; use method = {able}", analysis["twin"])
+    unsaid = design.imported and not stated
     dependent = bool(tables["dependence"]) or unsaid
     yield from _method_faults(method, analysis.get("sensitivity", ()), dependent, unsaid)
 

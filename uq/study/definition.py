@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from uq.contract import Model
-from uq.designs.registry import DESIGNS
+from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import InputError, nearest
 from uq.inputs.data_files import Columns, columns_of_files, numbers, with_columns
 from uq.inputs.distributions import Law
@@ -255,7 +255,7 @@ def study_from_text(
 
 def _imported(file: StudyFile, columns: Columns) -> dict[str, str]:
     """Return the columns of an imported design, those that are uncertain, in the file's order."""
-    if file.design.method != "imported" or file.design.file is None:
+    if file.design.method not in IMPORTED or file.design.file is None:
         return {}
     table = columns[file.design.file]
     return {name: table[name] for name, e in file.uncertain.items() if not isinstance(e, Tied)}

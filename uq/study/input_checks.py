@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from uq.contract import Model, Parameter
-from uq.designs.registry import DESIGNS
+from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import nearest
 from uq.inputs.conditioning import (
     OUTSIDE_AT_MOST,
@@ -100,10 +100,10 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
         value = ranks[wrong.place[0]][wrong.place[1]] if wrong.place else None
         yield Fault(("dependence", "rank_correlation", *wrong.place), wrong.text, value)
     method = tables["design"].get("method")
-    if method == "imported":
+    if method in IMPORTED:
         yield Fault(("dependence",), "imported rows are as dependent as they are; take it out")
     elif method is not None and not fed_by(DESIGNS[method], dependent=True):
-        able = [n for n, d in DESIGNS.items() if d.draw and fed_by(d, dependent=True)]
+        able = [n for n, d in DESIGNS.items() if not d.imported and fed_by(d, dependent=True)]
         problem = (
             f"supposes independent inputs, and [dependence] says they are not; use"
             f" {' or '.join(able)}, which feed {' and '.join(for_dependent_inputs())}"
@@ -116,7 +116,7 @@ def import_faults(
 ) -> Iterator[Fault]:
     """Yield what keeps the rows of a file from being a design."""
     table = tables["design"]
-    if table.get("method") != "imported":
+    if table.get("method") not in IMPORTED:
         if "file" in table and "method" in table:
             yield Fault(("design", "file"), "only for method = 'imported'", table["file"])
         return

@@ -5,6 +5,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from uq.designs.registry import IMPORTED
 from uq.errors import InputError, nearest
 from uq.inputs.faults import Fault
 from uq.inputs.law import BaseLaw
@@ -60,7 +61,9 @@ def shape_faults(data: dict[str, Any]) -> list[Fault]:
 def _size_faults(data: dict[str, Any]) -> Iterator[Fault]:
     """Yield whether a design lacks its size: a file of rows has its own."""
     design = data.get("design")
-    if isinstance(design, dict) and "samples" not in design and design.get("method") != "imported":
+    if not isinstance(design, dict) or "samples" in design:
+        return
+    if design.get("method") not in IMPORTED:
         yield Fault(("design", "samples"), _MISSING)
 
 

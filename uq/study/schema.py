@@ -110,7 +110,7 @@ def _design_schema(design: Design) -> dict[str, Schema]:
         table["second_order"] = {"const": False}
     if design.least > 1:
         table["samples"] = {"minimum": design.least}
-    if design.draw is None:
+    if design.imported:
         table["replicates"] = {"const": 1}
     else:
         table["file"] = {"not": {}}
@@ -119,9 +119,9 @@ def _design_schema(design: Design) -> dict[str, Schema]:
         table["until"] = {"not": {}}
     if not design.independent:
         analysis["twin"] = {"const": ""}
-        if design.draw:  # that imported rows are independent may be stated
+        if not design.imported:  # that imported rows are independent may be stated
             analysis["tolerance"] = {"not": {}}
-    needed: Schema = {"required": ["samples"]} if design.draw else {}
+    needed: Schema = {} if design.imported else {"required": ["samples"]}
     return {"design": {"properties": table} | needed, "analysis": {"properties": analysis}}
 
 

@@ -154,7 +154,7 @@ def _settings(model: Model) -> Iterator[str]:
 
 
 def _numbers(model: Model) -> list[str]:
-    return [name for name, output in model.outputs.items() if output.kind != "category"]
+    return [name for name, output in model.outputs.items() if not output.is_category]
 
 
 def _design_examples(model: Model) -> dict[str, Any]:

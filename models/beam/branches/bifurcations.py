@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from models.beam.orbits import Orbit
+from models.beam.branches.orbits import Orbit
 
 Kind = Literal["fold", "period-doubling", "neimark-sacker", "symmetry-breaking", "grazing"]
 

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from models.beam.branches.bifurcations import Event, cause_of_loss, kind_of
-from models.beam.flow import passage
-from models.beam.modal import Array
-from models.beam.orbits import TOLERANCE, Orbit, defect, orbit_of
-from models.beam.tuning import Beam
+from models.beam.branches.orbits import TOLERANCE, Orbit, defect, orbit_of
+from models.beam.exact.passage import passage
+from models.beam.exact.tuning import Beam
+from models.beam.structure.modal import Array
 from models.numerics.continuation import Point, Steps, begin, follow, locate
 from models.numerics.newton import Linear
 

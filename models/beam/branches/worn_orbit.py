@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from models.beam.branches.bifurcations import Event, cause_of_loss, kind_of
-from models.beam.events import RIGHT
-from models.beam.flow import Passage, passage
-from models.beam.modal import Array
-from models.beam.orbits import TOLERANCE, Orbit, defect, orbit_of
-from models.beam.tuning import Beam
+from models.beam.branches.orbits import TOLERANCE, Orbit, defect, orbit_of
+from models.beam.exact.events import RIGHT
+from models.beam.exact.passage import Passage, passage
+from models.beam.exact.tuning import Beam
+from models.beam.structure.modal import Array
 from models.numerics.newton import find_root
 
 ATTEMPTS = 5000  # steps, at most

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from models.beam import exact
-from models.beam.modal import beams
+from models.beam.structure.modal import beams
 
 LONGEST_PERIOD = 8
 BLOCK = 64  # periods

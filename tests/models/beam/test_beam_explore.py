@@ -11,8 +11,8 @@ from models.beam.explore import (
     wear_history,
     work_rate_against_gap,
 )
+from models.beam.explore.diagram import upcrossing_rates
 from models.beam.parameters import Params, Settings
-from models.beam.sweeps import upcrossing_rates
 
 X0 = 2.5e-4
 FIRST, SECOND = 32.3591, 57.1042  # omega = 5.61 and 9.900

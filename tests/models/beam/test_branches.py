@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from test_exact import at_omega, set_up
 
-from models.beam.branches.explore import continue_orbit, follow_wear
+from models.beam.explore.branches import continue_orbit, follow_wear
 from models.beam.parameters import Params
 
 X0 = Params().initial_gap

@@ -8,8 +8,8 @@ from scipy.linalg import expm
 from twins import assemble, by_dop853, by_newmark, first_order, initial_state
 
 from models.beam import exact
-from models.beam.modal import Beams, beams
 from models.beam.parameters import Params, Settings
+from models.beam.structure.modal import Beams, beams
 
 NOMINAL = Params()
 FAR = 1e6  # a gap never crossed [X0]

@@ -6,8 +6,8 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 from twins import assemble
 
-from models.beam.finite_element import modes
 from models.beam.parameters import Params
+from models.beam.structure.finite_element import modes
 
 RIGID = Params(lateral_support_stiffness=1e9, rotational_support_stiffness=1e6)
 

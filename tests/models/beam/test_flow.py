@@ -5,9 +5,9 @@ import pytest
 from test_exact import at_omega, deflected, set_up
 
 from models.beam import exact
-from models.beam.flow import passage
+from models.beam.exact.passage import passage
+from models.beam.exact.tuning import Beam, Tuning
 from models.beam.parameters import Params
-from models.beam.tuning import Beam, Tuning
 
 NOMINAL = Params()
 CASES = {

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from incremental import incremental_lives
 
-from models.beam.modal import Record, beams
 from models.beam.parameters import Params, Settings
+from models.beam.structure.modal import beams
+from models.beam.structure.record import Record
 
 W0 = beams(Params(*(np.array([value]) for value in Params())), Settings()).frequency[0, 0]
 

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from models.beam import exact, lanes
-from models.beam.lane_tangents import carry
-from models.beam.lyapunov import exponents, lyapunov_exponent
-from models.beam.modal import beams
+from models.beam.explore.lyapunov import exponents, lyapunov_exponent
+from models.beam.lanes.tangents import carry
 from models.beam.parameters import Params, Settings
-from models.beam.response import settle
+from models.beam.response.settling import settle
+from models.beam.structure.modal import beams
+from models.numerics.blocks import LANES
 
 FUNDAMENTAL = 57.1042 / 9.900  # [Hz]
 
@@ -94,7 +95,7 @@ def test_multipliers_are_those_of_the_exact_propagator_but_for_the_step():
 
 def test_a_row_has_the_same_tangent_alone_and_anywhere_among_others():
     rng = np.random.default_rng(1)
-    n = lanes.LANES + 5
+    n = LANES + 5
     p = nominal(n, force_amplitude=rng.uniform(4, 8, n))
     system, state, gaps = rattling(lanes, p, steps_per_period=128)
     together = lanes.monodromy(system, state, gaps, 2)

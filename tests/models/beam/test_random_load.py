@@ -7,11 +7,13 @@ from scipy.signal import welch
 from scipy.stats import kstest
 
 from models.beam import MODEL, exact, lanes
-from models.beam.modal import beams, reach
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
-from models.beam.random_lives import _fit, _step, _Wear
-from models.beam.random_load import COUNT, force, tip_deviation
-from models.beam.response import settle
+from models.beam.response.settling import settle
+from models.beam.structure.modal import beams, reach
+from models.beam.structure.random_lines import COUNT, force
+from models.beam.structure.random_response import tip_deviation
+from models.beam.wear.random_lives import _fit, _step, _Wear
+from models.numerics.blocks import LANES
 from uq import simulate
 from uq.contract import Status
 
@@ -217,7 +219,7 @@ def test_a_random_run_in_parts_is_the_run_in_one_bit_for_bit(propagator):
 
 
 def test_rows_with_and_without_random_load_do_not_see_each_other():
-    n = lanes.LANES + 3
+    n = LANES + 3
     level = np.where(np.arange(n) % 3 == 0, 0.0, LEVEL)
     p = nominal(n, random_force_level=level)
     _, system = prepared(lanes, p, steps_per_period=96)
@@ -307,7 +309,7 @@ def test_a_band_without_width_is_said_and_harms_no_other_row(propagator):
     outputs, status = MODEL.batch(x, np.zeros(3, np.uint64), settings)
     assert status.tolist() == [Status.NON_FINITE, Status.OK, Status.NON_FINITE]
     for name, output in OUTPUTS.items():
-        if output.kind != "category":
+        if not output.is_category:
             assert np.isnan(outputs[name][[0, 2]]).all(), name
     assert np.isfinite(outputs["work_rate"][1]).all()
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from models.beam import MODEL, exact, lanes
-from models.beam.modal import beams
 from models.beam.parameters import REGIMES, Params, Settings
-from models.beam.response import settle
+from models.beam.response.settling import settle
+from models.beam.structure.modal import beams
 from models.numerics.multipliers import largest_multiplier
 from uq.contract import Status
 

@@ -5,9 +5,9 @@ import pytest
 from incremental import incremental_lives
 
 from models.beam import MODEL
-from models.beam.lives import extrapolate, extrapolate_smooth
-from models.beam.looks import changes_of, confirmed_regimes, regime_of
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
+from models.beam.wear.extrapolation import extrapolate, extrapolate_smooth
+from models.beam.wear.regimes import changes_of, confirmed_regimes, regime_of
 from uq.contract import Status
 
 NOMINAL = np.array(list(MODEL.nominal.values()))

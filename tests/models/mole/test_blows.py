@@ -5,7 +5,7 @@ import pytest
 
 from models.mole.batch import batch
 from models.mole.parameters import Params, Settings
-from models.mole.system import mole
+from models.mole.theory.system import mole
 from models.mole.trajectory import simulate
 
 SEVEN = Params(control_frequency=7.0)  # settles within two seconds, and repeats every second

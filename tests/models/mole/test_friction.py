@@ -5,9 +5,9 @@ import itertools
 import numpy as np
 import pytest
 
-from models.mole.friction import bar_hold, decide, mole_hold, response
 from models.mole.parameters import FORMULATIONS, Params
-from models.mole.system import mole
+from models.mole.theory.friction import bar_hold, decide, mole_hold, response
+from models.mole.theory.system import mole
 
 RNG = np.random.default_rng(17)
 

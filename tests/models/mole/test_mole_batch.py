@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from models.mole import MODEL, table
+from models.mole import MODEL
 from models.mole.batch import batch
+from models.mole.paper import table
 from models.mole.parameters import (
     CHAOTIC,
     NO_IMPACT,
@@ -14,7 +15,7 @@ from models.mole.parameters import (
     Params,
     Settings,
 )
-from models.mole.periods import common_periods
+from models.mole.theory.periods import common_periods
 from uq.contract import Status
 
 

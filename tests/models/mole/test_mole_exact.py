@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from models.mole import equations, exact
+from models.mole.exact import propagation as exact
 from models.mole.parameters import FORMULATIONS, Params
-from models.mole.system import mole
+from models.mole.theory import equations
+from models.mole.theory.system import mole
 from models.numerics.dop853 import OUT_OF_BUDGET, REACHED_END, STUCK
 
 RNG = np.random.default_rng(2011)

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from models.mole import MODEL, equations, exact
-from models.mole.lane_block import MEASURED
-from models.mole.lane_rows import (
+from models.mole import MODEL
+from models.mole.exact import propagation as exact
+from models.mole.lanes.block import MEASURED
+from models.mole.lanes.rows import (
     CONTACTS,
     ELECTRIC,
     GROWTH,
@@ -20,9 +21,10 @@ from models.mole.lane_rows import (
     table_of,
 )
 from models.mole.parameters import FORMULATIONS, Params
-from models.mole.periods import common_periods
-from models.mole.response import Machines, Response, follow_repeating, settle
-from models.mole.system import mole
+from models.mole.response.settling import Machines, Response, follow_repeating, settle
+from models.mole.theory import equations
+from models.mole.theory.periods import common_periods
+from models.mole.theory.system import mole
 
 RNG = np.random.default_rng(11)
 SIZES = np.array([1e-2, 1.0, 0.1, 1.0])  # of u, v, x, i
@@ -187,7 +189,7 @@ def test_the_exponent_is_how_fast_neighbours_part():
 
 
 def test_a_row_that_cannot_end_is_stopped(monkeypatch):
-    monkeypatch.setattr("models.mole.response.BUDGET", 1000)
+    monkeypatch.setattr("models.mole.response.settling.BUDGET", 1000)
     some = machines([Params()])
     reached = some.run(np.array([0]), np.array([100]), 1e-8, False, np.empty((1, 0)))
     assert len(reached) == 0

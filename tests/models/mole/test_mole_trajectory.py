@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson
 
-from models.mole import exact
+from models.mole.exact import propagation as exact
 from models.mole.parameters import FORMULATIONS, Params, Settings
-from models.mole.system import mole
+from models.mole.theory.system import mole
 from models.mole.trajectory import MOST_SAMPLES, simulate
 
 P = Params(control_frequency=7.0, supply_phase=0.4)

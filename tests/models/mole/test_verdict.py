@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from models.mole.batch import batch
+from models.mole.paper.table import rows
 from models.mole.parameters import (
     CHAOTIC,
     PERIODIC,
@@ -13,8 +14,7 @@ from models.mole.parameters import (
     Params,
     Settings,
 )
-from models.mole.table import rows
-from models.mole.verdict import NEAR_ZERO, verdicts
+from models.mole.response.verdict import NEAR_ZERO, verdicts
 
 ALONE = Params(control_frequency=29.5 / (2 * np.pi))
 

@@ -6,18 +6,19 @@ from machines import plausible
 from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
 from models.numerics.nystrom import layout
-from models.vibrator import abreast, equations, lanes
-from models.vibrator.system import systems
+from models.vibrator.equations import rigid_motion
+from models.vibrator.equations.system import systems
+from models.vibrator.lanes import dynamics, fixed_steps
 
-AT = layout(abreast.DEGREES)
+AT = layout(dynamics.DEGREES)
 STEP = 3e-3
 
 
 @kernel
 def _rises(constants, w):
     for lane in range(LANES):
-        abreast.prepare(lanes.machine(constants, lane), STEP, w, lane)
-    abreast.accelerate(w)
+        dynamics.prepare(fixed_steps.machine(constants, lane), STEP, w, lane)
+    dynamics.accelerate(w)
 
 
 def test_they_are_those_of_the_plain_algebra():
@@ -25,15 +26,15 @@ def test_they_are_those_of_the_plain_algebra():
     p = plausible(
         LANES, seed=8, mount_stiffness=np.inf, mount_rotational_stiffness=np.inf, feed_mass=0.0
     )
-    m, w = systems(p), aligned(abreast.END)
+    m, w = systems(p), aligned(dynamics.END)
     position = rng.uniform(-1, 1, (5, LANES)) * np.array([[0.01], [0.01], [0.01], [30], [30]])
     speed = rng.uniform(-1, 1, (5, LANES)) * np.array([[1], [1], [1], [200], [200]])
     speed[4, ::4] = -speed[2, ::4] * rng.uniform(0.5, 1.5, len(speed[4, ::4]))  # of either sign
     w[AT.at : AT.speed], w[AT.speed : AT.rise] = position.ravel(), speed.ravel()
-    _rises(lanes.pack(m).T.ravel(), w)
+    _rises(fixed_steps.pack(m).T.ravel(), w)
     risen = w[AT.rise : AT.step].reshape(5, LANES)
     for i in range(LANES):
         expected = np.empty(5)
         state = np.concatenate([position[:, i], speed[:, i]])
-        equations.acceleration(m.row(i), state, expected)
+        rigid_motion.acceleration(m.row(i), state, expected)
         np.testing.assert_allclose(risen[:, i], STEP * expected, rtol=1e-11)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from machines import SYMMETRIC, UNDAMPED, net_torques
 
-from models.vibrator import closed_forms as cf
-from models.vibrator.feed import contact_coefficient
+from models.vibrator.paper import closed_forms as cf
 from models.vibrator.parameters import Params
-from models.vibrator.theory import disphasing, feed_gravity, vibratory_moments
+from models.vibrator.theory.averaged import disphasing, feed_gravity, vibratory_moments
+from models.vibrator.theory.feed import contact_coefficient
 
 
 def quantities(p, w):

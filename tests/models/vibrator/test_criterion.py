@@ -3,9 +3,9 @@
 import numpy as np
 from machines import SYMMETRIC, UNDAMPED, plausible
 
-from models.vibrator import closed_forms as cf
-from models.vibrator.criterion import integral, minimising_angle
-from models.vibrator.theory import disphasing, vibratory_moments
+from models.vibrator.paper import closed_forms as cf
+from models.vibrator.paper.criterion import integral, minimising_angle
+from models.vibrator.theory.averaged import disphasing, vibratory_moments
 
 CONSERVATIVE = {"damping_ratio": 0.0, "mount_damping_ratio": 0.0, "feed_mass": 0.0}
 

@@ -11,9 +11,10 @@ import paper
 import pytest
 from scipy.integrate import solve_ivp
 
-from models.vibrator import equations, exact
+from models.vibrator.equations import rigid_motion
+from models.vibrator.equations.system import system
+from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params
-from models.vibrator.system import system
 
 NOMINAL = Params()
 ODD = NOMINAL._replace(
@@ -32,7 +33,7 @@ ODD = NOMINAL._replace(
 
 def accelerations(p, state):
     out = np.full(5, np.nan)
-    equations.acceleration(system(p), np.asarray(state, float), out)
+    rigid_motion.acceleration(system(p), np.asarray(state, float), out)
     return out
 
 
@@ -65,7 +66,7 @@ def test_they_are_lagranges_off_the_axis_and_with_a_heavy_motor_set():
 @pytest.mark.parametrize("p", [NOMINAL, ODD])
 def test_a_run_up_is_that_of_the_printed_equations(p):
     m = system(p)
-    start = exact.start(p, m)
+    start = propagator.start(p, m)
     solution = solve_ivp(
         paper.rates,
         (0, 1),
@@ -75,7 +76,7 @@ def test_a_run_up_is_that_of_the_printed_equations(p):
         atol=1e-13,
         args=(p,),
     )
-    motion = exact.propagate(m, start, 1.0, 1e-12)
+    motion = propagator.propagate(m, start, 1.0, 1e-12)
     assert motion.state[8] > 30  # rad/s, under way
     expected, scale = solution.y[:, -1], np.maximum(abs(solution.y).max(axis=1), 1e-6)
     got = paper.from_axis(p, motion.state)
@@ -84,7 +85,7 @@ def test_a_run_up_is_that_of_the_printed_equations(p):
 
 def test_the_unbalances_start_hanging_down():
     p = ODD._replace(initial_phase_1=0.3, initial_phase_2=-0.2)
-    state = exact.start(p, system(p))
+    state = propagator.start(p, system(p))
     phi_1, phi_2 = paper.from_axis(p, state)[3:5]
     np.testing.assert_allclose([phi_1 - 0.3, phi_2 + 0.2], [-np.pi, np.pi], rtol=1e-14)
     assert not state[[0, 1, 2, 5, 6, 7, 8, 9]].any()
@@ -96,7 +97,7 @@ def test_a_symmetric_machine_keeps_its_symmetry():
     p = p._replace(initial_phase_1=hanging + 0.4, initial_phase_2=0.4 - hanging)
     m = system(p)
     times = np.linspace(0, 3, 500)
-    motion = exact.propagate(m, exact.start(p, m), 3.0, 1e-10, times=times)
+    motion = propagator.propagate(m, propagator.start(p, m), 3.0, 1e-10, times=times)
     x, y, alpha, psi_1, psi_2 = motion.samples[:, :5].T
     assert psi_1[-1] > 300
     np.testing.assert_allclose(psi_1, psi_2, rtol=0, atol=1e-9)
@@ -108,9 +109,9 @@ def test_a_symmetric_machine_keeps_its_symmetry():
 
 SCRIPT = """
 import numpy as np
-from models.vibrator import exact
+from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params
-from models.vibrator.system import system
+from models.vibrator.equations.system import system
 out = []
 for p, kinematics in ((Params(), "small"), (Params(mount_stiffness=2e7), "exact")):
     m = system(p, kinematics)

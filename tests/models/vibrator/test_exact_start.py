@@ -5,15 +5,18 @@ import math
 import numpy as np
 import pytest
 
-from models.vibrator import exact, exact_start, lanes, theory
-from models.vibrator.exact_orbit import find_orbit, proposal
-from models.vibrator.exact_start import outcomes
-from models.vibrator.machine import prepare
-from models.vibrator.measures import measure
-from models.vibrator.orbit import find_orbits
-from models.vibrator.outcome import ASYNCHRONOUS, CAPTURED, LOCKED_0, LOCKED_PI, STALLED
+from models.vibrator.equations.system import system, systems
+from models.vibrator.exact import propagator
+from models.vibrator.exact.budgeted import prepare
+from models.vibrator.exact.measures import measure
+from models.vibrator.exact.orbit import find_orbit, proposal
+from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.orbit import find_orbits
 from models.vibrator.parameters import Params, Settings
-from models.vibrator.system import system, systems
+from models.vibrator.start import exact
+from models.vibrator.start.exact import outcomes
+from models.vibrator.start.regimes import ASYNCHRONOUS, CAPTURED, LOCKED_0, LOCKED_PI, STALLED
+from models.vibrator.theory import averaged
 from models.vibrator.trajectory import simulate
 from uq.contract import Status
 
@@ -66,7 +69,7 @@ def test_table_1(table):
 
 def test_steady_running_is_close_to_the_averaged_theory(table):
     out, _ = table
-    twin = theory.disphasing(rows(TABLE))
+    twin = averaged.disphasing(rows(TABLE))
     np.testing.assert_allclose(out.disphasing, twin.angle, rtol=0, atol=1e-4)
     np.testing.assert_allclose(out.speed, twin.speed, rtol=1e-4)
     np.testing.assert_allclose(out.angular_amplitude, twin.angular_amplitude, rtol=5e-3, atol=1e-9)
@@ -78,8 +81,8 @@ def test_orbit_and_multiplier_are_those_of_the_variational_equations(table):
     out, _ = table
     machines = rows(TABLE)
     guesses = [proposal(prepare(p, "small", 0)) for p in TABLE]
-    period = 2 * np.pi / theory.disphasing(machines).speed
-    orbits = find_orbits(lanes.pack(systems(machines)), np.array(guesses), period, 96)
+    period = 2 * np.pi / averaged.disphasing(machines).speed
+    orbits = find_orbits(fixed_steps.pack(systems(machines)), np.array(guesses), period, 96)
     assert orbits.found.all()
     np.testing.assert_allclose(out.multiplier, orbits.multiplier, rtol=0, atol=1e-6)
     np.testing.assert_allclose(2 * np.pi / out.speed, orbits.period, rtol=1e-9)
@@ -109,10 +112,10 @@ def test_a_run_of_a_minute_ends_on_the_orbit(p, settings):
     out, status = switched_on(p, settings=settings)
     assert status[0] == Status.OK
     m = system(p, settings.kinematics)
-    settled = exact.propagate(m, exact.start(p, m), 60.0, 1e-11)
-    turn = exact.propagate(m, settled.state, 1.0, 1e-11, turns=1)
+    settled = propagator.propagate(m, propagator.start(p, m), 60.0, 1e-11)
+    turn = propagator.propagate(m, settled.state, 1.0, 1e-11, turns=1)
     times = np.linspace(0.0, turn.time, 2001)
-    states = exact.propagate(m, settled.state, turn.time, 1e-11, times=times).samples
+    states = propagator.propagate(m, settled.state, turn.time, 1e-11, times=times).samples
     seen = measure(m, states, times[1])
     harmonic = 2 * abs(np.mean(states[:-1, 2] * np.exp(-2j * np.pi * times[:-1] / times[-1])))
     turns = np.round(seen.disphasing / (2 * np.pi))
@@ -162,7 +165,7 @@ def test_an_approach_too_slow_for_the_start_is_censored():
 def test_flexible_mounts_are_close_to_the_averaged_theory():
     machines = [ON_MOUNTS, ON_MOUNTS._replace(mount_angle=0.7, axis_offset=0.1)]
     out, status = switched_on(*machines)
-    twin = theory.disphasing(rows(machines))
+    twin = averaged.disphasing(rows(machines))
     assert (status == Status.OK).all()
     assert np.abs(twin.angle).min() > 1e-2
     np.testing.assert_allclose(out.disphasing, twin.angle, rtol=0, atol=2e-4)
@@ -189,7 +192,7 @@ def test_feed_drives_the_vibrators_apart_but_not_at_one_throw():
     zero = np.interp(0.0, -out.disphasing[-2:], throws[-2:])
     assert abs(zero - 2.975) < 0.04
     np.testing.assert_allclose(
-        out.disphasing, theory.disphasing(rows(machines)).angle, rtol=0, atol=2e-4
+        out.disphasing, averaged.disphasing(rows(machines)).angle, rtol=0, atol=2e-4
     )
 
 
@@ -238,7 +241,7 @@ def test_feed_thrown_too_high_repeats_no_turn_but_the_motors_stay_locked():
 
 
 def test_a_machine_that_runs_out_of_steps_keeps_its_last_second(monkeypatch):
-    monkeypatch.setattr(exact_start, "BUDGET", 2000)
+    monkeypatch.setattr(exact, "BUDGET", 2000)
     stiff = Params(mount_stiffness=1e17, mount_damping_ratio=1.0)
     apart = Params(synchronous_speed_1=150.0, breakdown_speed_1=119.0)
     out, status = switched_on(apart, stiff)

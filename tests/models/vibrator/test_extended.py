@@ -6,9 +6,9 @@ import lagrange
 import numpy as np
 import pytest
 
-from models.vibrator import equations, extended
+from models.vibrator.equations import general, rigid_motion
+from models.vibrator.equations.system import system
 from models.vibrator.parameters import Params
-from models.vibrator.system import system
 
 ODD = Params(
     unbalance_2=4.0,
@@ -44,7 +44,7 @@ def test_accelerations_are_lagranges(kinematics, mount, riding):
     m, rng = system(p, kinematics), np.random.default_rng(7)
     for _ in range(20):
         q, v, state = random_state(rng, p)
-        out = np.array(extended.accelerations(m, riding, state))
+        out = np.array(general.accelerations(m, riding, state))
         expected = lagrange.acceleration(p, kinematics == "exact", riding, m.feed_gravity, q, v)
         np.testing.assert_allclose(out[:7], expected, rtol=0, atol=1e-12 * abs(expected).max())
         rise = p.feed_position * np.array([out[2], v[2] ** 2])
@@ -61,8 +61,8 @@ def test_rigid_and_without_feed_they_are_the_plain_equations():
         state = rng.normal(size=10)
         state[8:] = rng.uniform(-50, 160, size=2)
         plain = np.empty(5)
-        equations.acceleration(m, state, plain)
-        out = np.array(extended.accelerations(m, True, extended.extend(state)))
+        rigid_motion.acceleration(m, state, plain)
+        out = np.array(general.accelerations(m, True, general.extend(state)))
         np.testing.assert_allclose(out[:5], plain, rtol=0, atol=1e-12 * abs(plain).max())
         assert not out[5:].any()
 
@@ -79,7 +79,7 @@ def test_landing_keeps_every_momentum_and_stops_the_feed_on_the_deck(kinematics,
         reach[1:3] = 1, p.feed_position * (np.cos(q[2]) if exact else 1.0)
         feed = p.feed_mass * (reach @ v - 0.8)
         before = np.ravel(momenta(lagrange.values(p), 0.0, 0.0, q, v)) + feed * reach
-        extended.land(m, state)
+        general.land(m, state)
         after = np.ravel(momenta(lagrange.values(p), 1.0, 0.0, q, state[8:15]))
         scale = 1e-12 * abs(before).max()
         np.testing.assert_allclose(after[at], before[at], rtol=0, atol=scale)

@@ -6,8 +6,8 @@ from machines import UNDAMPED
 from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 
-from models.vibrator.feed import LARGEST_THROW, apparent_mass, contact_coefficient, flight
-from models.vibrator.theory import disphasing
+from models.vibrator.theory.averaged import disphasing
+from models.vibrator.theory.feed import LARGEST_THROW, apparent_mass, contact_coefficient, flight
 
 THROWS = [1.0001, 1.02, 1.146, 1.5, 1.705, 2.3, 2.975, 3.2, 3.296]
 DECK = UNDAMPED._replace(stiffness_x=2.07e5, stiffness_y=2.07e5)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from models.vibrator.multiplier import largest_multiplier
-from models.vibrator.tangents import ANCHOR, COLUMNS, FREE
+from models.vibrator.lanes.multiplier import largest_multiplier
+from models.vibrator.lanes.tangents import ANCHOR, COLUMNS, FREE
 
 RADII = np.array([0.03, 0.7, 0.999999, 1.000001, 1.3, 40.0])
 

@@ -10,11 +10,13 @@ import pytest
 from machines import SYMMETRIC, plausible
 
 from models.numerics.dop853 import GUARDED
-from models.vibrator import equations, exact, orbit, tangents
-from models.vibrator.lanes import pack
+from models.vibrator.equations import rigid_motion
+from models.vibrator.equations.system import systems
+from models.vibrator.exact import propagator
+from models.vibrator.lanes import orbit, tangents
+from models.vibrator.lanes.fixed_steps import pack
 from models.vibrator.parameters import Params
-from models.vibrator.system import systems
-from models.vibrator.theory import disphasing, steady_motion
+from models.vibrator.theory.averaged import disphasing, steady_motion
 
 RIGID = {"mount_stiffness": np.inf, "mount_rotational_stiffness": np.inf, "feed_mass": 0.0}
 MACHINES = plausible(10, seed=1, **RIGID)
@@ -44,20 +46,20 @@ def mean_angle(p, orbits, steps):
 
 def gap(m, state, period):
     """Return by how much one machine misses its start after a turn of vibrator 1, scaled."""
-    motion = exact.propagate(m, state, 2 * period, 1e-13, turns=1)
+    motion = propagator.propagate(m, state, 2 * period, 1e-13, turns=1)
     assert motion.status == GUARDED
-    miss = (motion.state - state - TURN) / exact.scales_of(m, equations.DEGREES)
+    miss = (motion.state - state - TURN) / propagator.scales_of(m, rigid_motion.DEGREES)
     return max(abs(miss).max(), abs(motion.time / period - 1))
 
 
 def passage(m, start, period):
     """Return the derivative of the map from one passage of psi_1 = 0 to the next."""
-    scales = 1e-5 * exact.scales_of(m, equations.DEGREES)
+    scales = 1e-5 * propagator.scales_of(m, rigid_motion.DEGREES)
     columns = []
     for i in tangents.FREE:
         change = scales * (np.arange(orbit.STATE) == i)
         above, below = (
-            exact.propagate(m, start + s * change, 2 * period, 1e-13, turns=1).state
+            propagator.propagate(m, start + s * change, 2 * period, 1e-13, turns=1).state
             for s in (1, -1)
         )
         columns.append((above - below)[tangents.FREE] / (2 * scales[i]))
@@ -142,8 +144,8 @@ def test_following_ends_where_the_orbit_does():
     np.testing.assert_allclose(trace[:, -1] - TURN, orbits.state, rtol=0, atol=1e-9)
     for i in (0, 7):
         m, times = systems(MACHINES).row(i), orbits.period[i] * np.arange(1, 49) / 48
-        motion = exact.propagate(m, orbits.state[i], times[-1], 1e-13, times=times)
-        errors = (trace[i] - motion.samples) / exact.scales_of(m, equations.DEGREES)
+        motion = propagator.propagate(m, orbits.state[i], times[-1], 1e-13, times=times)
+        errors = (trace[i] - motion.samples) / propagator.scales_of(m, rigid_motion.DEGREES)
         assert abs(errors).max() < 1e-8
 
 

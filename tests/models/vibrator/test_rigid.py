@@ -9,8 +9,8 @@ import pytest
 from machines import at, plausible
 
 from models.numerics.jit import kernel
-from models.vibrator.rigid import Rigid, accelerations, derivatives
-from models.vibrator.system import systems
+from models.vibrator.equations.rigid import Rigid, accelerations, derivatives
+from models.vibrator.equations.system import systems
 
 MACHINES = plausible(
     30, seed=17, mount_stiffness=np.inf, mount_rotational_stiffness=np.inf, feed_mass=0.0

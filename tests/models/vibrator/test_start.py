@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 
-from models.vibrator import closed_forms, exact, start, theory
-from models.vibrator.outcome import ASYNCHRONOUS, CAPTURED, LOCKED_0, LOCKED_PI, wrapped
+from models.vibrator.equations.system import systems
+from models.vibrator.exact import propagator
+from models.vibrator.paper import closed_forms
+from models.vibrator.paper.table1 import machines
 from models.vibrator.parameters import REGIMES, Params, Settings
-from models.vibrator.synchronous import Machines, search
-from models.vibrator.system import systems
-from models.vibrator.table1 import machines
+from models.vibrator.start import fast
+from models.vibrator.start.regimes import ASYNCHRONOUS, CAPTURED, LOCKED_0, LOCKED_PI, wrapped
+from models.vibrator.start.synchronous import Machines, search
+from models.vibrator.theory import averaged
 from uq.contract import Status
 
 
@@ -18,7 +21,7 @@ def fleet(n=1, **values):
 
 
 def outcomes(p, **settings):
-    return start.outcomes(p, Settings(**settings))
+    return fast.outcomes(p, Settings(**settings))
 
 
 def scattered(n, seed=0):
@@ -50,7 +53,7 @@ def test_the_published_table_is_met():
 def test_theory_and_simulation_agree_at_small_angles():
     p = machines()
     out, _ = outcomes(p)
-    assert np.abs(out.disphasing - theory.disphasing(p).angle).max() < 1e-4
+    assert np.abs(out.disphasing - averaged.disphasing(p).angle).max() < 1e-4
 
 
 def test_the_start_is_that_of_the_exact_propagator():
@@ -60,7 +63,9 @@ def test_the_start_is_that_of_the_exact_propagator():
     times = np.arange(1, 8001) * 5e-4
     for i in range(3):
         one = m.row(i)
-        motion = exact.propagate(one, exact.start(row(p, i), one), 4.0, 1e-10, times=times)
+        motion = propagator.propagate(
+            one, propagator.start(row(p, i), one), 4.0, 1e-10, times=times
+        )
         angle = motion.samples[:, 3] - motion.samples[:, 4]
         off = np.abs(wrapped(angle - out.disphasing[i]))
         assert out.synchronisation_time[i] == pytest.approx(times[off > 0.05][-1], abs=1e-3)
@@ -78,7 +83,9 @@ def test_the_orbit_is_where_a_long_run_ends():
         one = m.row(i)
         period = 2 * np.pi / out.speed[i]
         times = 60.0 + period * np.arange(64) / 64
-        motion = exact.propagate(one, exact.start(row(p, i), one), 61.0, 1e-11, times=times)
+        motion = propagator.propagate(
+            one, propagator.start(row(p, i), one), 61.0, 1e-11, times=times
+        )
         states = motion.samples
         mean = wrapped((states[:, 3] - states[:, 4]).mean())
         assert out.disphasing[i] == pytest.approx(mean, abs=1e-7)
@@ -144,7 +151,7 @@ def test_motors_lock_at_pi_where_the_synchronising_moment_is_negative():
         rated_torque_2=2000.0,
         initial_phase_1=[0.3, 0.0],
     )
-    guess = theory.disphasing(p)
+    guess = averaged.disphasing(p)
     out, _ = outcomes(p)
     assert (np.abs(guess.angle) > np.pi / 2).all()
     assert (out.regime == LOCKED_PI).all()
@@ -170,7 +177,7 @@ def test_amplitudes_of_unlocked_motors_are_those_between_the_steps():
 
 
 def test_a_run_longer_than_its_budget_is_said_and_censored(monkeypatch):
-    monkeypatch.setattr(start, "BUDGET", 4)
+    monkeypatch.setattr(fast, "BUDGET", 4)
     out, status = outcomes(fleet(2, synchronous_speed_1=[157.0, 150.0]), run_up=600.0)
     assert status.tolist() == [Status.OK, Status.OUT_OF_BUDGET]
     assert out.censored.tolist() == [False, True]

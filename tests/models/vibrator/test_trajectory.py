@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from models.vibrator import exact
+from models.vibrator.equations.system import system
+from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params, Settings
-from models.vibrator.system import system
 from models.vibrator.trajectory import simulate
 
 
@@ -23,7 +23,7 @@ def test_it_shows_the_start(kinematics):
     hanging = -2 * (np.pi / 2 + p.working_angle)
     np.testing.assert_allclose(values["disphasing_angle"][0], hanging, rtol=1e-14)
     m = system(p, kinematics)
-    end = exact.propagate(m, exact.start(p, m), 3.0, 1e-10).state
+    end = propagator.propagate(m, propagator.start(p, m), 3.0, 1e-10).state
     got = [values[name][-1] for name in ("x", "y", "alpha")]
     np.testing.assert_allclose(got, end[:3], rtol=0, atol=1e-9)
     # A rigid deck: its ends' displacements along xi differ by its rotation alone.

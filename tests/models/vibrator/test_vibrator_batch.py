@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from models.vibrator import MODEL, start
+from models.vibrator import MODEL
 from models.vibrator.parameters import OUTPUTS, Params, Settings
+from models.vibrator.start import fast
 from uq.contract import Status
 
 NOMINAL = np.array(list(MODEL.nominal.values()))
@@ -28,15 +29,15 @@ def compute(x, **settings):
 
 def test_the_fast_road_leads_where_the_exact_one_does():
     x = rows(4)
-    fast, status = compute(x)
+    quick, status = compute(x)
     exact, status_too = compute(x, propagator="exact")
     assert (status == Status.OK).all() and (status_too == Status.OK).all()
     tolerances = {"synchronisation_time": 2e-3, "max_excursion": 1e-3, "angular_amplitude": 1e-5}
     for name in OUTPUTS:
         if name == "disphasing_angle":
-            assert np.abs(fast[name] - exact[name]).max() < 1e-6
+            assert np.abs(quick[name] - exact[name]).max() < 1e-6
         else:
-            assert fast[name] == pytest.approx(exact[name], rel=tolerances.get(name, 1e-4)), name
+            assert quick[name] == pytest.approx(exact[name], rel=tolerances.get(name, 1e-4)), name
 
 
 def test_exact_kinematics_hardly_matter():
@@ -63,10 +64,10 @@ def test_what_fixed_steps_cannot_follow_goes_the_exact_road(monkeypatch):
         status[:] = Status.NON_FINITE
         return outcome._replace(speed=np.full(len(status), np.nan)), status
 
-    start_outcomes = start.outcomes
+    start_outcomes = fast.outcomes
     x = rows(1)
     expected, _ = compute(x, propagator="exact")
-    monkeypatch.setattr(start, "outcomes", blown_up)
+    monkeypatch.setattr(fast, "outcomes", blown_up)
     out, status = compute(x)
     assert status[0] == Status.OK
     assert out["speed"][0] == expected["speed"][0]

@@ -8,9 +8,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from models.numerics.dop853 import GUARDED, OUT_OF_BUDGET, REACHED_END
-from models.vibrator import exact, extended
+from models.vibrator.equations import general
+from models.vibrator.equations.system import system
+from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params
-from models.vibrator.system import system
 
 FREE = Params(
     rated_torque_1=0.0,
@@ -32,10 +33,10 @@ FED = Params(feed_mass=300.0, throw_coefficient=1.75, feed_position=0.4, damping
 def test_energy_is_conserved_without_motors_and_losses(kinematics, p):
     """The geometry frozen at alpha = 0 has an energy too: it is that of the linear embedding."""
     m = system(p, kinematics)._replace(feed_gravity=1e6)  # the feed, if any, stays on the deck
-    start = exact.start(p, m)
+    start = propagator.start(p, m)
     start[:3], rates = (5e-3, -3e-3, 4e-3), len(start) // 2
     start[rates + 3 : rates + 5] = 110.0, 95.0
-    motion = exact.propagate(m, start, 2.0, 1e-13, times=np.linspace(0, 2, 50))
+    motion = propagator.propagate(m, start, 2.0, 1e-13, times=np.linspace(0, 2, 50))
     energy = lagrange.mechanics(kinematics == "exact").energy
     values, arms = lagrange.values(p), np.zeros((2, len(motion.samples), 7))
     states = motion.samples.reshape(len(motion.samples), 2, rates).swapaxes(0, 1)
@@ -48,19 +49,19 @@ def test_energy_is_conserved_without_motors_and_losses(kinematics, p):
 def test_turns_are_whole():
     p = Params()
     m = system(p)
-    start = exact.start(p, m)
-    motion = exact.propagate(m, start, 60.0, 1e-10, turns=40)
+    start = propagator.start(p, m)
+    motion = propagator.propagate(m, start, 60.0, 1e-10, turns=40)
     assert motion.status == GUARDED
     np.testing.assert_allclose(motion.state[3] - start[3], 80 * math.pi, rtol=1e-14)
-    again = exact.propagate(m, start, motion.time, 1e-10)
+    again = propagator.propagate(m, start, motion.time, 1e-10)
     np.testing.assert_allclose(motion.state, again.state, rtol=0, atol=1e-8)
-    assert exact.propagate(m, start, 0.1, 1e-10, turns=40).status == REACHED_END
+    assert propagator.propagate(m, start, 0.1, 1e-10, turns=40).status == REACHED_END
 
 
 def test_a_machine_too_stiff_to_follow_runs_out_of_budget():
     p = Params(mount_stiffness=1e17, mount_damping_ratio=1.0)
     m = system(p)
-    motion = exact.propagate(m, exact.start(p, m), 0.1, 1e-8, times=[0.0, 0.1])
+    motion = propagator.propagate(m, propagator.start(p, m), 0.1, 1e-8, times=[0.0, 0.1])
     assert motion.status == OUT_OF_BUDGET
     assert 0 < motion.time < 0.1
     assert np.isnan(motion.samples[1]).all()
@@ -130,13 +131,13 @@ def fed_by_scipy(p, kinematics, gravity, start, end):
 @pytest.mark.parametrize("kinematics", ["small", "exact"])
 def test_the_feed_flies_and_lands_as_by_scipy(kinematics):
     m = system(FED, kinematics)
-    start = exact.start(FED, m)
+    start = propagator.start(FED, m)
     start[11:13] = 150.0  # already fast
     end = 0.4
     changes, expected = fed_by_scipy(FED, kinematics, m.feed_gravity, start, end)
     assert len(changes) > 8
     times = np.linspace(0, end, 20_001)
-    motion = exact.propagate(m, start, end, 1e-12, times=times)
+    motion = propagator.propagate(m, start, end, 1e-12, times=times)
     q, v = motion.state[:8], motion.state[8:]
     np.testing.assert_allclose(q[[0, 1, 2, 7]], expected[[0, 1, 2, 14]], rtol=0, atol=1e-11)
     np.testing.assert_allclose(q[3:5], expected[3:5], rtol=0, atol=1e-9)
@@ -150,12 +151,14 @@ def test_the_feed_flies_and_lands_as_by_scipy(kinematics):
 def test_the_feed_is_never_below_the_deck_nor_pulled_by_it(throw, position):
     p = FED._replace(throw_coefficient=throw, feed_position=position)
     m = system(p)
-    motion = exact.propagate(m, exact.start(p, m), 4.0, 1e-9, times=np.linspace(0, 4, 8001))
+    motion = propagator.propagate(
+        m, propagator.start(p, m), 4.0, 1e-9, times=np.linspace(0, 4, 8001)
+    )
     assert motion.status == REACHED_END
     height = motion.samples[:, 7]
     assert height.min() == 0
     assert (height > 0).any() == (throw > 1 or height[:4000].any())
-    push = [extended.support_of_feed(m, state) for state in motion.samples[height == 0]]
+    push = [general.support_of_feed(m, state) for state in motion.samples[height == 0]]
     assert min(push) > -1e-6 * m.feed_gravity
 
 
@@ -164,7 +167,7 @@ def test_the_throw_coefficient_is_that_of_the_running_deck():
     p = FED._replace(feed_mass=1e-6, throw_coefficient=1.7, stiffness_x=2.07e6, support_offset=0.0)
     m = system(p)
     times = np.linspace(7.9, 8.0, 2001)
-    motion = exact.propagate(m, exact.start(p, m), 8.0, 1e-8, times=times)
+    motion = propagator.propagate(m, propagator.start(p, m), 8.0, 1e-8, times=times)
     deck = motion.samples[:, 1] + p.feed_position * motion.samples[:, 2]
     amplitude, speed = np.ptp(deck) / 2, motion.samples[:, 11].mean()
     np.testing.assert_allclose(amplitude * speed**2 / m.feed_gravity, 1.7, rtol=0.01)
@@ -178,9 +181,9 @@ def test_small_and_exact_kinematics_meet_as_the_motion_becomes_small():
         states = []
         for kinematics in ("small", "exact"):
             m = system(p, kinematics)
-            start = extended.extend(exact.start(p, system(p)))
+            start = general.extend(propagator.start(p, system(p)))
             start[11:13] = 100.0
-            states.append(exact.propagate(m, start, 0.2, 1e-12).state[:3] / scale)
+            states.append(propagator.propagate(m, start, 0.2, 1e-12).state[:3] / scale)
         gaps.append(abs(states[1] - states[0]).max())
     assert gaps[0] > 1e-8
     assert gaps[1] < 0.15 * gaps[0]
@@ -194,10 +197,10 @@ def test_rubber_supports_disphase_the_motors_as_published(stiffness_x, support_o
     """Rows 5, 6 and 8 of Table 1, known as 1.55 to 2.98 degrees; row 7 is symmetric, hence 0."""
     p = Params(damping_ratio=0.07, stiffness_x=stiffness_x, support_offset=support_offset)
     m = system(p)
-    settled = exact.propagate(m, exact.start(p, m), 12.0, 1e-8).state
-    turn = exact.propagate(m, settled, 1.0, 1e-8, turns=1).time
+    settled = propagator.propagate(m, propagator.start(p, m), 12.0, 1e-8).state
+    turn = propagator.propagate(m, settled, 1.0, 1e-8, turns=1).time
     times = np.linspace(0, turn, 100, endpoint=False)
-    samples = exact.propagate(m, settled, turn, 1e-8, times=times).samples
+    samples = propagator.propagate(m, settled, turn, 1e-8, times=times).samples
     angle = math.remainder((samples[:, 3] - samples[:, 4]).mean(), 2 * math.pi)
     assert low < angle < high
     rotation = 2 * abs((samples[:, 2] * np.exp(-2j * np.pi * times / turn)).mean())

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from machines import plausible
 
-from models.vibrator import equations, exact, lanes
-from models.vibrator.system import systems
-from models.vibrator.theory import disphasing
+from models.vibrator.equations import rigid_motion
+from models.vibrator.equations.system import systems
+from models.vibrator.exact import propagator
+from models.vibrator.lanes import fixed_steps
+from models.vibrator.theory.averaged import disphasing
 
 ROWS, TURNS, DURATION = 6, 25, 1.0
 BAND, DENSER = 0.05, 10
@@ -17,12 +19,12 @@ RIGID = {
 }
 MACHINES = plausible(ROWS, seed=1, **RIGID)
 SYSTEMS = systems(MACHINES)
-CONSTANTS = lanes.pack(SYSTEMS)
+CONSTANTS = fixed_steps.pack(SYSTEMS)
 TARGET = disphasing(MACHINES).angle
 
 
 def at_rest():
-    return equations.initial_state(MACHINES)
+    return rigid_motion.initial_state(MACHINES)
 
 
 def under_way():
@@ -40,7 +42,7 @@ def advance(start, steps, target=TARGET, accurate=False):
     """Return the states after a second, and the notes."""
     state = start.copy()
     h = np.full(len(state), DURATION / steps)
-    return state, lanes.advance(CONSTANTS, h, state, target, steps, BAND, accurate)
+    return state, fixed_steps.advance(CONSTANTS, h, state, target, steps, BAND, accurate)
 
 
 @pytest.fixture(scope="module", params=STARTS)
@@ -51,12 +53,12 @@ def start(request):
 @pytest.fixture(scope="module")
 def ends(start):
     return np.array(
-        [exact.propagate(SYSTEMS.row(i), start[i], DURATION, 1e-13).state for i in range(ROWS)]
+        [propagator.propagate(SYSTEMS.row(i), start[i], DURATION, 1e-13).state for i in range(ROWS)]
     )
 
 
 def scaled_errors(state, expected):
-    scales = [exact.scales_of(SYSTEMS.row(i), equations.DEGREES) for i in range(ROWS)]
+    scales = [propagator.scales_of(SYSTEMS.row(i), rigid_motion.DEGREES) for i in range(ROWS)]
     return (abs(state - expected) / scales).max(axis=1)
 
 
@@ -82,23 +84,23 @@ def some(rows):
     """Return that many machines, each with a step of its own, for 60 steps."""
     p = plausible(rows, seed=4, **RIGID)
     rng = np.random.default_rng(5)
-    state = equations.initial_state(p)
+    state = rigid_motion.initial_state(p)
     state[:, 3:5] += rng.uniform(-4, 4, size=(rows, 2))
     state[:, 8:] = rng.uniform(100, 160, size=(rows, 2))
     h = rng.uniform(5e-4, 1e-3, rows)
-    return lanes.pack(systems(p)), h, state, rng.uniform(-1, 1, rows)
+    return fixed_steps.pack(systems(p)), h, state, rng.uniform(-1, 1, rows)
 
 
 def bits(constants, h, state, target, accurate, rows):
     """Return states and notes of those rows, run together."""
     out = state[rows]
-    notes = lanes.advance(constants[rows], h[rows], out, target[rows], 60, 0.3, accurate)
+    notes = fixed_steps.advance(constants[rows], h[rows], out, target[rows], 60, 0.3, accurate)
     return np.concatenate([out, notes], axis=1)
 
 
 @pytest.mark.parametrize("accurate", [False, True])
 def test_a_row_has_the_same_bits_in_any_company(accurate):
-    count = 2 * lanes.LANES + 5
+    count = 2 * fixed_steps.LANES + 5
     case = *some(count), accurate
     sound = np.array([i for i in range(count) if i not in (3, 20, 36)])
     together = bits(*case, np.arange(count))
@@ -117,22 +119,34 @@ def test_a_run_in_two_parts_is_the_run_in_one():
     parts, steps, start = (700, 500), 1200, STARTS["under way"]
     whole, notes = advance(start, steps)
     state, h = start.copy(), np.full(ROWS, DURATION / steps)
-    first, second = (lanes.advance(CONSTANTS, h, state, TARGET, n, BAND, False) for n in parts)
+    first, second = (
+        fixed_steps.advance(CONSTANTS, h, state, TARGET, n, BAND, False) for n in parts
+    )
     np.testing.assert_array_equal(state, whole)
-    for i in (lanes.POWER_1, lanes.POWER_2):
+    for i in (fixed_steps.POWER_1, fixed_steps.POWER_2):
         np.testing.assert_allclose(first[:, i] + second[:, i], notes[:, i], rtol=1e-13)
-    for i in (lanes.ALPHA_LOW, lanes.LEFT_LOW, lanes.RIGHT_LOW, lanes.ANGLE_LOW):
+    for i in (
+        fixed_steps.ALPHA_LOW,
+        fixed_steps.LEFT_LOW,
+        fixed_steps.RIGHT_LOW,
+        fixed_steps.ANGLE_LOW,
+    ):
         lower = np.minimum(first[:, i], second[:, i])
         np.testing.assert_array_equal(lower, notes[:, i])
-    for i in (lanes.ALPHA_HIGH, lanes.LEFT_HIGH, lanes.RIGHT_HIGH, lanes.ANGLE_HIGH):
+    for i in (
+        fixed_steps.ALPHA_HIGH,
+        fixed_steps.LEFT_HIGH,
+        fixed_steps.RIGHT_HIGH,
+        fixed_steps.ANGLE_HIGH,
+    ):
         higher = np.maximum(first[:, i], second[:, i])
         np.testing.assert_array_equal(higher, notes[:, i])
-    peak = np.maximum(first[:, lanes.EXCURSION], second[:, lanes.EXCURSION])
-    np.testing.assert_array_equal(peak, notes[:, lanes.EXCURSION])
-    early, late = first[:, lanes.LAST_ENTRY], second[:, lanes.LAST_ENTRY]
+    peak = np.maximum(first[:, fixed_steps.EXCURSION], second[:, fixed_steps.EXCURSION])
+    np.testing.assert_array_equal(peak, notes[:, fixed_steps.EXCURSION])
+    early, late = first[:, fixed_steps.LAST_ENTRY], second[:, fixed_steps.LAST_ENTRY]
     assert (early >= 0).any() and (late >= 0).any()
     last = np.where(late >= 0, late + parts[0], early)
-    np.testing.assert_allclose(last, notes[:, lanes.LAST_ENTRY], rtol=1e-14)
+    np.testing.assert_allclose(last, notes[:, fixed_steps.LAST_ENTRY], rtol=1e-14)
 
 
 @pytest.fixture(scope="module")
@@ -141,7 +155,7 @@ def path(start):
     times = np.linspace(0, DURATION, 48 * TURNS * DENSER + 1)
     return np.array(
         [
-            exact.propagate(SYSTEMS.row(i), start[i], DURATION, 1e-12, times=times).samples
+            propagator.propagate(SYSTEMS.row(i), start[i], DURATION, 1e-12, times=times).samples
             for i in range(ROWS)
         ]
     )
@@ -163,8 +177,13 @@ def seen(path):
     return np.array([alpha, left, right, psi_1 - psi_2])
 
 
-LOWS = [lanes.ALPHA_LOW, lanes.LEFT_LOW, lanes.RIGHT_LOW, lanes.ANGLE_LOW]
-HIGHS = [lanes.ALPHA_HIGH, lanes.LEFT_HIGH, lanes.RIGHT_HIGH, lanes.ANGLE_HIGH]
+LOWS = [fixed_steps.ALPHA_LOW, fixed_steps.LEFT_LOW, fixed_steps.RIGHT_LOW, fixed_steps.ANGLE_LOW]
+HIGHS = [
+    fixed_steps.ALPHA_HIGH,
+    fixed_steps.LEFT_HIGH,
+    fixed_steps.RIGHT_HIGH,
+    fixed_steps.ANGLE_HIGH,
+]
 
 
 def test_extremes_are_those_of_the_steps_and_near_those_of_the_motion(path, notes):
@@ -180,7 +199,7 @@ def test_extremes_are_those_of_the_steps_and_near_those_of_the_motion(path, note
 
 def test_powers_are_those_of_the_motors(path, notes):
     p, steps = MACHINES, 48 * TURNS
-    for i, note in ((1, lanes.POWER_1), (2, lanes.POWER_2)):
+    for i, note in ((1, fixed_steps.POWER_1), (2, fixed_steps.POWER_2)):
         speed = path[:, :, 7 + i]
         w_s = getattr(p, f"synchronous_speed_{i}")[:, None]
         slip, lag = w_s - getattr(p, f"breakdown_speed_{i}")[:, None], w_s - speed
@@ -194,7 +213,7 @@ def test_powers_are_those_of_the_motors(path, notes):
 
 def test_the_largest_displacement_is_found_between_steps(path, notes):
     squared = path[:, :, 0] ** 2 + path[:, :, 1] ** 2
-    np.testing.assert_allclose(notes[:, lanes.EXCURSION], squared.max(axis=1), rtol=1e-5)
+    np.testing.assert_allclose(notes[:, fixed_steps.EXCURSION], squared.max(axis=1), rtol=1e-5)
 
 
 def test_the_last_time_into_the_band(path, notes):
@@ -206,10 +225,10 @@ def test_the_last_time_into_the_band(path, notes):
         if came[i].any():
             j = np.flatnonzero(came[i])[-1]
             last = (j + (off[i, j] - BAND) / (off[i, j] - off[i, j + 1])) / DENSER
-        np.testing.assert_allclose(notes[i, lanes.LAST_ENTRY], last, rtol=0, atol=0.2)
+        np.testing.assert_allclose(notes[i, fixed_steps.LAST_ENTRY], last, rtol=0, atol=0.2)
 
 
 def test_without_a_target_there_is_no_band():
     _, notes = advance(STARTS["under way"], 48 * TURNS, np.full(ROWS, np.nan))
-    assert np.all(notes[:, lanes.LAST_ENTRY] == -1)
+    assert np.all(notes[:, fixed_steps.LAST_ENTRY] == -1)
     assert np.isfinite(notes).all()

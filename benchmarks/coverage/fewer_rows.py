@@ -1,0 +1,203 @@
+"""Twins, runs that stop when they know enough, and rare events."""
+
+from functools import partial
+
+import numpy as np
+import openturns as ot
+from scipy import stats
+from scipy.special import ndtr
+
+from benchmarks.coverage.problems import (
+    EDGE,
+    ISHIGAMI_MEAN,
+    JUMP,
+    NAME,
+    TAIL_INDEX,
+    computed,
+    ishigami_cdf,
+    jump,
+    jump_ppf,
+    repeated,
+    study_of,
+    with_seed,
+)
+from benchmarks.coverage.tally import Tally
+from uq.analysis.twin import with_twin
+from uq.exploring.design_points import design_points, drawn_around
+from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
+from uq.exploring.subset_simulation import subset_simulation
+from uq.intervals import UNKNOWN
+from uq.rows import stopping
+
+UNIFORMS = {
+    name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")
+}
+
+NOT_GIVEN = dict.fromkeys(("value", "low", "high"))
+
+
+def twin(repetitions):
+    """Count estimates by control variates."""
+    analysis = {
+        "outputs": ["ishigami"],
+        "thresholds": {"ishigami": [9.0]},
+        "twin": "near",
+    }
+    study = study_of("monte-carlo", 300, laws=UNIFORMS, analysis=analysis)
+    tally = Tally("Ishigami, 300 independent rows and 30,000 of a cheap twin", REASONS)
+    for ds in repeated(study, repetitions):
+        found = with_twin(ds, NAME)["outputs"]["ishigami"]
+        # A sample in a thousand seems to have a tail too heavy for a mean.
+        tally.entry("mean by the twin", ISHIGAMI_MEAN, found.get("mean", NOT_GIVEN))
+        tally.entry("P(> 9.0) by the twin", 1 - ishigami_cdf(9.0), found["P(>9.0)"])
+    return tally.lines()
+
+
+UNTIL = {
+    "mean": ({"output": "ishigami", "half_width": 0.25}, lambda: ISHIGAMI_MEAN),
+    "median": ({"output": "jump", "quantile": 0.5, "half_width": 0.08}, lambda: jump_ppf(0.5)),
+    "P(> 2.5)": ({"output": "jump", "above": 2.5, "half_width": 0.04}, lambda: jump()["share"]),
+}
+
+
+def stopped(repetitions):
+    """Count the intervals at which runs stop."""
+    tally = Tally("runs that stop at one of 7 looks, at most 2048 independent rows", REASONS)
+    for what, (until, truth) in UNTIL.items():
+        study = study_of("monte-carlo", 2048, laws=UNIFORMS, design={"until": until})
+        for seed in range(repetitions):
+            one = with_seed(study, seed)
+            ds = computed(one)
+            for size in stopping.looks(one.design):
+                seen = stopping.look(one.design, ds.isel(sample=slice(None, size)))
+                if seen.reached:
+                    break
+            tally.add(f"{what} when stopped", truth(), seen.estimate.low, seen.estimate.high)
+    return tally.lines()
+
+
+# Rare events: limits in standard normal space -----------------------------------------------------
+
+RARE = 1e-5
+
+
+def _plane(u):
+    return u.sum(axis=1) / np.sqrt(u.shape[1]) - stats.norm.isf(RARE)
+
+
+def _jump(u):
+    """Beyond a value of the function that jumps: P = h^2/2 at a distance of h from its top."""
+    x1, x2, x3 = ndtr(u).T
+    return x1 + x3 + JUMP * (x1 + x2 > EDGE) - (2 + JUMP - np.sqrt(2 * RARE / (EDGE_SHARE)))
+
+
+EDGE_SHARE = 2 - EDGE
+"""Share of x2 that lies in the upper regime where x1 is 1, to first order."""
+
+
+def _life(u):
+    """Beyond a life with a heavy tail: the rate is the sum of three exponentials."""
+    rate = -np.log(ndtr(u)).sum(axis=1)
+    return stats.gamma(TAIL_INDEX).ppf(RARE) - rate
+
+
+LIMITS = {"plane, 4 inputs": (_plane, 4), "heavy-tailed life, 3 inputs": (_life, 3)}
+
+
+def subset(repetitions):
+    """Count the intervals of subset simulation."""
+    lines = []
+    for name, (margin, d) in (LIMITS | {"two regimes, 3 inputs": (_jump, 3)}).items():
+        tally = Tally(f"P = 1e-5, subset simulation, 8 replicates of 1000 rows: {name}", REASONS)
+        truth = _jump_probability() if margin is _jump else RARE
+        for seed in range(repetitions):
+            found = subset_simulation(margin, d, 1000, np.random.default_rng(seed).spawn(8))
+            tally.add("probability", truth, *subset_interval(found, 1000))
+        lines += tally.lines()
+    return lines
+
+
+def plateau(repetitions):
+    """Count the intervals of subset simulation where the margin does not lead to the event."""
+    tally = Tally("subset simulation on a plateau, 8 replicates of 1000 rows", REASONS)
+    for share in PLATEAU:
+        for steps in (1, 2):
+            what = f"P = {share:g}" + ", half of the rows on a step" * (steps == 2)
+            margin = partial(_flat, share, steps)
+            for seed in range(repetitions):
+                found = subset_simulation(margin, 2, 1000, np.random.default_rng(seed).spawn(8))
+                tally.add(what, share, *subset_interval(found, 1000))
+    return tally.lines()
+
+
+PLATEAU = (2e-5, 2e-4, 1e-3)
+
+
+def _flat(share, steps, u):
+    """Beyond a limit of the first input; elsewhere flat, or on two steps of the second."""
+    within = ndtr(-u[:, 0]) < share
+    return np.where(within, 1.0, -1.0 + 0.5 * (steps == 2) * (u[:, 1] > 0))
+
+
+def _jump_probability():
+    """Return P(x1 + x3 > 2 - h and x1 + x2 > edge), by the midpoint rule over x1 near 1."""
+    h = np.sqrt(2 * RARE / EDGE_SHARE)
+    x1 = 1 - h * (np.arange(100_000) + 0.5) / 100_000
+    return float(h * np.mean((x1 - (1 - h)) * (1 - (EDGE - x1))))
+
+
+def importance(repetitions):
+    """Count the intervals of importance sampling around design points."""
+    lines = []
+    for name, (margin, d) in LIMITS.items():
+        tally = Tally(f"P = 1e-5, importance sampling, 8 replicates of 1000 rows: {name}", REASONS)
+        first = np.random.default_rng(0).standard_normal((1000, d))
+        points = design_points(margin, first, margin(first))
+        for seed in range(repetitions):
+            drawn = [
+                drawn_around(points, 1000, rng) for rng in np.random.default_rng(seed).spawn(8)
+            ]
+            found = [np.mean(weight * (margin(u) > 0)) for u, weight in drawn]
+            tally.add("probability", RARE, *log_scatter_interval(np.array(found)))
+        lines += tally.lines()
+    return lines
+
+
+def subset_of_openturns(repetitions):
+    """Count what OpenTURNS prints for as many rows."""
+    ot.Log.Show(ot.Log.NONE)
+    lines = []
+    for name, (margin, d) in LIMITS.items():
+        tally = Tally(f"P = 1e-5, subset simulation, 8 replicates of 1000 rows: {name}")
+        function = ot.PythonFunction(d, 1, func_sample=_sampled(margin))
+        vector = ot.CompositeRandomVector(function, ot.RandomVector(ot.Normal(d)))
+        event = ot.ThresholdEvent(vector, ot.Greater(), 0.0)
+        for seed in range(repetitions):
+            ot.RandomGenerator.SetSeed(seed)
+            algorithm = ot.SubsetSampling(event)
+            algorithm.setMaximumOuterSampling(80)
+            algorithm.setBlockSize(100)
+            ends = UNKNOWN
+            try:
+                algorithm.run()
+                result = algorithm.getResult()
+                value, half = result.getProbabilityEstimate(), result.getConfidenceLength() / 2
+                ends = value - half, value + half
+            except TypeError:  # "The variance estimate must be >= 0"
+                pass
+            tally.add("probability", RARE, *ends, by="OpenTURNS SubsetSampling, 8000 rows a level")
+        lines += tally.lines()
+    return lines
+
+
+def _sampled(margin):
+    return lambda u: margin(np.asarray(u))[:, None]
+
+
+FLAT = "conservative by design: no more than the independent rows of the first level support"
+REASONS = {
+    **{f"P = {share:g}": FLAT for share in PLATEAU},
+    "mean when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
+    "median when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
+    "P(> 2.5) when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
+}

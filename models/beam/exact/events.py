@@ -1,0 +1,239 @@
+"""Events of the exact propagator: where contacts begin, turn and end.
+
+Each step of the search goes just as far as the next event is certain to stay away, by the bounds of
+`models.beam.exact.tip_bounds`. So it misses no event, however brief the contact, and close to one
+it converges like Newton's method. Just after leaving a site the distance is zero to rounding, but
+it is opening, and the same bounds carry the search beyond the turning point, or to it.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from models.beam.exact.phases import join, split
+from models.beam.exact.tip_bounds import parabola, reach, tip_after, tip_at, weigh
+from models.beam.structure.modal import Array
+from models.numerics.jit import kernel
+
+EVALUATIONS_PER_PERIOD = 100_000
+NOWHERE, RIGHT, LEFT = -1, 0, 1
+_ROUNDING = 16 * float(np.finfo(float).eps)
+_SHORTEST = 1e-14  # no step of the search is shorter: time must pass
+
+
+@kernel
+def _is_here(distance, closing, gathering, rounding):
+    """Whether a distance is zero to rounding and not opening."""
+    return distance <= rounding and (closing > 0 or (closing == 0 and gathering > 0))
+
+
+@kernel
+def _fly(phase, weight, power, gaps, near, to_end):
+    """Fly until a site is met or the time is up; return the time, the site and the effort."""
+    s = 0.0
+    evaluations = 1
+    tip = tip_after(phase, weight, len(phase.speed), s, power)
+    while evaluations < EVALUATIONS_PER_PERIOD:
+        to_right, to_left = gaps[RIGHT] - tip.x, gaps[LEFT] + tip.x
+        if _is_here(to_right, tip.v, tip.a, near):
+            return s, RIGHT, evaluations
+        if _is_here(to_left, -tip.v, -tip.a, near):
+            return s, LEFT, evaluations
+        if s == to_end:
+            break
+        h = min(
+            reach(to_right, tip.v, tip.a, tip.bound_a, tip.bound_j),
+            reach(to_left, -tip.v, -tip.a, tip.bound_a, tip.bound_j),
+        )
+        s = min(s + max(h, _SHORTEST), to_end)
+        evaluations += 1
+        tip = tip_after(phase, weight, tip.live, s, power)
+    return s, NOWHERE, evaluations
+
+
+@kernel
+def _touch(phase, weight, power, side, gap, near, slow, to_end):
+    """Stay in contact until it ends or the time is up.
+
+    Return the time, whether contact has ended, the work, the deepest penetration and the effort.
+    The work between two extrema of the penetration d is half the change of d^2.
+    """
+    s = 0.0
+    evaluations = 1
+    tip = tip_after(phase, weight, len(phase.speed), s, power)
+    last = deepest = max(side * tip.x - gap, 0.0)
+    inward = side * tip.v > 0 or (tip.v == 0 and side * tip.a > 0)
+    work = 0.0
+    while evaluations < EVALUATIONS_PER_PERIOD:
+        depth, speed, gathering = side * tip.x - gap, side * tip.v, side * tip.a
+        if not inward and _is_here(depth, -speed, -gathering, near):
+            return s, True, work + 0.5 * last * last, deepest, evaluations
+        is_turning = (
+            _is_here(speed, -gathering, 0.0, slow)
+            if inward
+            else _is_here(-speed, gathering, 0.0, slow)
+        )
+        if is_turning or s == to_end:
+            depth = max(depth, 0.0)
+            work += 0.5 * abs(depth * depth - last * last)
+            deepest = max(deepest, depth)
+            last = depth
+        if s == to_end:
+            break
+        if is_turning:
+            inward = not inward
+        if inward:
+            h = parabola(max(speed, 0.0), -gathering, tip.bound_j)
+        else:
+            h = min(
+                parabola(max(-speed, 0.0), gathering, tip.bound_j),
+                reach(depth, -speed, -gathering, tip.bound_a, tip.bound_j),
+            )
+        s = min(s + max(h, _SHORTEST), to_end)
+        evaluations += 1
+        tip = tip_after(phase, weight, tip.live, s, power)
+    return s, False, work, deepest, evaluations
+
+
+class Scratch(NamedTuple):
+    """Room for the terms of one phase: as `split`, `weigh` and `exponentials` fill it.
+
+    Attributes
+    ----------
+    coefficient, weight, power : ndarray, shapes (2, T), (9, T), (3, T)
+    """
+
+    coefficient: Array
+    weight: Array
+    power: Array
+
+
+class Event(NamedTuple):
+    """What ends a phase.
+
+    Attributes
+    ----------
+    after : float
+        Time since the phase began.
+    site : int
+        Where the tip is from then on: `RIGHT`, `LEFT` or `NOWHERE`.
+    has_left : bool
+        Whether the event is the end of a contact.
+    work, deepest : float
+        Of the contact, if the phase is one.
+    effort : int
+        Evaluations of the tip.
+    """
+
+    after: float
+    site: int
+    has_left: bool
+    work: float
+    deepest: float
+    effort: int
+
+
+@kernel
+def scratch(free, contact):
+    """Return room for the terms of either phase."""
+    terms = max(len(free.speed), len(contact.speed))
+    return Scratch(np.empty((2, terms)), np.empty((9, terms)), np.empty((3, terms)))
+
+
+@kernel
+def site_of(x, gaps):
+    """Return the site that a tip at x is in contact with."""
+    return RIGHT if x > gaps[RIGHT] else LEFT if x < -gaps[LEFT] else NOWHERE
+
+
+@kernel
+def next_event(phase, y, gaps, site, theta, to_end, room):
+    """Find what ends the phase that begins with y at force phase theta, within the time to_end."""
+    coefficient, weight, power = room
+    side = -1.0 if site == LEFT else 1.0
+    gap = 0.0 if site == NOWHERE else gaps[site]
+    split(phase, y, side * gap, theta, coefficient)
+    near, slow = weigh(phase, coefficient, weight)
+    near, slow = _ROUNDING * (near + gaps[RIGHT] + gaps[LEFT]), _ROUNDING * slow
+    if site == NOWHERE:
+        s, site, effort = _fly(phase, weight, power, gaps, near, to_end)
+        return Event(s, site, False, 0.0, 0.0, effort)
+    s, has_left, work, deepest, effort = _touch(phase, weight, power, side, gap, near, slow, to_end)
+    return Event(s, NOWHERE if has_left else site, has_left, work, deepest, effort)
+
+
+@kernel
+def nearest_turn(phase, gaps, until, room):
+    """Return how near to a stop's face the tip turns in a phase, before the time `until`.
+
+    The room is as `next_event` leaves it.
+    """
+    slow = 0.0
+    for k in range(len(phase.speed)):
+        slow += room.weight[6, k]
+    slow *= _ROUNDING
+    s = 0.0
+    nearest = math.inf
+    tip = tip_after(phase, room.weight, len(phase.speed), s, room.power)
+    way = 1.0 if tip.v > 0 or (tip.v == 0 and tip.a > 0) else -1.0
+    for _ in range(EVALUATIONS_PER_PERIOD):
+        speed, braking = way * tip.v, -way * tip.a
+        if _is_here(speed, braking, 0.0, slow):
+            nearest = min(nearest, abs(gaps[RIGHT] - tip.x), abs(gaps[LEFT] + tip.x))
+            way, speed, braking = -way, -speed, -braking
+        if s == until:
+            break
+        h = parabola(max(speed, 0.0), braking, tip.bound_j)
+        s = min(s + max(h, _SHORTEST), until)
+        tip = tip_after(phase, room.weight, tip.live, s, room.power)
+    return nearest
+
+
+@kernel
+def _sample(phase, weight, power, theta, until, trace):
+    """Set what of a period's trace falls after theta, up to `until`."""
+    step = 2 * math.pi / len(trace)
+    for k in range(len(trace)):
+        at = min((k + 1) * step, 2 * math.pi)
+        if theta < at <= until:
+            trace[k] = tip_at(phase, weight, at - theta, power)
+
+
+@kernel
+def run(free, contact, state, gaps, growth, record):
+    """Advance one beam over the periods of its record."""
+    work, strobe, peak, trace = record
+    size = len(state) - 3
+    m = size // 2
+    y, owed = state[:size], state[size + 1 :]
+    room = scratch(free, contact)
+    steps = len(trace) // len(work)
+    for period in range(len(work)):
+        site = site_of(y[:m].sum(), gaps)
+        theta = 0.0
+        evaluations = 0
+        while theta < 2 * math.pi:
+            to_end = 2 * math.pi - theta
+            phase = free if site == NOWHERE else contact
+            event = next_event(phase, y, gaps, site, theta, to_end, room)
+            if site != NOWHERE:
+                work[period, site] += event.work
+                owed[site] += event.work
+                peak[site] = max(peak[site], event.deepest)
+                if event.has_left:
+                    gaps[site] += growth[site] * owed[site]
+                    owed[site] = 0.0
+            evaluations += event.effort
+            if evaluations >= EVALUATIONS_PER_PERIOD:
+                state[:] = work[period:] = strobe[period:] = trace[period * steps :] = math.nan
+                return
+            until = theta + event.after if event.after < to_end else 2 * math.pi
+            if steps:
+                _sample(
+                    phase, room.weight, room.power, theta, until, trace[period * steps :][:steps]
+                )
+            join(phase, room.coefficient, event.after, room.power, y)
+            theta, site = until, event.site
+        strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()
+        state[size] += 1

@@ -1,0 +1,272 @@
+"""The linear phases of the beam, free or in contact at one site, as sums of exponentials.
+
+With y = [z, z'] of all modes and the time s since the phase began,
+
+    y(s) = Re sum_k c_k shape_k exp(rate_k s),
+
+where one term is what the gap holds (rate 0), one the response to the force (rate i), J more those
+to the lines of a random force, if there is one, and the others are the decaying modes of the phase,
+one for each conjugate pair. Damping is proportional
+in free flight but not in contact, whose modes are complex. Time is the phase of the forcing,
+Omega t; lengths are in initial gaps. Complex arrays are split into real and imaginary parts,
+axis 0 or 1, so that the compiler can vectorise over the last axis.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.structure.modal import Array, Beams
+from models.beam.structure.random_lines import AMPLITUDE, COUNT, SPEED
+from models.numerics.jit import kernel
+
+Complex = NDArray[np.complex128]
+
+
+class Phase(NamedTuple):
+    """One phase of one beam of m modes, in T = 2 + J + K terms.
+
+    Attributes
+    ----------
+    rate : ndarray, shape (2, T)
+        Real and imaginary part; the modes after gap, force and lines, slowest decay first.
+    speed : ndarray, shape (T,)
+        Moduli of the rates.
+    tip : ndarray, shape (2, T)
+        Sum of the displacements in `shape`.
+    shape : ndarray, shape (T, 2, 2 m)
+        Per unit gap, per unit phasor of the force and of each line, per unit coefficient of each
+        mode.
+    dual : ndarray, shape (2 m, 2, K)
+        Takes y, less what gap, force and lines hold, to the modes' coefficients.
+    phasor : ndarray, shape (2, J)
+        Of the lines, at phase 0 of the force in the present period; see `set_lines`.
+    """
+
+    rate: Array
+    speed: Array
+    tip: Array
+    shape: Array
+    dual: Array
+    phasor: Array
+
+
+def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
+    """Return free flight and contact of one beam.
+
+    Parameters
+    ----------
+    beams : Beams
+    row : int
+
+    Returns
+    -------
+    free, contact : Phase
+    """
+    forcing, force, stiffness = beams.forcing[row], beams.force[row], beams.stiffness[row]
+    w = beams.frequency[row] / forcing
+    d = beams.decay[row] / forcing
+    b = beams.mobility[row] / forcing**2
+    response = b / (w**2 - 1 + 2j * d)
+    flexibility = b / w**2
+    phasor = np.zeros((2, COUNT if beams.load[row]["power"] > 0 else 0))
+    free = _phase(*_free_modes(w, d), np.zeros_like(b), force * response, phasor)
+    contact = _phase(
+        *_contact_modes(w, d, b, stiffness),
+        stiffness * flexibility / (1 + stiffness * flexibility.sum()),
+        force * response / (1 + stiffness * response.sum()),
+        phasor,
+    )
+    return free, contact
+
+
+def set_lines(free: Phase, contact: Phase, beams: Beams, row: int, lines: Array) -> None:
+    """Put the lines of an epoch into both phases of one beam.
+
+    Parameters
+    ----------
+    free, contact : Phase
+        Updated in place.
+    beams : Beams
+    row : int
+    lines : ndarray, shape (J, 3)
+        As `models.beam.structure.random_load.draw` sets them.
+    """
+    forcing, stiffness = beams.forcing[row], beams.stiffness[row]
+    w = beams.frequency[row] / forcing
+    d = beams.decay[row] / forcing
+    b = beams.mobility[row] / forcing**2
+    speed = lines[:, SPEED, None]
+    response = b / (w**2 - speed**2 + 2j * d * speed)
+    held = 1 + stiffness * response.sum(axis=1, keepdims=True)
+    here = slice(2, 2 + len(lines))
+    for phase, per_line in ((free, response), (contact, response / held)):
+        per_line = lines[:, AMPLITUDE, None] * per_line
+        phase.rate[1, here] = phase.speed[here] = lines[:, SPEED]
+        phase.tip[:, here] = _parts(per_line.sum(axis=1), 0)
+        phase.shape[here] = _parts(np.hstack([per_line, 1j * speed * per_line]), 1)
+
+
+def _free_modes(w: Array, d: Array) -> tuple[Complex, Complex, Complex]:
+    """Return rates, shapes and duals of uncoupled modes.
+
+    At critical damping the two solutions of a mode coincide. Parting their rates by a fraction e
+    of w changes w^2 by e^2 and costs eps/e in rounding: both stay below 1e-10.
+    """
+    split = np.sqrt((d**2 - w**2).astype(complex))
+    split = np.where(abs(split) < 6e-6 * w, 6e-6 * w, split)
+    fast = -d - split
+    slow = w**2 / fast
+    eye = np.eye(len(w))
+    shape = np.block([[eye, eye], [np.diag(slow), np.diag(fast)]])
+    part = np.diag(1 / (slow - fast))
+    dual = np.block([[-part * fast, part], [part * slow, -part]])
+    return np.concatenate([slow, fast]), shape, dual
+
+
+def _contact_modes(
+    w: Array, d: Array, b: Array, stiffness: float
+) -> tuple[Complex, Complex, Complex]:
+    """Return rates, shapes and duals of modes coupled by a spring at the tip.
+
+    In the coordinates w z/sqrt(b), z'/sqrt(b), whose squares are energies, the matrix is nearly
+    skew and its modes are well conditioned.
+    """
+    root = np.sqrt(b)
+    coupled = np.diag(w) + stiffness * np.outer(root, root / w)
+    matrix = np.block([[np.zeros_like(coupled), np.diag(w)], [-coupled, np.diag(-2 * d)]])
+    rate, shape = np.linalg.eig(matrix)
+    scale = np.concatenate([w, np.ones_like(w)]) / np.tile(root, 2)
+    return rate.astype(complex), shape / scale[:, None], np.linalg.inv(shape) * scale
+
+
+def _phase(
+    rate: Complex,
+    shape: Complex,
+    dual: Complex,
+    per_gap: Array,
+    per_force: Complex,
+    phasor: Array,
+) -> Phase:
+    """Put the parts together, one term for each conjugate pair of modes."""
+    keep = np.flatnonzero(rate.imag >= 0)
+    keep = keep[np.argsort(-rate[keep].real)]
+    twice = np.where(rate[keep].imag > 0, 2.0, 1.0)
+    lines = phasor.shape[1]
+    rate = np.concatenate([[0, 1j], np.zeros(lines), rate[keep]])
+    gap_column = np.concatenate([per_gap, np.zeros_like(per_gap)])
+    force_column = np.concatenate([per_force, 1j * per_force])
+    unset = np.zeros((lines, len(gap_column)))
+    shape = np.vstack([gap_column, force_column, unset, shape.T[keep]])
+    dual = np.hstack([np.zeros((len(dual.T), 2 + lines)), dual.T[:, keep] * twice])
+    return Phase(
+        _parts(rate, 0),
+        np.hypot(*_parts(rate, 0)),
+        _parts(shape[:, : len(per_gap)].sum(axis=1), 0),
+        _parts(shape, 1),
+        _parts(dual, 1),
+        phasor,
+    )
+
+
+def _parts(a: Complex, axis: int) -> Array:
+    """Return real and imaginary part along a new axis."""
+    return np.ascontiguousarray(np.stack([a.real, a.imag], axis))
+
+
+@kernel
+def exponentials(phase, terms, s, power):
+    """Set power (3, T) to the parts of exp(rate s) - 1 and the modulus of exp(rate s).
+
+    Ten terms of the Taylor series at s/2^n, then the doubling (1 + e)^2 - 1 = e (2 + e): exact to
+    the rounding of the argument, and free of calls that would not vectorise.
+    """
+    fastest = 0.0
+    for k in range(terms):
+        fastest = max(fastest, phase.speed[k])
+    doublings = 0
+    while fastest * s > 0.125:
+        s *= 0.5
+        doublings += 1
+    for k in range(terms):
+        x, y = phase.rate[0, k] * s, phase.rate[1, k] * s
+        u, v = 0.1 * x, 0.1 * y
+        for n in (9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0):
+            u += 1
+            u, v = (x * u - y * v) * (1 / n), (x * v + y * u) * (1 / n)
+        power[0, k], power[1, k] = u, v
+    for _ in range(doublings):
+        for k in range(terms):
+            u, v = power[0, k], power[1, k]
+            power[0, k], power[1, k] = u * (2 + u) - v * v, 2 * v * (1 + u)
+    for k in range(terms):
+        u, v = 1 + power[0, k], power[1, k]
+        power[2, k] = math.sqrt(u * u + v * v)
+
+
+@kernel
+def split(phase, y, gap, theta, coefficient):
+    """Set coefficient (2, T) to the terms of a phase that begins with y at force phase theta."""
+    coefficient[:] = 0.0
+    for j in range(phase.phasor.shape[1]):
+        angle = theta * phase.speed[2 + j]
+        c, e = math.cos(angle), math.sin(angle)
+        u, v = phase.phasor[0, j], phase.phasor[1, j]
+        coefficient[0, 2 + j], coefficient[1, 2 + j] = c * u - e * v, c * v + e * u
+    c, e = math.cos(theta), math.sin(theta)
+    for i in range(len(y)):
+        rest = y[i] - phase.shape[0, 0, i] * gap
+        rest -= phase.shape[1, 0, i] * c - phase.shape[1, 1, i] * e
+        for k in range(2, 2 + phase.phasor.shape[1]):
+            rest -= phase.shape[k, 0, i] * coefficient[0, k]
+            rest += phase.shape[k, 1, i] * coefficient[1, k]
+        for k in range(2 + phase.phasor.shape[1], len(phase.speed)):
+            coefficient[0, k] += phase.dual[i, 0, k] * rest
+            coefficient[1, k] += phase.dual[i, 1, k] * rest
+    coefficient[0, 0], coefficient[0, 1], coefficient[1, 1] = gap, c, e
+
+
+@kernel
+def join(phase, coefficient, s, power, y):
+    """Set y to the sum of the terms after the time s."""
+    exponentials(phase, len(phase.speed), s, power)
+    y[:] = 0.0
+    for k in range(len(phase.speed)):
+        c, e = coefficient[0, k], coefficient[1, k]
+        u, v = 1 + power[0, k], power[1, k]
+        a, b = c * u - e * v, c * v + e * u
+        for i in range(len(y)):
+            y[i] += phase.shape[k, 0, i] * a - phase.shape[k, 1, i] * b
+
+
+@kernel
+def carry(phase, power, tangents, modal):
+    """Take tangents (2 m, C) through the time of `power`: y -> Re(shape exp(rate s) dual y).
+
+    `modal` (2, T, C) is room for their coefficients.
+    """
+    size, columns = tangents.shape
+    terms = len(phase.speed)
+    modal[:] = 0.0
+    for i in range(size):
+        for k in range(2, terms):
+            a, b = phase.dual[i, 0, k], phase.dual[i, 1, k]
+            if a == 0 and b == 0:  # modes are uncoupled in free flight
+                continue
+            for j in range(columns):
+                modal[0, k, j] += a * tangents[i, j]
+                modal[1, k, j] += b * tangents[i, j]
+    tangents[:] = 0.0
+    for k in range(2, terms):
+        u, v = 1 + power[0, k], power[1, k]
+        for j in range(columns):
+            a, b = modal[0, k, j], modal[1, k, j]
+            modal[0, k, j], modal[1, k, j] = a * u - b * v, a * v + b * u
+        for i in range(size):
+            a, b = phase.shape[k, 0, i], phase.shape[k, 1, i]
+            if a == 0 and b == 0:
+                continue
+            for j in range(columns):
+                tangents[i, j] += a * modal[0, k, j] - b * modal[1, k, j]

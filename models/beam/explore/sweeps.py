@@ -1,0 +1,62 @@
+"""Settled responses of many beams, each from its own start or from its neighbour's response."""
+
+from collections.abc import Iterator
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam import exact
+from models.beam.parameters import Params, Rows, Settings
+from models.beam.response.response import Response
+from models.beam.response.settling import settle
+from models.beam.start import PROPAGATORS, initial_state
+from models.beam.structure.modal import Array, beams
+from models.beam.structure.record import Record
+
+Sweep = Literal["none", "up", "down"]
+Settled = tuple[NDArray[np.intp], Response, Record]
+
+
+def settled_rows(
+    p: Rows, gaps: Array, settings: Settings, sweep: Sweep, periods: int
+) -> Iterator[Settled]:
+    """Settle n beams at their gaps [X0], and trace them over some periods more.
+
+    Yields
+    ------
+    rows : ndarray of int
+        Which of the n beams these are.
+    settled : Response
+    record : Record
+        Of the further periods.
+    """
+    if sweep not in ("none", "up", "down"):
+        raise ValueError(f"sweep must be 'none', 'up' or 'down', not {sweep!r}")
+    if sweep != "none" and settings.residual_flexibility:
+        raise ValueError("a sweep is by the exact propagator, without residual_flexibility")
+    b = beams(p, settings)
+    propagator = PROPAGATORS[settings.propagator] if sweep == "none" else exact
+
+    def look(system: Any, state: Array, at: Array) -> tuple[Response, Record]:
+        settled = settle(propagator, system, state, at)
+        still = np.zeros_like(at)
+        return settled, propagator.advance(system, state, at.copy(), still, periods, trace=True)
+
+    for rows, system in propagator.groups(b, settings):
+        state = initial_state(propagator, system, Params._make(field[rows] for field in p))
+        if sweep == "none":
+            yield rows, *look(system, state, gaps[rows])
+            continue
+        order = rows if sweep == "up" else rows[::-1]
+        before, now = order[0], state[order[:1]]
+        m = system.modal.shape[1]
+        for row in order:
+            one = np.array([row])
+            if np.isfinite(now).all():
+                # The state holds velocities per radian of the force.
+                now[:, m : 2 * m] *= b.forcing[before] / b.forcing[row]
+            else:  # the neighbour was lost
+                now = state[one]
+            yield one, *look(system.take(one), now, gaps[one])
+            before = row

@@ -1,0 +1,233 @@
+"""Beams prepared for the fast propagator, in groups that share the size of the step."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.lanes.recurrence import is_static, mode_step
+from models.beam.parameters import Settings
+from models.beam.structure.modal import Array, Beams, reach, steady_response
+from models.beam.structure.record import LONGEST
+from models.numerics.jit import kernel
+
+LADDER = tuple(base << k for k in range(8) for base in (64, 96))
+COMPLIANCE = 0.01
+UNSTABLE = 0.03  # compliance from which on the corrections below may feed themselves
+RESOLVED = 16  # least steps in a turn of the random load's fastest line
+MOST_UNDER_RANDOM = 1024  # steps in a forcing period
+_MOST = 2**20  # steps in a time mean
+
+
+class System(NamedTuple):
+    """n beams, prepared for steps of one size.
+
+    Attributes
+    ----------
+    modes : ndarray, shape (n, 4, m)
+        t, d, alpha, beta of the m lowest modes; zero for one that follows the contact statically.
+    begin : ndarray, shape (n, 3, m)
+        The displacement after one step per unit of displacement and of velocity, and 1; or zeros.
+    sigma : ndarray, shape (n,)
+        Displacement within the step per unit of its final penetration, negative.
+    modal : ndarray, shape (n, all modes), complex
+        Steady amplitude of each mode.
+    reach : ndarray, shape (n,)
+        Bound of the tip's displacement without contact.
+    load : ndarray of random_load.LOAD, shape (n,)
+    oscillators : ndarray, shape (n, 3, all modes)
+        w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode: how it responds to the random load.
+    forcing : ndarray, shape (n,)
+        [rad s-1]
+    beams : Beams
+    steps : int
+        In a forcing period.
+    """
+
+    modes: Array
+    begin: Array
+    sigma: Array
+    modal: NDArray[np.complex128]
+    reach: Array
+    load: NDArray[np.void]
+    oscillators: Array
+    forcing: Array
+    beams: Beams
+    steps: int
+
+    @property
+    def is_random(self) -> NDArray[np.bool_]:
+        """Which beams have a random load, shape (n,)."""
+        return self.load["power"] > 0
+
+    @property
+    def memory(self) -> Array:
+        """Forcing periods in which the first mode's free motion falls to 1/e, shape (n,)."""
+        return self.forcing / (2 * np.pi * self.oscillators[:, 1, 0])
+
+    @property
+    def turn(self) -> Array:
+        """Forcing periods in a free oscillation of the first mode, shape (n,)."""
+        return self.forcing / self.beams.frequency[:, 0]
+
+    @property
+    def longest(self) -> int:
+        """Forcing periods in a time mean, at most."""
+        return min(LONGEST, _MOST // self.steps)
+
+    def take(self, rows: NDArray[np.intp]) -> "System":
+        """Return the systems of some rows."""
+        return System._make([*(a[rows] for a in self[:-2]), self.beams.take(rows), self.steps])
+
+
+@kernel
+def _compliance(frequency, decay, gain, moving, h):
+    """Return what the modes that move, and what the others, bring to sigma of one beam."""
+    total = residual = 0.0
+    for i in range(frequency.size):
+        w, d = frequency[i], decay[i]
+        if i >= moving:
+            residual += gain[i] / (w * w)
+        elif is_static(w, d, h):
+            total += gain[i] / (w * w)
+        else:
+            total += gain[i] * mode_step(w, d, h)[6]
+    return total, residual
+
+
+@kernel
+def _prepare(forcing, frequency, decay, gain, moving, steps, modes, begin, sigma, residual):
+    for n in range(frequency.shape[0]):
+        h = 2 * np.pi / (forcing[n] * steps)
+        sigma[n], residual[n] = _compliance(frequency[n], decay[n], gain[n], moving[n], h)
+        for i in range(moving[n]):
+            w, d, b = frequency[n, i], decay[n, i], gain[n, i]
+            if is_static(w, d, h):
+                continue
+            p11, p12, p21, p22, a1, a2, b1, b2 = mode_step(w, d, h)
+            determinant = np.exp(-2 * d * h)
+            modes[n, 0, i] = p11 + p22
+            modes[n, 1, i] = determinant
+            modes[n, 2, i] = b * (a1 + p11 * b1 + p12 * b2)
+            modes[n, 3, i] = -b * (p22 * a1 - p12 * a2 + determinant * b1)
+            begin[n, 0, i] = p11
+            begin[n, 1, i] = p12 / w
+            begin[n, 2, i] = 1.0
+
+
+@kernel
+def _choose_steps(forcing, frequency, decay, gain, moving, least, steps):
+    for n in range(frequency.shape[0]):
+        for candidate in LADDER:
+            h = 2 * np.pi / (forcing[n] * candidate)
+            sigma, _ = _compliance(frequency[n], decay[n], gain[n], moving[n], h)
+            steps[n] = candidate
+            if abs(sigma) <= COMPLIANCE and candidate >= least[n]:
+                break
+
+
+def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Prepare n beams, in groups that share a number of steps and, by fours, of moving modes.
+
+    What a row is computed with depends on the row alone, and so do its bits.
+
+    Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
+    gives way by no more than `COMPLIANCE` of its penetration, residual flexibility left out; the
+    error of a work-rate is then about 0.1 %. A turn of the fastest line of a random load takes
+    `RESOLVED` steps at least. A row whose step stays too long, because contact is too stiff or the
+    load too fast for the longest of the ladder or for the steps that are set, is in no group; nor
+    is one under a random load, whose averages are long, that takes more than `MOST_UNDER_RANDOM`.
+
+    Parameters
+    ----------
+    beams : Beams
+    settings : Settings
+
+    Yields
+    ------
+    rows : ndarray of int
+        Which of the n beams are in the group.
+    system : System
+    """
+    steps = np.full(len(beams.forcing), settings.steps_per_period)
+    if not settings.steps_per_period:
+        least = _least_steps(beams)
+        _choose_steps(
+            beams.forcing, beams.frequency, beams.decay, gains(beams), beams.moving, least, steps
+        )
+    for count in np.unique(steps):
+        rows = np.flatnonzero(steps == count)
+        for part, system in _systems(beams.take(rows), int(count)):
+            yield rows[part], system
+
+
+def finer(system: System) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Prepare the same beams for steps of half the size, in groups as `groups` yields them.
+
+    Parameters
+    ----------
+    system : System
+
+    Yields
+    ------
+    rows : ndarray of int
+        Which of the system's beams are in the group.
+    system : System
+    """
+    yield from _systems(system.beams, 2 * system.steps)
+
+
+def _systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Prepare n beams for so many steps, in groups of one number of modes."""
+    n, m = b.frequency.shape
+    modes, begin = np.zeros((n, 4, m)), np.zeros((n, 3, m))
+    sigma, residual = np.empty((2, n))
+    _prepare(
+        b.forcing,
+        b.frequency,
+        b.decay,
+        gains(b),
+        b.moving,
+        steps,
+        modes,
+        begin,
+        sigma,
+        residual,
+    )
+    system = System(
+        modes,
+        begin,
+        sigma + residual,
+        steady_response(b),
+        reach(b),
+        b.load,
+        np.stack([b.frequency, b.decay, b.mobility], axis=1),
+        b.forcing,
+        b,
+        steps,
+    )
+    sound = (np.abs(sigma) <= UNSTABLE) & (_least_steps(b) <= steps)
+    sound &= (b.load["power"] == 0) | (steps <= MOST_UNDER_RANDOM)
+    width = np.minimum(m, _widths(begin[:, 2]))
+    for size in np.unique(width[sound]):
+        part = np.flatnonzero(sound & (width == size))
+        some = system.take(part)
+        cut = some._replace(modes=some.modes[:, :, :size], begin=some.begin[:, :, :size])
+        yield part, cut
+
+
+def gains(b: Beams) -> Array:
+    """Return what each mode does per unit penetration, shape (n, m)."""
+    return -b.stiffness[:, None] * b.mobility
+
+
+def _least_steps(b: Beams) -> Array:
+    """Return how many steps the fastest line of a random load needs, shape (n,)."""
+    return RESOLVED * b.load["edges"][:, -1]
+
+
+def _widths(moving: Array) -> NDArray[np.int64]:
+    """Return how many modes to keep of each row: up to the last that moves, in whole fours."""
+    last = np.where(moving > 0, 1 + np.arange(moving.shape[1]), 1).max(axis=1)
+    return -(-last // 4) * 4

@@ -1,0 +1,158 @@
+"""The tangent of the fast propagator: what a small change of the state grows to.
+
+The scheme of `models.beam.lanes` is linear but for its contact force, a function of the newest
+three displacements of the tip. Along a known trace of the tip it is therefore linear altogether,
+
+    dx = reply dX,    dp = now dX + then_1 dx_1 + then_2 dx_2,    X = sum y_i,
+
+with coefficients that all columns of a tangent share. So the lanes here are columns, of one row at
+a time.
+"""
+
+import numpy as np
+
+from models.beam.lanes.systems import System
+from models.beam.structure.modal import Array
+from models.numerics.blocks import LANES, aligned
+from models.numerics.fma import fma
+from models.numerics.jit import kernel
+
+_UNROLL = 4  # modes in the straight-line body of the inner loop
+_P, _X1, _X2, _SUM, _HEAD = range(5)  # slots of a block beside its modes
+
+
+@kernel
+def _linearise(x, x1, x2, right, left, sigma):
+    """Return reply, now, then_1 and then_2 of the step that arrives at x, as in `propagator`."""
+    side, gap = (1.0, right) if x > 0.0 else (-1.0, left)
+    d0, d = fma(side, x1, -gap), fma(side, x, -gap)
+    stiff = 1 / (1 - sigma)
+    reply, now, then_1, then_2 = 1.0, 0.0, 0.0, 0.0
+    if d > 0.0:
+        reply, now = stiff, stiff
+        now -= reply / 12
+        then_1, then_2 = 2 / 12, -1 / 12
+    if d0 * d < 0.0:
+        travel = d - d0
+        weight = 0.5 / (abs(travel) * travel)
+        now = fma(-reply * weight * d0, d0, now)
+        then_1 = fma(weight * d, d, then_1)
+    return reply, now, then_1, then_2
+
+
+@kernel
+def _step(modes, w, head, coefficients):
+    """Carry all columns through one step: the hot loop."""
+    reply, now, then_1, then_2 = coefficients
+    groups = modes.shape[0] // (4 * _UNROLL)
+    for block in range(w.shape[0]):
+        column, top = w[block], head[block]
+        for lane in range(LANES):
+            top[_SUM * LANES + lane] = 0.0
+        for g in range(groups):
+            c = 4 * _UNROLL * g
+            t0, d0, a0, b0 = modes[c], modes[c + 1], modes[c + 2], modes[c + 3]
+            t1, d1, a1, b1 = modes[c + 4], modes[c + 5], modes[c + 6], modes[c + 7]
+            t2, d2, a2, b2 = modes[c + 8], modes[c + 9], modes[c + 10], modes[c + 11]
+            t3, d3, a3, b3 = modes[c + 12], modes[c + 13], modes[c + 14], modes[c + 15]
+            for lane in range(LANES):
+                p = top[_P * LANES + lane]
+                k = g * (2 * _UNROLL * LANES) + lane
+                y = column[k]
+                y0 = fma(a0, p, fma(t0, y, column[k + LANES]))
+                column[k + LANES] = fma(b0, p, -d0 * y)
+                column[k] = y0
+                y = column[k + 2 * LANES]
+                y1 = fma(a1, p, fma(t1, y, column[k + 3 * LANES]))
+                column[k + 3 * LANES] = fma(b1, p, -d1 * y)
+                column[k + 2 * LANES] = y1
+                y = column[k + 4 * LANES]
+                y2 = fma(a2, p, fma(t2, y, column[k + 5 * LANES]))
+                column[k + 5 * LANES] = fma(b2, p, -d2 * y)
+                column[k + 4 * LANES] = y2
+                y = column[k + 6 * LANES]
+                y3 = fma(a3, p, fma(t3, y, column[k + 7 * LANES]))
+                column[k + 7 * LANES] = fma(b3, p, -d3 * y)
+                column[k + 6 * LANES] = y3
+                top[_SUM * LANES + lane] += (y0 + y1) + (y2 + y3)
+        for lane in range(LANES):
+            free, x1 = top[_SUM * LANES + lane], top[_X1 * LANES + lane]
+            p = fma(then_2, top[_X2 * LANES + lane], fma(now, free, then_1 * x1))
+            top[_P * LANES + lane] = p
+            top[_X2 * LANES + lane] = x1
+            top[_X1 * LANES + lane] = reply * free
+
+
+@kernel
+def _load(tangents, w, head):
+    """Bring the columns (k, c) of one row into lanes; spare lanes and modes are zero."""
+    m = (tangents.shape[0] - 3) // 2
+    w[:] = 0.0
+    head[:] = 0.0
+    for c in range(tangents.shape[1]):
+        block, lane = c // LANES, c % LANES
+        for i in range(m):
+            w[block, 2 * i * LANES + lane] = tangents[i, c]
+            w[block, (2 * i + 1) * LANES + lane] = tangents[m + i, c]
+        for slot in range(3):  # _P, _X1, _X2, as in the state
+            head[block, slot * LANES + lane] = tangents[2 * m + slot, c]
+
+
+@kernel
+def _store(w, head, tangents):
+    """Bring lanes back into their columns."""
+    m = (tangents.shape[0] - 3) // 2
+    for c in range(tangents.shape[1]):
+        block, lane = c // LANES, c % LANES
+        for i in range(m):
+            tangents[i, c] = w[block, 2 * i * LANES + lane]
+            tangents[m + i, c] = w[block, (2 * i + 1) * LANES + lane]
+        for slot in range(3):
+            tangents[2 * m + slot, c] = head[block, slot * LANES + lane]
+
+
+@kernel
+def _carry(modes, sigma, state, gaps, trace, tangents, packed, w, head):
+    m = modes.shape[2]
+    for row in range(trace.shape[0]):
+        for i in range(m):
+            for j in range(4):
+                packed[4 * i + j] = modes[row, j, i]
+        _load(tangents[row], w, head)
+        x1, x2 = state[row, 2 * m + 1], state[row, 2 * m + 2]
+        for s in range(trace.shape[1]):
+            x = trace[row, s]
+            _step(packed, w, head, _linearise(x, x1, x2, gaps[row, 0], gaps[row, 1], sigma[row]))
+            x1, x2 = x, x1
+        _store(w, head, tangents[row])
+
+
+def carry(system: System, state: Array, gaps: Array, trace: Array, tangents: Array) -> None:
+    """Carry tangents of n beams along the known traces of their tips.
+
+    Parameters
+    ----------
+    system : System
+    state : ndarray, shape (n, 2 m + 4)
+        Where the traces begin.
+    gaps : ndarray, shape (n, 2)
+        Constant.
+    trace : ndarray, shape (n, steps)
+        Tip displacement at every step, as `models.beam.lanes.advance` gives it.
+    tangents : ndarray, shape (n, 2 m + 3, c)
+        c changes of the state but for its clock; updated in place.
+    """
+    m = system.modes.shape[2]
+    blocks = -(-tangents.shape[2] // LANES)
+    modes = -(-m // _UNROLL) * _UNROLL
+    _carry(
+        system.modes,
+        system.sigma,
+        state,
+        gaps,
+        trace,
+        tangents,
+        np.zeros(4 * modes),
+        aligned(blocks * modes * 2 * LANES).reshape(blocks, -1),
+        aligned(blocks * _HEAD * LANES).reshape(blocks, -1),
+    )

@@ -1,0 +1,145 @@
+"""The stable orbits that many beams approach at once, by Newton's method on the map of k periods.
+
+A beam's state is near an orbit where steps with the Jacobian of its first point shrink fast: the
+map is nearly linear between the two, and a stable orbit is then also the one that the beam comes
+to in time. A step that is long, or not much shorter than the one before, ends the search.
+"""
+
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.structure.modal import Array
+from models.beam.structure.record import Record
+from models.numerics.linear import inverse, product
+from models.numerics.multipliers import largest_multiplier
+
+_FARTHEST = 0.3  # longest first step, relative to the response
+_FASTER = 0.3  # each step over the one before, at most
+_LAST = 1e-6  # a step so short, relative to the response, is the last one
+_STEPS = 12
+_SAME = 1e-5  # of strobe points, relative to the response
+
+
+class Approached(NamedTuple):
+    """The orbits that n beams approach.
+
+    Attributes
+    ----------
+    found : ndarray of bool, shape (n,)
+        Where there is a stable orbit near the state; nothing else is said of the others.
+    state : ndarray, shape (n, k)
+        On the orbit.
+    work : ndarray, shape (n, 2)
+        Mean dimensionless work per forcing period at the right and the left site.
+    peak : ndarray, shape (n, 2)
+        Largest penetration, in initial gaps.
+    period : ndarray of int, shape (n,)
+        In forcing periods, the shortest.
+    multiplier : ndarray, shape (n,)
+        Largest modulus of the Floquet multipliers over that period.
+    """
+
+    found: NDArray[np.bool_]
+    state: Array
+    work: Array
+    peak: Array
+    period: NDArray[np.int64]
+    multiplier: Array
+
+
+class _Map(NamedTuple):
+    """The map of k periods of n beams at constant gaps, strobed at phase 0 of the force."""
+
+    propagator: ModuleType
+    system: Any
+    gaps: Array
+    periods: int
+
+    def take(self, rows: NDArray[np.intp]) -> "_Map":
+        return self._replace(system=self.system.take(rows), gaps=self.gaps[rows])
+
+    def advance(self, state: Array) -> tuple[Array, Record]:
+        """Return the image of the state, and what is said of the way there."""
+        image, gaps = state.copy(), self.gaps.copy()
+        still = np.zeros_like(gaps)
+        record = self.propagator.advance(self.system, image, gaps, still, self.periods)
+        clock = self.propagator.CLOCK
+        image[:, clock] = state[:, clock]  # it never comes back
+        return image, record
+
+    def derivative(self, state: Array) -> Array:
+        return self.propagator.monodromy(self.system, state, self.gaps, self.periods)
+
+
+def approached(
+    propagator: ModuleType, system: Any, state: Array, gaps: Array, size: Array, periods: int
+) -> Approached:
+    """Find the stable orbits of k periods, or of a divisor of k, that n beams approach.
+
+    Parameters
+    ----------
+    propagator : module
+        `models.beam.lanes` or `models.beam.exact`.
+    system
+        What the propagator prepared.
+    state : ndarray, shape (n, k)
+        Not changed.
+    gaps : ndarray, shape (n, 2)
+        In initial gaps.
+    size : ndarray, shape (n,)
+        Of the response: its largest displacement and velocity, in initial gaps.
+    periods : int
+
+    Returns
+    -------
+    Approached
+    """
+    n = len(state)
+    strobed = _Map(propagator, system, gaps, periods)
+    fixed = state.copy()
+    found = _fixed_points(strobed, fixed, size)
+    out = Approached(
+        np.zeros(n, bool),
+        fixed,
+        np.zeros((n, 2)),
+        np.zeros((n, 2)),
+        np.full(n, periods),
+        np.full(n, np.inf),
+    )
+    if not len(found):
+        return out
+    orbits = strobed.take(found)
+    out.multiplier[found] = largest_multiplier(orbits.derivative(fixed[found]))
+    out.found[:] = out.multiplier < 1
+    _, record = orbits.advance(fixed[found])
+    out.work[found], out.peak[found] = record.work.mean(axis=1), record.peak
+    for divisor in range(periods - 1, 0, -1):
+        if periods % divisor == 0:
+            apart = np.abs(record.strobe[:, divisor - 1] - record.strobe[:, -1]).max(axis=1)
+            out.period[found[apart <= _SAME * size[found]]] = divisor
+    out.multiplier[:] **= out.period / periods
+    return out
+
+
+def _fixed_points(strobed: _Map, state: Array, size: Array) -> NDArray[np.intp]:
+    """Move states to fixed points of the map near them; return the rows where there is one."""
+    by_residual, regular = inverse(np.eye(state.shape[1]) - strobed.derivative(state))
+    found = np.zeros(len(state), bool)
+    left, longest = np.flatnonzero(regular), _FARTHEST * size
+    for _ in range(_STEPS):
+        if not len(left):
+            break
+        image, _ = strobed.take(left).advance(state[left])
+        residual = (image - state[left])[:, :, None]
+        step = product(by_residual[left], residual)[:, :, 0]
+        state[left] += step
+        length = np.abs(step).max(axis=1)
+        shrinking = length <= longest[left]
+        longest[left] = _FASTER * length
+        last = shrinking & (length <= _LAST * size[left])
+        found[left[last]] = True
+        left = left[shrinking & ~last]
+    return np.flatnonzero(found)

@@ -1,0 +1,64 @@
+"""Whether a response that did not settle is the same from next to the same start.
+
+One look, however its mean scatters, does not show that a response dwells in one state for longer
+than the look, nor that the start decides by a hair between several. Others begin a thousandth of a
+gap away, and last until the beam has forgotten that: chaos takes them along other paths. Where they
+differ from the first by more than their errors, the largest difference, of either site, is the
+error of its mean: their responses may be each other's mirror images.
+"""
+
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.response.response import APERIODIC, Response
+from models.beam.response.settling import MEMORIES, SEGMENT, look
+from models.beam.structure.modal import Array
+
+_SHORTEST = 16  # segments of a further look
+_AWAY = (-1e-3, 1e-3, 2e-3)  # where they begin, in the first mode and in initial gaps
+
+
+def add_neighbour_error(
+    propagator: ModuleType, system: Any, begin: Array, gaps: Array, out: Response
+) -> None:
+    """Look at aperiodic responses again, from starts close to the first.
+
+    Parameters
+    ----------
+    propagator : module
+        `models.beam.lanes` or `models.beam.exact`.
+    system
+        What the propagator prepared.
+    begin : ndarray, shape (n, k)
+        Where `models.beam.response.settling.settle` began; not changed.
+    gaps : ndarray, shape (n, 2)
+        In initial gaps.
+    out : Response
+        Updated in place: the error of aperiodic responses.
+    """
+    rattles = ~system.is_random & (out.regime == APERIODIC) & (out.work > 0).any(axis=1)
+    rows = np.flatnonzero(rattles)
+    if not len(rows):
+        return
+    again = np.repeat(rows, len(_AWAY))
+    state = begin[again]
+    state[:, 0] += np.tile(_AWAY, len(rows))
+    found = Response.settling(len(again))
+    segments = np.repeat(_segments(system.memory[rows]), len(_AWAY))
+    for some in np.unique(segments):
+        alike = np.flatnonzero(segments == some)
+        look(propagator, system.take(again), state, gaps[again], alike, found, some, some)
+    shape = (len(rows), len(_AWAY), 2)
+    apart = np.abs(found.work.reshape(shape) - out.work[rows, None])
+    within = np.hypot(found.error.reshape(shape), out.error[rows, None])
+    beyond = np.where(apart > within, apart, 0.0).max(axis=(1, 2))[:, None]
+    out.error[rows] = np.maximum(out.error[rows], beyond)
+
+
+def _segments(memory: Array) -> NDArray[np.int64]:
+    """Return of how many segments further looks are, after which a beam has forgotten its start."""
+    looks = np.maximum(1.0, MEMORIES * memory / (_SHORTEST * SEGMENT))
+    return _SHORTEST * 2 ** np.ceil(np.log2(looks)).astype(np.int64)

@@ -1,0 +1,211 @@
+"""The settled response at constant gaps: which regime it is, and its work-rate.
+
+The tip is looked at once per forcing period. Where its strobe points seem to approach an orbit of
+k periods, Newton's method on the map of k periods looks for it; if it is there, near and stable,
+the response is that orbit and its work-rate is exact. A response that has not come near a stable
+orbit is aperiodic, and its work-rate is a time mean with the error of batch means. It is looked at
+for `SHORTEST` segments, and twice as long again and again where the mean is still uncertain, the
+start not forgotten yet, or a beam that could do without contact may still come to that. Under a
+random load it never settles, see `models.beam.response.averages`.
+"""
+
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.response.approached_orbits import Approached, approached
+from models.beam.response.averages import time_mean
+from models.beam.response.response import (
+    APERIODIC,
+    ASYMMETRIC,
+    NO_IMPACT,
+    PERIODIC,
+    SYMMETRIC,
+    Response,
+)
+from models.beam.structure.modal import Array
+from models.numerics.batch_means import mean_and_bound
+from models.numerics.jit import kernel
+
+SEGMENT = 32  # periods between two looks; also the length of a batch
+LONGEST_PERIOD = 16
+SHORTEST, LONGEST = 32, 512  # segments of a look
+MOST_STEPS = 2**24  # of a look
+RANDOM_ACCURACY = 0.05  # relative standard error of a mean work-rate under a random load
+NINE_IN_TEN = 1.645  # standard errors within which nine in ten lie
+ACCURACY = NINE_IN_TEN * RANDOM_ACCURACY  # error of a mean for which a look goes on
+TURNS = 2  # of the first mode, in which a beam that does not touch shows that it no longer will
+MEMORIES = 5  # times what the beam remembers: in so long it forgets its start
+_NEAR = 0.05  # k times the distance of strobe points k periods apart, relative to the response
+_SHRINKING = 0.9  # factor of that distance from one look to the next
+_NEARER = 0.5  # that distance over the one at which an orbit was looked for in vain
+_SYMMETRIC = 1e-3  # difference of the sites' work, relative to their sum
+
+
+def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Response:
+    """Run n beams until they have settled.
+
+    Parameters
+    ----------
+    propagator : module
+        `models.beam.lanes` or `models.beam.exact`.
+    system
+        What the propagator prepared.
+    state : ndarray, shape (n, k)
+        Updated in place: the state at the end.
+    gaps : ndarray, shape (n, 2)
+        In initial gaps.
+
+    Returns
+    -------
+    Response
+        NaN for a beam that no propagator can follow, or whose motion has neither come near an orbit
+        nor forgotten its start within the longest look.
+    """
+    out = Response.settling(len(state))
+    never_touches = system.reach < gaps.min(axis=1)
+    random = np.flatnonzero(system.is_random)
+    if len(random):
+        _settle_random(propagator, system, state, gaps, never_touches, random, out)
+    longest = min(LONGEST, max(SHORTEST, MOST_STEPS // (SEGMENT * system.steps)))
+    look(propagator, system, state, gaps, np.flatnonzero(~system.is_random), out, longest)
+    remembers = ~system.is_random & (MEMORIES * system.memory > longest * SEGMENT)
+    out.forget(np.flatnonzero(remembers & (out.regime == APERIODIC)))
+    out.forget(np.flatnonzero(np.isnan(out.work).any(axis=1)))
+    return out
+
+
+def look(
+    propagator: ModuleType,
+    system: Any,
+    state: Array,
+    gaps: Array,
+    rows: NDArray[np.intp],
+    out: Response,
+    longest: int,
+    shortest: int = SHORTEST,
+) -> None:
+    """Look at some of n beams until they are silent, on an orbit, or known well enough on average.
+
+    Parameters
+    ----------
+    propagator, system, state, gaps
+        As in `settle`.
+    rows : ndarray of int
+    out : Response
+        Updated in place.
+    longest, shortest : int
+        Segments.
+    """
+    n = len(state)
+    never_touches = system.reach < gaps.min(axis=1)
+    batches = np.zeros((n, longest, 2))
+    quiet = np.zeros(n)
+    distance = np.full((n, LONGEST_PERIOD), np.inf)
+    lag = np.arange(1, LONGEST_PERIOD + 1)
+    tried = np.tile(_NEAR / _NEARER / lag, (n, 1))
+    left, segment, total = rows, 0, shortest
+    while len(left):
+        part, now, here = system.take(left), state[left], gaps[left].copy()
+        record = propagator.advance(part, now, here, np.zeros_like(here), SEGMENT)
+        state[left] = now
+        batches[left, segment] = record.work.mean(axis=1)
+        if segment >= shortest // 4:
+            out.peak[left] = np.maximum(out.peak[left], record.peak)
+        size = np.abs(record.strobe).max(axis=(1, 2))
+        before, distance[left] = distance[left], _distances(record.strobe, size)
+        quiet[left] = np.where((record.work == 0).all(axis=(1, 2)), quiet[left] + SEGMENT, 0)
+        silent = never_touches[left] & (quiet[left] >= np.maximum(SEGMENT, TURNS * part.turn))
+        _note_silence(out, left[silent])
+        guess = np.zeros(len(left), int)
+        if (segment + 1) % (1 + segment // 4) == 0:  # late ones wait for company
+            guess = np.where(silent, 0, _guess(before, distance[left], tried[left]))
+        for k in np.unique(guess[guess > 0]):
+            some = left[guess == k]
+            tried[some, k - 1] = distance[some, k - 1]
+            orbit = approached(
+                propagator, system.take(some), state[some], gaps[some], size[guess == k], int(k)
+            )
+            note_orbit(out, some, orbit, state)
+        left = left[out.period[left] == 0]
+        segment += 1
+        if segment == total:
+            out.work[left], out.error[left] = mean_and_bound(batches[left, total // 4 : total])
+            remembers = MEMORIES * system.memory[left] > total * SEGMENT
+            enough = ACCURACY * out.work[left].max(axis=1, keepdims=True)
+            uncertain = (out.error[left] > enough).any(axis=1)
+            unsettled = remembers | uncertain | never_touches[left]
+            if 2 * total > longest:
+                break
+            left, total = left[unsettled], 2 * total
+
+
+def _settle_random(
+    propagator: ModuleType,
+    system: Any,
+    state: Array,
+    gaps: Array,
+    never_touches: NDArray[np.bool_],
+    rows: NDArray[np.intp],
+    out: Response,
+) -> None:
+    """Average over a random load: nothing repeats, so only silence can be told from the rest."""
+    now = state[rows]
+    mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, 0)
+    state[rows] = now
+    out.work[rows], out.peak[rows] = mean.work, mean.peak
+    out.error[rows] = NINE_IN_TEN * mean.error
+    silent = rows[never_touches[rows] & (mean.work == 0).all(axis=1)]
+    out.regime[silent], out.period[silent] = NO_IMPACT, 1
+
+
+@kernel
+def _distances(strobe, size):
+    """Return how far strobe points k periods apart lie from each other, over the response's size.
+
+    For each k, the largest of the last `LONGEST_PERIOD` distances.
+    """
+    n, periods, _ = strobe.shape
+    distance = np.zeros((n, LONGEST_PERIOD))
+    for row in range(n):
+        for at in range(periods - LONGEST_PERIOD, periods):
+            x, v = strobe[row, at]
+            for k in range(1, LONGEST_PERIOD + 1):
+                apart = max(abs(x - strobe[row, at - k, 0]), abs(v - strobe[row, at - k, 1]))
+                distance[row, k - 1] = max(distance[row, k - 1], apart)
+        distance[row] /= size[row]
+    return distance
+
+
+def _guess(before: Array, now: Array, tried: Array) -> NDArray[np.int64]:
+    """Return the shortest period an orbit may have that a response comes near, 0 if none."""
+    shrinking = now < _SHRINKING * before
+    first = shrinking.argmax(axis=1)
+    rows = np.arange(len(now))
+    near = shrinking[rows, first] & (now[rows, first] < _NEARER * tried[rows, first])
+    return np.where(near, first + 1, 0)
+
+
+def _note_silence(out: Response, rows: NDArray[np.intp]) -> None:
+    out.work[rows] = out.error[rows] = 0
+    out.regime[rows] = NO_IMPACT
+    out.period[rows] = 1
+    out.peak[rows] = 0
+    out.multiplier[rows] = np.nan
+
+
+def note_orbit(out: Response, rows: Any, orbit: Approached, state: Array) -> None:
+    """Note the orbits that some beams approach, and put the beams onto them."""
+    good = orbit.found
+    rows, work = rows[good], orbit.work[good]
+    state[rows] = orbit.state[good]
+    out.work[rows], out.error[rows] = work, 0.0
+    out.peak[rows] = orbit.peak[good]
+    out.period[rows] = orbit.period[good]
+    out.multiplier[rows] = orbit.multiplier[good]
+    symmetric = np.abs(work[:, 0] - work[:, 1]) <= _SYMMETRIC * work.sum(axis=1)
+    single = np.where(symmetric, SYMMETRIC, ASYMMETRIC)
+    out.regime[rows] = np.where(orbit.period[good] == 1, single, PERIODIC)
+    _note_silence(out, rows[(work == 0).all(axis=1)])

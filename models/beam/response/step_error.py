@@ -1,0 +1,49 @@
+"""What the fast propagator's steps do to a periodic response: the orbit again, in half steps."""
+
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from models.beam.response.approached_orbits import approached
+from models.beam.response.response import NO_IMPACT, Response
+from models.beam.response.settling import look, note_orbit
+from models.beam.structure.modal import Array
+
+_SEGMENTS = 16  # of the look at what leaves its orbit
+
+
+def add_step_error(
+    propagator: ModuleType, system: Any, state: Array, gaps: Array, out: Response
+) -> None:
+    """Put orbits in the place of those of twice the step; what that changes is their error.
+
+    Parameters
+    ----------
+    propagator : module
+        `models.beam.lanes`, or `models.beam.exact`, which knows no steps.
+    system
+        What the propagator prepared.
+    state : ndarray, shape (n, k)
+        On the orbits, where there are some; not changed.
+    gaps : ndarray, shape (n, 2)
+        In initial gaps.
+    out : Response
+        Updated in place. Where half the step makes an orbit unstable, the response is what becomes
+        of it.
+    """
+    rows = np.flatnonzero((out.period > 0) & (out.regime != NO_IMPACT))
+    for part, fine in propagator.finer(system.take(rows)):
+        some = rows[part]
+        coarse = out.take(some)
+        now = propagator.refine(system.take(some), state[some], fine)
+        found = Response.settling(len(some))
+        size = (gaps[some] + coarse.peak).max(axis=1)
+        for k in np.unique(coarse.period):
+            at = np.flatnonzero(coarse.period == k)
+            orbit = approached(propagator, fine.take(at), now[at], gaps[some[at]], size[at], int(k))
+            note_orbit(found, at, orbit, now)
+        left = np.flatnonzero(found.period == 0)
+        look(propagator, fine, now, gaps[some], left, found, _SEGMENTS, _SEGMENTS)
+        found.error[:] = np.maximum(found.error, np.abs(found.work - coarse.work))
+        out.put(some, found)

@@ -1,0 +1,11 @@
+"""The rod as one oscillator per mode, and the load on it.
+
+Reading order; a module imports only those above it:
+
+    finite_element     frequencies and tip values of the modes
+    random_lines       the random force as a sum of lines
+    random_response    the steady response to it
+    random_load        its lines for a given beam, and how long they last
+    modal              rows of parameters as beams in modal form
+    record             what a propagator reports about them
+"""

@@ -1,0 +1,229 @@
+"""Modes of sixteen moles abreast: their constants, their guards, and what an event changes.
+
+A guard is positive while its part of the mode lasts: the distance to the stop; the slip velocity of
+an interface along its direction, or the friction limit less the force that sticking needs.
+"""
+
+import math
+
+from models.mole.lanes import block as at
+from models.mole.lanes.block import BAR, LANES, MOLE, TOUCH
+from models.mole.parameters import PHYSICAL
+from models.mole.theory.equations import reach
+from models.mole.theory.friction import bar_hold, decide, mole_hold, response
+from models.mole.theory.system import Mole
+from models.numerics.fma import fma
+from models.numerics.jit import lean
+
+_LONGEST = 0.6  # step times the fastest rate
+
+
+@lean
+def mole_of(table, row):
+    """Return the mole of one row of a table, shape (n, 20)."""
+    return Mole(
+        table[row, 0],
+        table[row, 1],
+        table[row, 2],
+        table[row, 3],
+        table[row, 4],
+        table[row, 5],
+        table[row, 6],
+        table[row, 7],
+        table[row, 8],
+        table[row, 9],
+        table[row, 10],
+        table[row, 11],
+        table[row, 12],
+        table[row, 13],
+        table[row, 14],
+        table[row, 15],
+        table[row, 16],
+        table[row, 17],
+        table[row, 18],
+        table[row, 19],
+    )
+
+
+@lean
+def force_on_bar(q, touching, u, v, i):
+    """Return F [N], the force on the bar without friction, its inductance [H] and L' [H/m]."""
+    added = q.bar_inductance * math.exp(-q.sharpness * u * u)
+    rise = -2 * q.sharpness * u * added
+    force = 0.5 * i * i * rise - q.damping * v - q.spring_stiffness * (u - q.spring_rest)
+    if touching:
+        force -= q.contact_stiffness * (u - q.stop_gap)
+    return force, added, rise
+
+
+@lean
+def enter(q, lane, m, y):
+    """Set what depends on the mode of a lane: constants, longest step, guards at the start."""
+    bar, mole = m[at.BAR_MODE * LANES + lane], m[at.MOLE_MODE * LANES + lane]
+    touching = m[at.TOUCHING * LANES + lane] == 1
+    mode = response(q, bar, mole)
+    m[at.A * LANES + lane], m[at.B * LANES + lane] = mode.a, mode.b
+    m[at.D * LANES + lane], m[at.E * LANES + lane] = mode.d, mode.e
+    stop = q.contact_stiffness if touching else 0.0
+    stiffness = q.spring_stiffness + stop
+    m[at.STIFFNESS * LANES + lane], m[at.CONTACT * LANES + lane] = stiffness, stop
+    m[at.FORCE * LANES + lane] = q.spring_stiffness * q.spring_rest + stop * q.stop_gap
+    fastest = max(q.supply_speed, math.sqrt(stiffness / q.bar_mass))
+    m[at.LONGEST * LANES + lane] = _LONGEST / fastest
+
+    m[at.OPEN * LANES + lane] = -1.0 if touching else 1.0
+    m[at.BAR_SLIP * LANES + lane] = bar
+    m[at.MOLE_SLIP * LANES + lane] = mole
+    hold = bar_hold(q, mole)
+    m[at.BAR_HOLD * LANES + lane] = 1.0 if bar == 0 else 0.0
+    m[at.BAR_OFFSET * LANES + lane] = hold.offset if bar == 0 else 0.0
+    m[at.BAR_LIMIT * LANES + lane] = hold.limit if bar == 0 else 0.0
+    # Where the bar sticks to a mole that sticks, nothing pulls at the mole.
+    hold = mole_hold(q, bar)
+    pulled = mole == 0 and bar != 0
+    m[at.MOLE_HOLD * LANES + lane] = 1.0 if pulled else 0.0
+    m[at.MOLE_OFFSET * LANES + lane] = -hold.offset if pulled else 0.0
+    limit = 1.0 if bar == 0 else hold.limit
+    m[at.MOLE_LIMIT * LANES + lane] = limit if mole == 0 else 0.0
+
+    u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
+    i, p = y[at.CURRENT * LANES + lane], y[at.P * LANES + lane]
+    force, added, rise = force_on_bar(q, touching, u, v, i)
+    y[at.ADDED * LANES + lane] = added
+    bend = -2 * q.sharpness * (added + u * rise)
+    current = (p - (q.resistance + rise * v) * i) / (q.coil_inductance + added)
+    rate_v, rate_x = mode.a * force + mode.b, mode.d * force + mode.e
+    change = i * current * rise + (0.5 * i * i * bend - stiffness) * v - q.damping * rate_v
+    m[at.REACH * LANES + lane] = reach(u, v, m[at.WIDTH * LANES + lane])
+    open_ = m[at.OPEN * LANES + lane]
+    m[(at.START + TOUCH) * LANES + lane] = open_ * (q.stop_gap - u)
+    m[(at.START_RATE + TOUCH) * LANES + lane] = -open_ * v
+    _start(lane, m, 0, v, rate_v, force, change)
+    _start(lane, m, 1, x, rate_x, force, change)
+
+
+@lean
+def _start(lane, m, which, speed, rate, force, change):
+    slip = m[(at.BAR_SLIP + which) * LANES + lane]
+    hold = m[(at.BAR_HOLD + which) * LANES + lane]
+    load = force + m[(at.BAR_OFFSET + which) * LANES + lane]
+    spare = m[(at.BAR_LIMIT + which) * LANES + lane] - hold * abs(load)
+    side = hold if load > 0 else -hold
+    m[(at.START + BAR + which) * LANES + lane] = slip * speed + spare
+    m[(at.START_RATE + BAR + which) * LANES + lane] = slip * rate - side * change
+
+
+@lean
+def judge(m, y, k):
+    """Set guards and, times the step, their rates at the end of a step."""
+    for lane in range(LANES):
+        u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
+        i, added = y[at.CURRENT * LANES + lane], y[at.ADDED * LANES + lane]
+        kv, kx = k[at.V * LANES + lane], k[at.X * LANES + lane]
+        slope = m[at.SLOPE * LANES + lane]
+        rise = slope * u * added
+        bend = slope * added * fma(slope * u, u, 1.0)
+        stiffness, damping = m[at.STIFFNESS * LANES + lane], m[at.DAMPING * LANES + lane]
+        force = fma(0.5 * i * i, rise, m[at.FORCE * LANES + lane])
+        force = fma(-damping, v, fma(-stiffness, u, force))
+        change = fma(i * k[at.CURRENT * LANES + lane], rise, -damping * kv)
+        change = fma(fma(0.5 * i * i, bend, -stiffness) * v, m[at.STEP * LANES + lane], change)
+        m[at.REACH * LANES + lane] = reach(u, v, m[at.WIDTH * LANES + lane])
+        open_ = m[at.OPEN * LANES + lane]
+        m[(at.END + TOUCH) * LANES + lane] = open_ * (m[at.GAP * LANES + lane] - u)
+        m[(at.END_RATE + TOUCH) * LANES + lane] = -open_ * v * m[at.STEP * LANES + lane]
+        slip, hold = m[at.BAR_SLIP * LANES + lane], m[at.BAR_HOLD * LANES + lane]
+        load = force + m[at.BAR_OFFSET * LANES + lane]
+        side = hold if load > 0 else -hold
+        spare = fma(-side, load, m[at.BAR_LIMIT * LANES + lane])
+        m[(at.END + BAR) * LANES + lane] = fma(slip, v, spare)
+        m[(at.END_RATE + BAR) * LANES + lane] = fma(slip, kv, -side * change)
+        slip, hold = m[at.MOLE_SLIP * LANES + lane], m[at.MOLE_HOLD * LANES + lane]
+        load = force + m[at.MOLE_OFFSET * LANES + lane]
+        side = hold if load > 0 else -hold
+        spare = fma(-side, load, m[at.MOLE_LIMIT * LANES + lane])
+        m[(at.END + MOLE) * LANES + lane] = fma(slip, x, spare)
+        m[(at.END_RATE + MOLE) * LANES + lane] = fma(slip, kx, -side * change)
+
+
+@lean
+def happen(which, q, lane, m, y, columns):
+    """Change the mode of a lane whose guard `which` has come to zero."""
+    bar, mole = m[at.BAR_MODE * LANES + lane], m[at.MOLE_MODE * LANES + lane]
+    touching = m[at.TOUCHING * LANES + lane] == 1
+    u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
+    i = y[at.CURRENT * LANES + lane]
+    force, _, _ = force_on_bar(q, touching, u, v, i)
+    if which == TOUCH:
+        m[at.TOUCHING * LANES + lane] = 0 if touching else 1
+        m[at.CONTACTS * LANES + lane] += 0 if touching else 1
+        y[at.U * LANES + lane] = q.stop_gap
+    elif which == BAR and bar == 0:
+        # The force has just reached the limit: which way it slips is not to be decided anew.
+        m[at.BAR_MODE * LANES + lane] = 1 if force + bar_hold(q, mole).offset > 0 else -1
+    elif which == MOLE and mole == 0:
+        m[at.MOLE_MODE * LANES + lane] = 1 if mole_hold(q, bar).offset - force > 0 else -1
+    else:
+        if which == BAR:
+            v = 0.0
+            y[at.V * LANES + lane] = v
+            force, _, _ = force_on_bar(q, touching, u, v, i)
+            m[at.LOW * LANES + lane] = min(m[at.LOW * LANES + lane], u)
+            m[at.HIGH * LANES + lane] = max(m[at.HIGH * LANES + lane], u)
+        else:
+            x = 0.0
+            y[at.X * LANES + lane] = x
+        new_bar, new_mole = decide(q, v, x, force)
+        m[at.BAR_MODE * LANES + lane] = new_bar
+        m[at.MOLE_MODE * LANES + lane] = new_mole
+        before, after = response(q, bar, mole), response(q, new_bar, new_mole)
+        _saltate(lane, y, which, columns, force, before, after)
+    enter(q, lane, m, y)
+    # What has just begun to slip, or to move away, does so from zero.
+    begun = which == TOUCH or m[(at.BAR_MODE + which - BAR) * LANES + lane] != 0
+    if begun:
+        m[(at.START + which) * LANES + lane] = 0.0
+
+
+@lean
+def _saltate(lane, y, which, columns, force, before, after):
+    """Take tangents through the end of a slip: they meet it at different times."""
+    kick_v = (after.a - before.a) * force + after.b - before.b
+    kick_x = (after.d - before.d) * force + after.e - before.e
+    along = at.V if which == BAR else at.X
+    rate = before.a * force + before.b if which == BAR else before.d * force + before.e
+    for column in range(columns):
+        z = (at.PLAIN + at.MEASURED * column) * LANES + lane
+        late = -y[z + along * LANES] / rate
+        y[z + at.V * LANES] -= kick_v * late
+        y[z + at.X * LANES] -= kick_x * late
+
+
+@lean
+def turn_relay(q, lane, m, y):
+    """Begin the next half of a control period."""
+    half = m[at.HALF * LANES + lane] + 1
+    m[at.HALF * LANES + lane] = half
+    set_supply(q, lane, m, y)
+    if q.formulation == PHYSICAL:
+        jump = q.voltage * y[at.SINE * LANES + lane]
+        y[at.P * LANES + lane] += jump if half % 2 == 0 else -jump
+    stop = m[(at.START + TOUCH) * LANES + lane]
+    bar, mole = m[(at.START + BAR) * LANES + lane], m[(at.START + MOLE) * LANES + lane]
+    enter(q, lane, m, y)
+    # What begins to move just now does so from zero.
+    m[(at.START + TOUCH) * LANES + lane] *= 0.0 if stop == 0 else 1.0
+    m[(at.START + BAR) * LANES + lane] *= 0.0 if bar == 0 else 1.0
+    m[(at.START + MOLE) * LANES + lane] *= 0.0 if mole == 0 else 1.0
+
+
+@lean
+def set_supply(q, lane, m, y):
+    """Set clock and supply at the beginning of half a control period."""
+    half = m[at.HALF * LANES + lane]
+    angle = q.supply_phase + q.supply_speed * (half * 0.5 * q.control_period)
+    y[at.SINE * LANES + lane] = math.sin(angle)
+    y[at.COSINE * LANES + lane] = math.cos(angle)
+    on = half % 2 == 0
+    m[at.DRIVE * LANES + lane] = q.supply_speed * q.voltage if on else 0.0
+    m[at.TIME * LANES + lane] = 0.0

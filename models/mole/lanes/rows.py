@@ -1,0 +1,245 @@
+"""Rows of a study in the lanes: taken in, looked at once in a control period, given back."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from models.mole.lanes import block as at
+from models.mole.lanes.block import INTEGRALS, LANES, MEASURED, PLAIN
+from models.mole.lanes.modes import enter, force_on_bar, mole_of, set_supply
+from models.mole.lanes.steps import next_step
+from models.mole.parameters import PHYSICAL
+from models.mole.theory.friction import decide
+from models.mole.theory.system import Mole
+from models.numerics.jit import kernel, lean
+
+# What is kept of a row: the state, which tells all that is to come, and what a run has seen.
+(
+    U,
+    V,
+    X,
+    CURRENT,
+    P,
+    BAR_MODE,
+    MOLE_MODE,
+    TOUCHING,
+    HALF,
+    PROGRESS,
+    IMPACT,
+    ELECTRIC,
+    IMPULSE,
+    CONTACTS,
+    LOW,
+    HIGH,
+    TRIALS,
+    OUTCOME,
+    PERIOD,
+    GROWTH,
+) = range(20)
+RECORD = 20
+
+GOING, REPEATING, REACHED_END, OUT_OF_BUDGET, STUCK = range(5)
+"""Outcomes of a run."""
+
+SCALES = (1e-2, 1.0, 0.1)
+REPEAT = 1e-6  # of the scales of u, v, x, and of i and p by resistance and supply
+_ALIKE = 1e-4  # a divisor of the period at which the motion repeats so well is the period
+
+
+class Task(NamedTuple):
+    """Rows to be propagated.
+
+    Attributes
+    ----------
+    table : ndarray, shape (n, 20)
+        `Mole`s.
+    record : ndarray, shape (n, RECORD)
+        Where they stand, updated in place; integrals, contacts, extremes and growth are those of
+        this run.
+    tangents : ndarray, shape (n, 5 columns)
+        Updated in place, and brought back to size 1; what sticks has no freedom.
+    limit : ndarray of int, shape (n,)
+        Control periods since the start at which to end.
+    common : ndarray of int, shape (n,)
+        Control periods after which the motion may repeat, which ends the run; 0: never.
+    tolerance : float
+        Of a step, relative to the scales.
+    budget : int
+        Trial steps of a row in all its runs.
+    """
+
+    table: Any
+    record: Any
+    tangents: Any
+    limit: Any
+    common: Any
+    tolerance: float
+    budget: int
+
+
+def table_of(moles: Mole, n: int) -> Any:
+    """Return n moles as a table, shape (n, 20)."""
+    return np.stack([np.broadcast_to(np.asarray(field, float), n) for field in moles], axis=1)
+
+
+@kernel
+def begin(table, displacement, velocity, record):
+    """Set the records of moles at rest, bars thrown, relays just closed."""
+    record[:] = 0.0
+    for row in range(len(record)):
+        q, r = mole_of(table, row), record[row]
+        u, v = displacement[row], velocity[row]
+        touching = u > q.stop_gap
+        force, _, _ = force_on_bar(q, touching, u, v, 0.0)
+        r[U], r[V] = u, v
+        r[P] = q.voltage * np.sin(q.supply_phase) if q.formulation == PHYSICAL else 0.0
+        r[BAR_MODE], r[MOLE_MODE] = decide(q, v, 0.0, force)
+        r[TOUCHING] = touching
+
+
+@lean
+def load(lane, row, task, m, y, share, columns):
+    """Give a lane a row to work on."""
+    q, r = mole_of(task.table, row), task.record[row]
+    m[at.ROW * LANES + lane] = row
+    m[at.BAR_MODE * LANES + lane] = int(r[BAR_MODE])
+    m[at.MOLE_MODE * LANES + lane] = int(r[MOLE_MODE])
+    m[at.TOUCHING * LANES + lane] = int(r[TOUCHING])
+    m[at.HALF * LANES + lane] = int(r[HALF])
+    m[at.TARGET * LANES + lane] = -1
+    m[at.CONTACTS * LANES + lane] = m[at.ENTRIES * LANES + lane] = 0
+    for j in range(MEASURED):
+        y[j * LANES + lane] = r[U + j]
+    for j in range(columns * MEASURED):
+        y[(PLAIN + j) * LANES + lane] = task.tangents[row, j]
+    for column in range(columns):
+        z = PLAIN + MEASURED * column
+        y[(z + at.V) * LANES + lane] *= 1.0 if r[BAR_MODE] != 0 else 0.0
+        y[(z + at.X) * LANES + lane] *= 1.0 if r[MOLE_MODE] != 0 else 0.0
+    m[at.GROWTH * LANES + lane] = 0.0
+    for j in range(INTEGRALS):
+        m[(at.SUM + j) * LANES + lane] = 0.0
+    m[at.DAMPING * LANES + lane] = q.damping
+    m[at.SLOPE * LANES + lane] = -2 * q.sharpness
+    m[at.ADDED_MOST * LANES + lane] = q.bar_inductance
+    m[at.WIDTH * LANES + lane] = 1 / math.sqrt(2 * q.sharpness)
+    m[at.COIL * LANES + lane] = q.coil_inductance
+    m[at.RESISTANCE * LANES + lane] = q.resistance
+    m[at.ELASTANCE * LANES + lane] = q.elastance
+    m[at.SPEED * LANES + lane] = q.supply_speed
+    m[at.GAP * LANES + lane] = q.stop_gap
+    share[at.U * LANES + lane] = 1 / (task.tolerance * SCALES[0])
+    share[at.V * LANES + lane] = 1 / (task.tolerance * SCALES[1])
+    share[at.X * LANES + lane] = 1 / (task.tolerance * SCALES[2])
+    share[at.CURRENT * LANES + lane] = 10 * q.resistance / (task.tolerance * q.voltage)
+    share[at.P * LANES + lane] = 1 / (task.tolerance * q.voltage)
+    m[at.HALF_PERIOD * LANES + lane] = 0.5 * q.control_period
+    m[at.LOW * LANES + lane] = m[at.HIGH * LANES + lane] = r[U]
+    m[at.TRIALS * LANES + lane] = r[TRIALS]
+    set_supply(q, lane, m, y)
+    enter(q, lane, m, y)
+    m[at.WISH * LANES + lane] = m[at.LONGEST * LANES + lane]
+    next_step(lane, m, np.inf)
+
+
+@lean
+def unload(lane, task, m, y, columns, outcome):
+    """Note how a row stands."""
+    row = int(m[at.ROW * LANES + lane])
+    r = task.record[row]
+    for j in range(MEASURED):
+        r[U + j] = y[j * LANES + lane]
+    for j in range(columns * MEASURED):
+        task.tangents[row, j] = y[(PLAIN + j) * LANES + lane]
+    for j in range(INTEGRALS):
+        r[PROGRESS + j] = m[(at.SUM + j) * LANES + lane]
+    r[BAR_MODE], r[MOLE_MODE] = (
+        m[at.BAR_MODE * LANES + lane],
+        m[at.MOLE_MODE * LANES + lane],
+    )
+    r[TOUCHING], r[HALF] = m[at.TOUCHING * LANES + lane], m[at.HALF * LANES + lane]
+    r[CONTACTS] = m[at.CONTACTS * LANES + lane]
+    r[LOW] = min(m[at.LOW * LANES + lane], y[at.U * LANES + lane])
+    r[HIGH] = max(m[at.HIGH * LANES + lane], y[at.U * LANES + lane])
+    r[TRIALS] = m[at.TRIALS * LANES + lane]
+    r[GROWTH] = m[at.GROWTH * LANES + lane]
+    r[OUTCOME] = outcome
+
+
+@lean
+def idle(lane, m):
+    """Let a lane stand still."""
+    m[at.ROW * LANES + lane] = -1
+    m[at.STEP * LANES + lane] = 0.0
+    m[at.HALF_PERIOD * LANES + lane] = np.inf
+
+
+@lean
+def _repetition(lane, q, m, y, ring):
+    """Return after how many common periods the motion repeats, 0 if it does not.
+
+    Current and voltage may return with the other sign: only their squares act on the bar.
+    """
+    here = (
+        y[at.U * LANES + lane],
+        y[at.V * LANES + lane],
+        y[at.X * LANES + lane],
+        abs(y[at.CURRENT * LANES + lane]),
+        abs(y[at.P * LANES + lane]),
+    )
+    entries = int(m[at.ENTRIES * LANES + lane])
+    length = len(ring)
+    found = 0
+    for back in range(1, min(entries, length) + 1):
+        if found == 0 and _distance(q, ring[(entries - back) % length], here) < REPEAT:
+            found = back
+    for back in range(1, found):
+        # Approached from alternating sides, an orbit looks twice its length.
+        if found % back == 0 and _distance(q, ring[(entries - back) % length], here) < _ALIKE:
+            found = back
+            break
+    for j in range(MEASURED):
+        ring[entries % length, j] = here[j]
+    m[at.ENTRIES * LANES + lane] = entries + 1
+    return found
+
+
+@lean
+def _distance(q, old, new):
+    return max(
+        abs(new[0] - old[0]) / SCALES[0],
+        abs(new[1] - old[1]) / SCALES[1],
+        abs(new[2] - old[2]) / SCALES[2],
+        abs(new[3] - old[3]) * q.resistance / q.voltage,
+        abs(new[4] - old[4]) / q.voltage,
+    )
+
+
+@lean
+def _bring_back(lane, m, y, columns):
+    """Bring tangents back to size 1, all by one number."""
+    size = 0.0
+    for j in range(columns * MEASURED):
+        size = max(size, abs(y[(PLAIN + j) * LANES + lane]))
+    if size > 0:
+        m[at.GROWTH * LANES + lane] += math.log(size)
+        for j in range(columns * MEASURED):
+            y[(PLAIN + j) * LANES + lane] /= size
+
+
+@lean
+def strobe(lane, task, m, y, ring, columns):
+    """Look at a lane at the beginning of half a control period; return its outcome."""
+    row, half = int(m[at.ROW * LANES + lane]), int(m[at.HALF * LANES + lane])
+    if half % 2 == 1:
+        return GOING
+    if columns > 0:
+        _bring_back(lane, m, y, columns)
+    periods, common = half // 2, task.common[row]
+    if common > 0 and periods % common == 0:
+        found = _repetition(lane, mole_of(task.table, row), m, y, ring[lane])
+        if found > 0:
+            task.record[row, PERIOD] = found
+            return REPEATING
+    return REACHED_END if periods >= task.limit[row] else GOING

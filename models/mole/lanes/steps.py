@@ -1,0 +1,154 @@
+"""What follows a trial step of sixteen moles abreast: all that is decided lane by lane."""
+
+import math
+
+import numpy as np
+
+from models.mole.lanes import block as at
+from models.mole.lanes.block import GUARDS, INTEGRALS, LANES
+from models.mole.lanes.modes import happen, mole_of, turn_relay
+from models.numerics.events import crossing, dip
+from models.numerics.jit import lean
+
+_SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
+_LOCATED = 1e-6  # of the longest step: what is left to an event, made up for to first order
+_LOST = 1e-9  # of the longest step: a guard that opens no wider does not open
+_DONE = 1 - 1e-12  # of half a control period: what is left is rounding
+_GRAZE = 0.05  # of a guard at the ends of a step: so low in between that a step must end there
+_LOW = 0.75  # of a guard: what must fall away in a step for a low point to be worth a look
+
+
+@lean
+def next_step(lane, m, wish):
+    """Choose the next step of a lane: as wished, within bounds, and to the switching if near."""
+    h = min(wish, m[at.LONGEST * LANES + lane], m[at.REACH * LANES + lane])
+    rest = m[at.HALF_PERIOD * LANES + lane] - m[at.TIME * LANES + lane]
+    m[at.STEP * LANES + lane] = rest if rest <= h * 1.000001 else h
+
+
+@lean
+def look(m, error):
+    """Take the steps of all lanes that met nothing; mark the others."""
+    for lane in range(LANES):
+        h, time = m[at.STEP * LANES + lane], m[at.TIME * LANES + lane]
+        crossed = m[at.END * LANES + lane] < 0
+        crossed |= m[(at.END + 1) * LANES + lane] < 0
+        crossed |= m[(at.END + 2) * LANES + lane] < 0
+        for g in range(GUARDS):
+            # A guard that falls and rises again, and would have come near zero had it gone on.
+            start = m[(at.START + g) * LANES + lane]
+            fall = m[(at.START_RATE + g) * LANES + lane] * h
+            crossed |= (fall < -_LOW * start) & (m[(at.END_RATE + g) * LANES + lane] > 0)
+        half = m[at.HALF_PERIOD * LANES + lane]
+        good = (error[lane] <= 1.0) & (m[at.TARGET * LANES + lane] < 0) & (time + h < _DONE * half)
+        taken = good & (not crossed)
+        m[at.LOOK * LANES + lane] = 0.0 if taken else 1.0
+        m[at.TRIALS * LANES + lane] += 1.0
+        step = h if taken else 0.0
+        m[at.TIME * LANES + lane] = time + step
+        # The error of a method of order 8 grows with the eighth power of the step.
+        least = error[lane] if error[lane] > 1e-9 else 1e-9
+        factor = _SAFETY / math.sqrt(math.sqrt(math.sqrt(least)))
+        factor = factor if factor < _GROW else _GROW
+        wish = h * factor if taken else m[at.WISH * LANES + lane]
+        m[at.WISH * LANES + lane] = wish
+        longest = m[at.LONGEST * LANES + lane]
+        wish = wish if wish < longest else longest
+        reach = m[at.REACH * LANES + lane]
+        wish = wish if wish < reach else reach
+        rest = half - (time + step)
+        wish = rest if rest <= wish * 1.000001 else wish
+        m[at.STEP * LANES + lane] = wish if taken else h
+        inverse = 1.0 / h if taken else 0.0
+        for g in range(GUARDS):
+            j, e = (at.START + g) * LANES + lane, (at.END + g) * LANES + lane
+            m[j] = m[e] if taken else m[j]
+            j, e = (at.START_RATE + g) * LANES + lane, (at.END_RATE + g) * LANES + lane
+            m[j] = m[e] * inverse if taken else m[j]
+
+
+@lean
+def _add_rest(lane, rest, m, y):
+    """Count in the short time that a located step lacks of its event."""
+    u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
+    i, added = y[at.CURRENT * LANES + lane], y[at.ADDED * LANES + lane]
+    magnetic = 0.5 * i * i * m[at.SLOPE * LANES + lane] * u * added
+    contact = m[at.CONTACT * LANES + lane] * (u - m[at.GAP * LANES + lane])
+    electric = m[at.RESISTANCE * LANES + lane] * i * i + magnetic * v
+    m[at.TIME * LANES + lane] += rest
+    m[(at.SUM + at.PROGRESS) * LANES + lane] += rest * x
+    m[(at.SUM + at.IMPACT) * LANES + lane] += rest * contact * x
+    m[(at.SUM + at.ELECTRIC) * LANES + lane] += rest * electric
+    m[(at.SUM + at.IMPULSE) * LANES + lane] += rest * contact
+
+
+@lean
+def conclude(lane, table, m, y, new, end, error, size, columns):
+    """Deal with a lane whose step was not simply taken; tell if half a control period is over."""
+    h, target = m[at.STEP * LANES + lane], int(m[at.TARGET * LANES + lane])
+    m[at.TARGET * LANES + lane] = -1
+    if not error <= 1.0:
+        factor = _SAFETY * error**-0.125
+        factor = factor if factor > _SHRINK else _SHRINK
+        m[at.WISH * LANES + lane] = m[at.STEP * LANES + lane] = h * factor
+        return False
+    longest = m[at.LONGEST * LANES + lane]
+    # The first guard that became negative, or came near it on the way.
+    which, place = -1, 1.0
+    for g in range(GUARDS):
+        g_0, g_1 = m[(at.START + g) * LANES + lane], m[(at.END + g) * LANES + lane]
+        d_0 = m[(at.START_RATE + g) * LANES + lane] * h
+        d_1 = m[(at.END_RATE + g) * LANES + lane]
+        if g_1 < 0:
+            # One that opens within the step and closes again: not so far.
+            here = crossing(g_0, d_0, g_1, d_1) if g_0 > 0 else 0.25
+            if which < 0 or here < place:
+                which, place = g, here
+        elif d_0 < 0 and d_1 > 0 and g_0 > 0:
+            here, lowest = dip(g_0, d_0, g_1, d_1)
+            near = lowest < _GRAZE * min(g_0, g_1) and 1e-3 < here < 0.999
+            near = near and h > _LOCATED * longest
+            if near and (which < 0 or here < place):
+                which, place = g, here
+    met, rest = -1, 0.0
+    if target >= 0 and (which < 0 or which == target):
+        g_1, d_1 = (
+            m[(at.END + target) * LANES + lane],
+            m[(at.END_RATE + target) * LANES + lane],
+        )
+        rest = -g_1 * h / d_1 if d_1 < 0 else np.inf
+        met = target if abs(rest) <= _LOCATED * longest else -1
+    if met < 0 and which >= 0 and h * place < _LOST * longest:
+        met, rest = which, 0.0
+    if met < 0 and which >= 0:
+        m[at.TARGET * LANES + lane] = which
+        m[at.STEP * LANES + lane] = place * h
+        return False
+
+    for j in range(size):
+        y[j * LANES + lane] = new[j * LANES + lane]
+    for j in range(INTEGRALS):
+        m[(at.SUM + j) * LANES + lane] += m[(at.INTEGRAL + j) * LANES + lane]
+    m[at.TIME * LANES + lane] += h
+    factor = _SAFETY * error**-0.125 if error > 1e-9 else _GROW
+    wish = max(m[at.WISH * LANES + lane], h * min(factor, _GROW))
+    m[at.WISH * LANES + lane] = wish
+    if met >= 0:
+        for j in range(size):
+            y[j * LANES + lane] += rest / h * end[j * LANES + lane]
+        _add_rest(lane, rest, m, y)
+        happen(met, mole_of(table, int(m[at.ROW * LANES + lane])), lane, m, y, columns)
+    else:
+        for g in range(GUARDS):
+            m[(at.START + g) * LANES + lane] = m[(at.END + g) * LANES + lane]
+            rate = m[(at.END_RATE + g) * LANES + lane]
+            m[(at.START_RATE + g) * LANES + lane] = rate / h
+        if target >= 0:
+            # Not quite there: the next step is to end there.
+            m[at.TARGET * LANES + lane] = target
+            wish = min(wish, rest)
+    ended = m[at.TIME * LANES + lane] >= _DONE * m[at.HALF_PERIOD * LANES + lane]
+    if ended:
+        turn_relay(mole_of(table, int(m[at.ROW * LANES + lane])), lane, m, y)
+    next_step(lane, m, wish)
+    return ended

@@ -1,0 +1,1 @@
+"""What reproduces the paper; nothing else needs it. Read `table`: its claims, and the model's."""

@@ -1,0 +1,151 @@
+"""Equations of motion (1), (2), (4), (10), (12), (16), (17) of Ho, Nguyen & Woo 2011, in a mode.
+
+A mode says whether the bar touches the stop, whether the relay is closed, and how either interface
+slips. With p, the source's voltage less the capacitor's, which is that over resistance and coil,
+
+    L i' = p - (R + L'(u) v) i,    p' = V' - i/C,
+
+the circuit needs neither the v' nor the L''(u) of (15).
+"""
+
+import math
+from typing import NamedTuple
+
+from models.mole.theory.friction import Hold, Response, bar_hold, mole_hold, response
+from models.mole.theory.system import Mole
+from models.numerics.jit import inlined, kernel
+
+DISPLACEMENT, VELOCITY, MOLE_VELOCITY, CURRENT, VOLTAGE, MOLE_DISPLACEMENT = range(6)
+"""u [m], v, x [m s-1], i [A], p [V], w [m]: the first part of a state, of which w drives nothing.
+
+The second part holds energies since the start [J]:
+"""
+IMPACT_WORK, ELECTRICAL_WORK, MAGNETIC_WORK, FRICTION_LOSS, VISCOUS_LOSS = range(6, 11)
+"""Work of the contact force on the mole, of the supply but for what coil and capacitor store, and
+of the magnetic force on the bar; heat from dry friction and from viscous damping."""
+IMPULSE = 11
+"""Of the contact force since the start [N s]."""
+SIZE = 12
+
+_FAR = 8.0  # widths of the coil, from where on the bar adds 1e-14 of its inductance and less
+
+
+class Coil(NamedTuple):
+    """Inductance (10) of the coil and its derivative by u.
+
+    Attributes
+    ----------
+    inductance : float
+        L [H]
+    slope : float
+        L' [H m-1]
+    """
+
+    inductance: float
+    slope: float
+
+
+class Mode(NamedTuple):
+    """What stays the same between two events.
+
+    Attributes
+    ----------
+    q : Mole
+    contact : bool
+        Whether the bar touches the stop.
+    relay : bool
+        Whether the supply is connected.
+    bar, mole : int
+        How they slip: 1, -1, or 0 if they stick.
+    response : Response
+    bar_hold, mole_hold : Hold
+        The latter means nothing while the bar sticks: then the mole has no reason to slip.
+    """
+
+    q: Mole
+    contact: bool
+    relay: bool
+    bar: int
+    mole: int
+    response: Response
+    bar_hold: Hold
+    mole_hold: Hold
+
+
+@kernel
+def mode(q, contact, relay, bar, mole):
+    """Return the `Mode` of a mole q."""
+    return Mode(
+        q,
+        contact,
+        relay,
+        bar,
+        mole,
+        response(q, bar, mole),
+        bar_hold(q, mole),
+        mole_hold(q, bar),
+    )
+
+
+@kernel
+def coil(q, u):
+    """Return the `Coil` with the bar at u."""
+    bar = q.bar_inductance * math.exp(-q.sharpness * u * u)
+    slope = -2 * q.sharpness * u * bar
+    return Coil(q.coil_inductance + bar, slope)
+
+
+@inlined
+def reach(u, v, width):
+    """Return the longest step [s] in which a bar cannot leap over the coil unnoticed.
+
+    Parameters
+    ----------
+    u, v : float
+        [m], [m s-1]
+    width : float
+        Half of sigma: the standard deviation of the bell that is L - L0 [m].
+    """
+    room = abs(u) - _FAR * width
+    room = room if room > width else width
+    return room / abs(v)
+
+
+@kernel
+def contact_force(q, contact, u):
+    """Return the force of the stop on the mole, and of the bar on the stop (4) [N]."""
+    return q.contact_stiffness * (u - q.stop_gap) if contact else 0.0
+
+
+@kernel
+def force(q, contact, u, v, i):
+    """Return the force F on the bar, but for friction (16) [N]."""
+    magnetic = 0.5 * i * i * coil(q, u).slope
+    spring = q.spring_stiffness * (u - q.spring_rest)
+    return magnetic - q.damping * v - spring - contact_force(q, contact, u)
+
+
+@kernel
+def rates(t, y, mode, dy):
+    """Set dy to the time derivative of a state y in a mode."""
+    q = mode.q
+    u, v, x, i, p = y[0], y[1], y[2], y[3], y[4]
+    now = coil(q, u)
+    magnetic = 0.5 * i * i * now.slope
+    contact = contact_force(q, mode.contact, u)
+    total = magnetic - q.damping * v - q.spring_stiffness * (u - q.spring_rest) - contact
+    supply = 0.0
+    if mode.relay:
+        supply = q.supply_speed * q.voltage * math.cos(q.supply_speed * t + q.supply_phase)
+    dy[DISPLACEMENT] = v
+    dy[VELOCITY] = mode.response.a * total + mode.response.b
+    dy[MOLE_VELOCITY] = mode.response.d * total + mode.response.e
+    dy[CURRENT] = (p - (q.resistance + now.slope * v) * i) / now.inductance
+    dy[VOLTAGE] = supply - q.elastance * i
+    dy[MOLE_DISPLACEMENT] = x
+    dy[IMPACT_WORK] = contact * x
+    dy[ELECTRICAL_WORK] = q.resistance * i * i + magnetic * v
+    dy[MAGNETIC_WORK] = magnetic * v
+    dy[FRICTION_LOSS] = q.bar_limit * mode.bar * v + q.mole_limit * mode.mole * x
+    dy[VISCOUS_LOSS] = q.damping * v * v
+    dy[IMPULSE] = contact

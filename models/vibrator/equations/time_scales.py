@@ -1,0 +1,64 @@
+"""How fast a machine can change, which bounds a fixed step, and how slowly its body vibrates."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.vibrator.equations.system import System
+
+
+def fastest_rates(m: System) -> NDArray[np.float64]:
+    """Return an upper bound of the rates of free vibration and decay of n rigid machines.
+
+    Parameters
+    ----------
+    m : System
+        Each field an ndarray of shape (n,).
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [s-1]. By Gershgorin's rule for the supports, in units in which the body's mass and its
+        radius of gyration are 1; and the steepest slope of each motor's torque over its rotor.
+    """
+    centre = (m.moment_x**2 + m.moment_y**2) / m.mass
+    inertia = m.inertia - centre
+    # Rotors share the body's mass: what is left of it when an unbalance lends none.
+    radius = np.sqrt(inertia / m.mass)
+    lever_x = (np.abs(m.support_offset) + np.abs(m.moment_y) / m.mass) / radius
+    lever_y = (np.abs(m.half_spacing) + np.abs(m.moment_x) / m.mass) / radius
+    free = m.mass - m.unbalance_1**2 * m.mobility_1 - m.unbalance_2**2 * m.mobility_2
+    lightest = np.maximum(np.minimum(free, m.mass), 0.05 * m.mass)
+
+    def largest(x, y):
+        return (x * (1 + lever_x) ** 2 + y * (1 + lever_y) ** 2) / lightest
+
+    vibration = np.sqrt(largest(m.stiffness_x, m.stiffness_y))
+    decay = largest(m.damping_x, m.damping_y)
+    motor = [
+        mobility * (torque / slip**2 + 2 * loss * speed)
+        for mobility, torque, slip, loss, speed in (
+            (m.mobility_1, m.torque_1, m.slip_1, m.bearing_loss_1, m.synchronous_speed_1),
+            (m.mobility_2, m.torque_2, m.slip_2, m.bearing_loss_2, m.synchronous_speed_2),
+        )
+    ]
+    return np.maximum.reduce([vibration + decay, *motor])
+
+
+def slowest_period(m: System) -> Any:
+    """Return about the longest period of a body on its supports [s].
+
+    Parameters
+    ----------
+    m : System
+        One machine, or n with fields of shape (n,).
+
+    Returns
+    -------
+    float or ndarray, shape (n,)
+        As if the body could move in one of its three ways only.
+    """
+    turning = m.stiffness_x * m.support_offset**2 + m.stiffness_y * m.half_spacing**2
+    ways = (m.mass / m.stiffness_x, m.mass / m.stiffness_y, m.inertia / turning)
+    return 2 * np.pi * np.sqrt(np.maximum.reduce(ways))

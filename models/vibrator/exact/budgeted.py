@@ -1,0 +1,99 @@
+"""One vibrator to be run and run again by the exact propagator, within a budget of steps."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models.numerics.dop853 import Outcome
+from models.vibrator.equations import general, rigid_motion
+from models.vibrator.equations.system import System, system
+from models.vibrator.exact import propagator
+from models.vibrator.parameters import Params
+
+PSI_1, PSI_2, HEIGHT = 3, 4, 7
+"""Places in the state."""
+
+
+@dataclass
+class Machine:
+    """One machine, ready to be run.
+
+    Attributes
+    ----------
+    params : Params
+    system : System
+    scales : ndarray
+        Size of each component of the state.
+    budget : int
+        Steps that may still be tried.
+    """
+
+    params: Params
+    system: System
+    scales: NDArray[np.float64]
+    budget: int
+
+    @property
+    def is_extended(self) -> bool:
+        """Whether the state is that of `models.vibrator.equations.general`."""
+        return self.degrees == general.DEGREES
+
+    @property
+    def degrees(self) -> int:
+        """Number of degrees of freedom, half the length of a state."""
+        return len(self.scales) // 2
+
+    def rides(self, state: NDArray[np.float64]) -> bool:
+        """Whether the feed lies on the deck."""
+        return not self.is_extended or state[HEIGHT] == 0 == state[self.degrees + HEIGHT]
+
+    def free(self, riding: bool) -> NDArray[np.intp]:
+        """Return the components of the state that can differ while psi_1 does not."""
+        m = self.system
+        rates = [True, True, True, True, True, bool(m.slides), bool(m.rocks), not riding]
+        rates = rates[: self.degrees]
+        places = rates.copy()
+        places[PSI_1] = False
+        return np.flatnonzero(places + rates)
+
+    def run(
+        self,
+        state: NDArray[np.float64],
+        duration: float,
+        tolerance: float,
+        turns: float = math.inf,
+        times: ArrayLike = (),
+    ) -> tuple[Outcome, NDArray[np.float64]]:
+        """Advance `state` in place, for some time or turns of vibrator 1; return samples too."""
+        times = np.ascontiguousarray(times, float)
+        samples = np.full((len(times), len(state)), np.nan)
+        ended = propagator.runner(self.system, self.degrees)(
+            self.system,
+            state,
+            state[PSI_1] + 2 * np.pi * turns,
+            float(duration),
+            tolerance * self.scales,
+            self.budget,
+            times,
+            samples,
+        )
+        self.budget -= ended.steps
+        return ended, samples
+
+
+def prepare(params: Params, kinematics: str, budget: int) -> Machine:
+    """Return a machine ready to be run.
+
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    kinematics : {"small", "exact"}
+    budget : int
+        Steps that may be tried.
+    """
+    m = system(params, kinematics)
+    degrees = general.DEGREES if propagator.is_extended(m) else rigid_motion.DEGREES
+    return Machine(params, m, propagator.scales_of(m, degrees), budget)

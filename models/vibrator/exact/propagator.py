@@ -1,0 +1,230 @@
+"""Error-controlled propagation of one machine: the yardstick of the vibrator.
+
+The equations are integrated by `models.numerics.dop853`; the flights of the feed begin and end
+where its contact force, or its height, vanishes.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models.numerics.dop853 import GUARDED, Outcome, integrator
+from models.numerics.jit import kernel
+from models.vibrator.equations import general, rigid_motion
+from models.vibrator.equations.system import System
+from models.vibrator.parameters import Params
+
+STEPS_PER_TURN = 400
+_SPARE_STEPS = 10_000
+_TURNED, _FEED = 0, 1  # guards
+
+
+class Task(NamedTuple):
+    """A mode of motion.
+
+    Attributes
+    ----------
+    system : System
+    last_angle : float
+        psi_1 at which to stop [rad].
+    riding : bool
+        Whether the feed lies on the deck.
+    """
+
+    system: System
+    last_angle: float
+    riding: bool
+
+
+class Motion(NamedTuple):
+    """How one machine moved.
+
+    Attributes
+    ----------
+    status : int
+        `REACHED_END`, `GUARDED` (the turns are done), `OUT_OF_BUDGET` or `STUCK`, of
+        `models.numerics.dop853`.
+    time : float
+        [s] since the start.
+    state : ndarray
+        At that time.
+    samples : ndarray, shape (k, len(state))
+        At the times asked for, NaN from where the motion ended.
+    """
+
+    status: int
+    time: float
+    state: NDArray[np.float64]
+    samples: NDArray[np.float64]
+
+
+@kernel
+def _rigid_rates(t, y, task, dy):
+    for i in range(rigid_motion.DEGREES):
+        dy[i] = y[rigid_motion.DEGREES + i]
+    rigid_motion.acceleration(task.system, y, dy[rigid_motion.DEGREES :])
+
+
+@kernel
+def _turned(t, y, task, guard):
+    guard[_TURNED] = task.last_angle - y[3]
+
+
+@kernel
+def _extended_rates(t, y, task, dy):
+    for i in range(general.DEGREES):
+        dy[i] = y[general.DEGREES + i]
+    motion = general.accelerations(task.system, task.riding, y)
+    for i in range(general.DEGREES):
+        dy[general.DEGREES + i] = motion[i]
+
+
+@kernel
+def _fed_guards(t, y, task, guard):
+    guard[_TURNED] = task.last_angle - y[3]
+    guard[_FEED] = general.support_of_feed(task.system, y) if task.riding else y[7]
+
+
+_integrate_rigid = integrator(_rigid_rates, _turned, 1, looks=1)
+_integrate_empty = integrator(_extended_rates, _turned, 1, looks=1)
+_integrate_fed = integrator(_extended_rates, _fed_guards, 2)
+
+
+@kernel
+def run_rigid(system, state, last_angle, end, absolute, budget, times, samples):
+    """Integrate the rigid machine; see `models.numerics.dop853` for the arguments."""
+    task = Task(system, last_angle, True)
+    return _integrate_rigid(0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples)
+
+
+@kernel
+def run_empty(system, state, last_angle, end, absolute, budget, times, samples):
+    """Integrate the extended machine without feed, as `run_rigid`."""
+    task = Task(system, last_angle, True)
+    return _integrate_empty(0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples)
+
+
+@kernel
+def run_fed(system, state, last_angle, end, absolute, budget, times, samples):
+    """Integrate the extended machine through all flights of the feed, as `run_rigid`."""
+    riding = state[7] == 0 and state[general.DEGREES + 7] == 0
+    time = step = 0.0
+    steps = sampled = 0
+    while True:
+        ended = _integrate_fed(
+            time,
+            end,
+            state,
+            step,
+            Task(system, last_angle, riding),
+            0.0,
+            absolute,
+            budget - steps,
+            times[sampled:],
+            samples[sampled:],
+        )
+        time, step = ended.time, ended.step
+        steps += ended.steps
+        sampled += ended.sampled
+        if ended.status != GUARDED or ended.guard == _TURNED:
+            break
+        if riding:
+            state[7] = state[general.DEGREES + 7] = 0.0
+        else:
+            general.land(system, state)
+        riding = not riding
+    return Outcome(ended.status, time, ended.guard, step, steps, sampled)
+
+
+def is_extended(system: System) -> bool:
+    """Whether a machine needs the equations of `models.vibrator.equations.general`."""
+    return bool(system.exact or system.slides or system.rocks or system.feed_mass)
+
+
+def runner(system: System, degrees: int) -> Callable[..., Outcome]:
+    """Return the kernel for states of so many degrees: `run_rigid` or one with its arguments."""
+    if degrees == rigid_motion.DEGREES:
+        return run_rigid
+    return run_fed if system.feed_mass else run_empty
+
+
+def start(params: Params, system: System) -> NDArray[np.float64]:
+    """Return the state of one machine at rest, at its initial phases.
+
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    system : System
+        The same machine, prepared.
+
+    Returns
+    -------
+    ndarray, shape (10,) or (16,)
+        As in `models.vibrator.equations`: of `rigid_motion` or of `general`.
+    """
+    row = Params._make(np.array([value]) for value in params)
+    (state,) = rigid_motion.initial_state(row)
+    return general.extend(state) if is_extended(system) else state
+
+
+def propagate(
+    system: System,
+    state: ArrayLike,
+    duration: float,
+    tolerance: float,
+    turns: float = math.inf,
+    times: ArrayLike = (),
+) -> Motion:
+    """Follow one machine.
+
+    Parameters
+    ----------
+    system : System
+    state : array_like, shape (10,) or (16,)
+        At time 0, as `start` returns it; the longer one for the extended machine.
+    duration : float
+        [s]
+    tolerance : float
+        Error allowed in a step, in units of the motion: static unbalance over mass, this over
+        the radius of gyration, a radian, and these times the synchronous speed.
+    turns : float
+        Stop when vibrator 1 has made so many, if the time is not up before.
+    times : array_like, shape (k,)
+        Ascending, when to sample the state [s].
+
+    Returns
+    -------
+    Motion
+    """
+    state = np.array(state, float)
+    times = np.ascontiguousarray(times, float)
+    samples = np.full((len(times), len(state)), np.nan)
+    run = runner(system, len(state) // 2)
+    revolutions = duration * _speed(system) / (2 * np.pi)
+    ended = run(
+        system,
+        state,
+        state[3] + 2 * np.pi * turns,
+        float(duration),
+        tolerance * scales_of(system, len(state) // 2),
+        int(STEPS_PER_TURN * revolutions) + _SPARE_STEPS,
+        times,
+        samples,
+    )
+    return Motion(ended.status, ended.time, state, samples)
+
+
+def _speed(m: System) -> float:
+    return max(m.synchronous_speed_1, m.synchronous_speed_2)
+
+
+def scales_of(m: System, degrees: int) -> NDArray[np.float64]:
+    """Return the size of each component of the state, of x, y, alpha, psi, u, chi, height."""
+    shift = (m.unbalance_1 + m.unbalance_2) / m.mass
+    turn = shift / math.sqrt(m.inertia / m.mass)
+    sizes = np.array([shift, shift, turn, 1.0, 1.0, shift, turn, shift])[:degrees]
+    return np.concatenate([sizes, sizes * _speed(m)])

@@ -1,0 +1,235 @@
+"""From standstill to the outcome with the exact propagator, one machine after the other.
+
+For machines on flexible mounts, with feed or with exact kinematics, and as the yardstick of
+rigid ones. A run-up is watched in looks of eight turns. Once the vibrators keep step, their
+synchronous running is found as a periodic orbit; the run stops as soon as it stays near that orbit,
+if it is stable, and vibration of the body on its springs can no longer make the largest
+displacement; it goes on to the end where it does not.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.numerics.dop853 import OUT_OF_BUDGET, STUCK
+from models.vibrator.equations.system import System
+from models.vibrator.equations.time_scales import slowest_period
+from models.vibrator.exact import propagator
+from models.vibrator.exact.budgeted import Machine, prepare
+from models.vibrator.exact.measures import Measures, measure
+from models.vibrator.exact.orbit import Orbit, anchored, find_orbit, proposal
+from models.vibrator.parameters import Params, Rows, Settings
+from models.vibrator.start.regimes import (
+    ASYNCHRONOUS,
+    BAND,
+    CAPTURED_BELOW,
+    Outcome,
+    locked_regime,
+    unlocked_regime,
+    wrapped,
+)
+from models.vibrator.start.track import LAST, Track
+from uq.contract import Status
+
+SAMPLES_PER_TURN = 32  # at the larger synchronous speed
+TURNS = 8  # in a look
+LOOK = SAMPLES_PER_TURN * TURNS
+BUDGET = 150_000  # steps of one machine, searches of orbits included: some two seconds
+_LOOKING = 10  # steps that a look is worth beside those it takes
+_NEAR = 0.03  # of the orbit's disphasing angle: certain to stay [rad]
+_ALIKE = 0.01  # of the orbit's speed, likewise
+_STEADY = 0.02  # range of the disphasing angle in a look that is worth a search [rad]
+_LOCKED = 0.2  # range in the last second below which motors are locked [rad]
+
+
+def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
+    """Switch on n machines and see what becomes of them.
+
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,).
+    settings : Settings
+        `propagator` and `steps_per_turn` do not matter here.
+
+    Returns
+    -------
+    outcome : Outcome
+    status : ndarray of int8, shape (n,)
+        `OUT_OF_BUDGET` where the steps end before the longest start simulated; what is known is
+        then of the last second before, if there is one. `NON_FINITE` where the motion is not
+        finite; nothing is known of it.
+    """
+    n = len(p.body_mass)
+    out, status = Outcome.nothing(n), np.zeros(n, np.int8)
+    with np.errstate(all="ignore"):
+        for i in range(n):
+            params = Params._make(float(field[i]) for field in p)
+            row = Outcome._make(field[i : i + 1] for field in out)
+            status[i] = _switch_on(params, settings, row)
+    return out, status
+
+
+def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
+    """Set the outcome of one machine, fields of shape (1,)."""
+    machine = prepare(params, settings.kinematics, BUDGET)
+    state = propagator.start(params, machine.system)
+    speed = np.max([machine.system.synchronous_speed_1, machine.system.synchronous_speed_2])
+    if not math.isfinite(speed):
+        return Status.NON_FINITE
+    wanted = math.ceil(settings.run_up * speed * SAMPLES_PER_TURN / (2 * np.pi))
+    track = Track(state, settings.run_up / wanted, LOOK)
+    guess = proposal(machine)
+    orbit, next_search = None, LOOK
+    slowest = slowest_period(machine.system)
+    while track.count < wanted:
+        times = track.interval * np.arange(1, min(LOOK, wanted - track.count) + 1)
+        ended, samples = machine.run(state, times[-1], settings.tolerance, times=times)
+        if ended.status == STUCK or not np.isfinite(samples[: ended.sampled]).all():
+            return Status.NON_FINITE
+        machine.budget -= _LOOKING
+        track.add(samples[: ended.sampled])
+        if ended.status == OUT_OF_BUDGET:
+            return _describe_unfinished(machine.system, track, out)
+        stays = orbit is not None and _stays_at(orbit, track)
+        if orbit is not None and stays and track.time - track.neared >= slowest:
+            _describe_orbit(orbit, track, out)
+            return Status.OK
+        arriving = stays or (orbit is not None and _approaches(orbit, track))
+        if track.count >= next_search and not arriving and _is_steady(machine.system, track):
+            orbit = _search(machine, guess, state, settings.tolerance) or orbit
+            guess = None
+            # Each search costs some dozens of turns; where they fail, ever fewer.
+            next_search = 4 * track.count
+    _describe_end(machine, track, orbit, state, settings.tolerance, out)
+    return Status.OK
+
+
+def _search(
+    machine: Machine,
+    guess: NDArray[np.float64] | None,
+    state: NDArray[np.float64],
+    tolerance: float,
+) -> Orbit | None:
+    """Look for a stable orbit at working speed: near the guess, else near the state."""
+    m = machine.system
+    slowest = CAPTURED_BELOW * max(m.synchronous_speed_1, m.synchronous_speed_2)
+    for near in (guess, anchored(machine, state, tolerance)):
+        orbit = None if near is None else find_orbit(machine, near, tolerance)
+        if orbit and orbit.multiplier < 1 and 2 * np.pi / orbit.period >= slowest:
+            return orbit
+    return None
+
+
+def _speeds(states: NDArray[np.float64], interval: float) -> NDArray[np.float64]:
+    """Return the mean speeds of both vibrators."""
+    return (states[-1, 3:5] - states[0, 3:5]) / (interval * (len(states) - 1))
+
+
+def _by_turns(states: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the mean of psi_1 - psi_2 over each turn at synchronous speed."""
+    angle = states[1:, 3] - states[1:, 4]
+    turn = min(SAMPLES_PER_TURN, len(angle))
+    return angle[len(angle) % turn :].reshape(-1, turn).mean(axis=1)
+
+
+def _is_steady(m: System, track: Track) -> bool:
+    states = track.last(LOOK)
+    speed_1, speed_2 = _speeds(states, track.interval)
+    return bool(
+        speed_1 >= CAPTURED_BELOW * m.synchronous_speed_1
+        and speed_2 >= CAPTURED_BELOW * m.synchronous_speed_2
+        and np.ptp(_by_turns(states)) < _STEADY
+    )
+
+
+def _stays_at(orbit: Orbit, track: Track) -> bool:
+    """Whether the last look was so near a stable orbit that the machine will not leave it."""
+    states = track.last(LOOK)
+    mean = orbit.measures.disphasing
+    ratio = _speeds(states, track.interval) * orbit.period / (2 * np.pi)
+    within = np.abs(wrapped(states[:, 3] - states[:, 4] - mean)) < BAND
+    return bool(
+        (np.abs(wrapped(_by_turns(states) - mean)) < _NEAR).all()
+        and (np.abs(ratio - 1) < _ALIKE).all()
+        and (within.all() or orbit.ripple >= BAND)
+    )
+
+
+def _approaches(orbit: Orbit, track: Track) -> bool:
+    """Whether the last look drew nearer to an orbit with every turn."""
+    off = np.abs(wrapped(_by_turns(track.last(LOOK)) - orbit.measures.disphasing))
+    return bool((np.diff(off) < 0).all())
+
+
+def _describe_orbit(orbit: Orbit, track: Track, out: Outcome) -> None:
+    """Set the outcome of a machine that has come to an orbit."""
+    seen = orbit.measures
+    out.disphasing[:], out.multiplier[:] = seen.disphasing, orbit.multiplier
+    _describe(seen, track, out)
+    out.speed[:] = 2 * np.pi / orbit.period
+    out.regime[:] = locked_regime(out.disphasing)
+    out.synchronisation_time[:] = track.last_time_off(seen.disphasing)
+    if orbit.ripple >= BAND:
+        out.synchronisation_time[:] = np.inf
+    elif out.synchronisation_time[0] > track.time - LOOK * track.interval:
+        out.synchronisation_time[:], out.censored[:] = track.time, True
+
+
+def _describe(seen: Measures, track: Track, out: Outcome) -> None:
+    out.angular_amplitude[:] = seen.angular_amplitude
+    out.stroke_left[:], out.stroke_right[:] = seen.stroke_left, seen.stroke_right
+    out.speed[:] = (seen.speed_1 + seen.speed_2) / 2
+    out.power_1[:], out.power_2[:] = seen.power_1, seen.power_2
+    out.max_excursion[:] = track.excursion
+
+
+def _describe_last_second(m: System, track: Track, out: Outcome) -> bool:
+    """Set the outcome of a machine that is at no orbit; tell whether its motors are locked."""
+    states = track.last()
+    seen = measure(m, states, track.interval)
+    _describe(seen, track, out)
+    w_1, w_2, top_1, top_2 = np.array(
+        [[seen.speed_1], [seen.speed_2], [m.synchronous_speed_1], [m.synchronous_speed_2]]
+    )
+    out.regime[:] = unlocked_regime(w_1, w_2, top_1, top_2)
+    locked = out.regime[0] == ASYNCHRONOUS and np.ptp(_by_turns(states)) < _LOCKED
+    if locked:
+        out.disphasing[:] = wrapped(np.array([seen.disphasing]))
+        out.regime[:] = locked_regime(out.disphasing)
+    return bool(locked)
+
+
+def _describe_end(
+    machine: Machine,
+    track: Track,
+    orbit: Orbit | None,
+    state: NDArray[np.float64],
+    tolerance: float,
+    out: Outcome,
+) -> None:
+    """Set the outcome of a machine that is not known to have come to an orbit."""
+    locked = _describe_last_second(machine.system, track, out)
+    out.synchronisation_time[:] = np.inf
+    if not locked:
+        return
+    if orbit is None or not _approaches(orbit, track):
+        orbit = _search(machine, None, state, tolerance)
+    if orbit is not None and (
+        _approaches(orbit, track)
+        or abs(wrapped(out.disphasing - orbit.measures.disphasing)[0]) < _NEAR
+    ):
+        _describe_orbit(orbit, track, out)
+        return
+    came = track.last_time_off(out.disphasing[0])
+    if came < track.time - LAST:
+        out.synchronisation_time[:] = came
+
+
+def _describe_unfinished(m: System, track: Track, out: Outcome) -> Status:
+    """Set the outcome of a machine whose steps are used up."""
+    if track.time >= LAST:
+        _describe_last_second(m, track, out)
+    out.synchronisation_time[:], out.censored[:] = track.time, True
+    return Status.OUT_OF_BUDGET

@@ -1,0 +1,179 @@
+"""From standstill to the outcome: the fast road for rigid machines.
+
+The averaged theory proposes the synchronous motion, Newton's method finds it as a periodic orbit,
+and the run-up only has to tell whether it is reached: it stops as soon as the disphasing angle
+stays near that of a stable orbit, and goes on to the end where it does not. Vibration of the body
+on its springs dies away more slowly: the run also waits until it can no longer make the largest
+displacement.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.vibrator.equations.rigid_motion import initial_state
+from models.vibrator.equations.time_scales import slowest_period
+from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.fixed_steps import Array
+from models.vibrator.parameters import Rows, Settings
+from models.vibrator.start.last_second import LAST, NEAR, STEPS, Live, learn, run_last_second
+from models.vibrator.start.regimes import (
+    BAND,
+    CAPTURED_BELOW,
+    COMPARABLE,
+    Outcome,
+    locked_regime,
+)
+from models.vibrator.start.synchronous import Known, Machines, describe, propose
+from uq.contract import Status
+
+LOOK = 96  # steps between two looks at a run
+BUDGET = 1000  # looks
+_STEADY = 0.02  # range of the disphasing angle in a look that is worth a search for an orbit [rad]
+_RUNS = 3  # of a machine, each towards an orbit that the one before has shown
+
+
+class _Plan(NamedTuple):
+    """How n machines are run.
+
+    Attributes
+    ----------
+    step : ndarray, shape (n,)
+        [s]
+    looks : ndarray of int, shape (n,)
+        Until the last second begins.
+    over : ndarray of bool, shape (n,)
+        Whether the budget ends the run before its time.
+    """
+
+    step: Array
+    looks: NDArray[np.int64]
+    over: NDArray[np.bool_]
+
+    @staticmethod
+    def made(machines: Machines, settings: Settings) -> "_Plan":
+        """Choose steps that are short enough, and fill the time in whole looks."""
+        per_turn = settings.steps_per_turn or STEPS
+        turn = 2 * np.pi / machines.synchronous_speed.max(axis=1)
+        step = np.minimum(turn / per_turn, fixed_steps.STABLE / machines.fastest)
+        time = settings.run_up - LAST
+        looks = np.ceil(time / (LOOK * step)).astype(np.int64)
+        over = looks > BUDGET
+        step = np.where(over | (looks == 0), step, time / (LOOK * np.maximum(looks, 1)))
+        return _Plan(step, np.minimum(looks, BUDGET), over)
+
+
+def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
+    """Switch on n rigid machines and see what becomes of them.
+
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,); mounts rigid, no feed, small kinematics.
+    settings : Settings
+
+    Returns
+    -------
+    outcome : Outcome
+    status : ndarray of int8, shape (n,)
+    """
+    machines = Machines.prepared(p)
+    known = propose(machines, settings.steps_per_turn)
+    plan = _Plan.made(machines, settings)
+    n = len(known.found)
+    out, status = Outcome.nothing(n), np.full(n, Status.OK, np.int8)
+    rows = np.arange(n)
+    for run in range(_RUNS):
+        final = run == _RUNS - 1
+        rows = _run(machines, plan, known, rows, out, settings, final)
+    lost = ~np.isfinite(out.speed)
+    out.regime[lost] = -1
+    status[lost] = Status.NON_FINITE
+    unfinished = plan.over & np.isinf(out.synchronisation_time) & np.isnan(out.disphasing) & ~lost
+    status[unfinished] = Status.OUT_OF_BUDGET
+    out.censored[:] |= unfinished
+    reached = plan.step * plan.looks * LOOK + LAST
+    out.synchronisation_time[unfinished] = reached[unfinished]
+    return out, status
+
+
+def _run(
+    machines: Machines,
+    plan: _Plan,
+    known: Known,
+    rows: NDArray[np.intp],
+    out: Outcome,
+    settings: Settings,
+    final: bool,
+) -> NDArray[np.intp]:
+    """Run machines from standstill; return those to be run again, towards another orbit.
+
+    In a final run there are none.
+    """
+    again = [np.empty(0, np.intp)]
+    some, n = machines.take(rows), len(rows)
+    live = Live(rows, some, initial_state(some.p), *np.zeros((3, n)))
+    ending = plan.looks[rows] == 0
+    look = 0
+    while len(live.rows):
+        if ending.any():
+            last = live.take(ending)
+            time = look * LOOK * plan.step[last.rows]
+            found = run_last_second(last, time, known, out, settings, final)
+            again.append(last.rows[found])
+            live = live.take(~ending)
+            if not len(live.rows):
+                break
+        before = live.state[:, 3:5].copy()
+        step, target = plan.step[live.rows], known.disphasing[live.rows]
+        constants, accurate = live.machines.constants, settings.steps_per_turn > 0
+        notes = fixed_steps.advance(constants, step, live.state, target, LOOK, BAND, accurate)
+        came = notes[:, fixed_steps.LAST_ENTRY]
+        far = np.maximum(live.far, notes[:, fixed_steps.EXCURSION])
+        near = notes[:, fixed_steps.EXCURSION] > COMPARABLE**2 * far
+        live = live._replace(
+            came=np.where(came >= 0, (look * LOOK + came) * step, live.came),
+            far=far,
+            neared=np.where(near, (look + 1) * LOOK * step, live.neared),
+        )
+        look += 1
+        speed = (live.state[:, 3:5] - before) / (LOOK * step)[:, None]
+        low, high = notes[:, fixed_steps.ANGLE_LOW], notes[:, fixed_steps.ANGLE_HIGH]
+        finite = np.isfinite(live.state).all(axis=1)
+        arrived = finite & _is_near(known, live.rows, low, high, speed)
+        calm = look * LOOK * step - live.neared >= slowest_period(live.machines.system)
+        done = arrived & (calm | (plan.looks[live.rows] <= look))
+        _note_locked(known, live.take(done), out)
+        going = finite & ~done
+        if not final and look & (look - 1) == 0:
+            fast = (speed >= CAPTURED_BELOW * live.machines.synchronous_speed).all(axis=1)
+            waiting = going & ~arrived & fast & (high - low < _STEADY)
+            if waiting.any():
+                steady = live.take(waiting)
+                found = learn(steady.machines, steady.state, steady.rows, known, settings)
+                again.append(steady.rows[found])
+                going[np.flatnonzero(waiting)[found]] = False
+        ending = (plan.looks[live.rows] <= look)[going]
+        live = live.take(going)
+    return np.concatenate(again)
+
+
+def _is_near(known: Known, rows: Any, low: Array, high: Array, speed: Array) -> Any:
+    """Tell which machines have stayed so near a stable orbit that they will not leave it."""
+    target = known.disphasing[rows]
+    with np.errstate(invalid="ignore"):
+        turns = 2 * np.pi * np.round(((low + high) / 2 - target) / (2 * np.pi))
+        off = np.maximum(np.abs(low - turns - target), np.abs(high - turns - target))
+        ratio = speed * known.orbits.period[rows, None] / (2 * np.pi)
+        near = off < NEAR + known.ripple[rows]
+        return known.found[rows] & near & (np.abs(ratio - 1) < 0.01).all(axis=1)
+
+
+def _note_locked(known: Known, live: Live, out: Outcome) -> None:
+    rows = live.rows
+    describe(live.machines, known.take(rows), out, rows)
+    # One whose angle leaves the band in every revolution keeps leaving it.
+    out.synchronisation_time[rows] = np.where(known.ripple[rows] < BAND, live.came, np.inf)
+    out.max_excursion[rows] = np.sqrt(live.far)
+    out.regime[rows] = locked_regime(known.disphasing[rows])

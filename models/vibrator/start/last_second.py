@@ -1,0 +1,164 @@
+"""The last second of a run that has not led to a known orbit: means, and what they say."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.fixed_steps import Array
+from models.vibrator.parameters import Settings
+from models.vibrator.start.regimes import (
+    BAND,
+    CAPTURED_BELOW,
+    Outcome,
+    locked_regime,
+    unlocked_regime,
+    wrapped,
+)
+from models.vibrator.start.synchronous import Known, Machines, describe, search
+
+LAST = 1.0  # [s]
+STEPS = 12  # in a turn at synchronous speed, unless the machine is stiff
+_CLOSELY = 48  # in a turn of the last second, whose extremes are those of the steps
+NEAR = 0.03  # of the expected disphasing angle: the same motion [rad]
+_LOCKED = 0.2  # range of the disphasing angle below which motors are locked [rad]
+_LONGEST = 1 << 20  # steps
+
+
+class Live(NamedTuple):
+    """The machines that are still running.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (n,)
+    machines : Machines
+    state : ndarray, shape (n, 10)
+    came : ndarray, shape (n,)
+        When the disphasing angle last came into its band [s].
+    far : ndarray, shape (n,)
+        Largest squared displacement of C so far [m2].
+    neared : ndarray, shape (n,)
+        When one was last comparable to that [s].
+    """
+
+    rows: NDArray[np.intp]
+    machines: Machines
+    state: Array
+    came: Array
+    far: Array
+    neared: Array
+
+    def take(self, chosen: NDArray[np.bool_]) -> "Live":
+        """Return some of them."""
+        i = np.flatnonzero(chosen)
+        return Live(self.rows[i], self.machines.take(i), *(field[i] for field in self[2:]))
+
+
+def learn(
+    part: Machines, state: Array, rows: NDArray[np.intp], known: Known, settings: Settings
+) -> NDArray[np.bool_]:
+    """Search for the orbit near which machines are; tell where there is a new one."""
+    speed, angle = state[:, 8:10].mean(axis=1), state[:, 3] - state[:, 4]
+    other = search(part, speed, angle, np.ones(len(rows), bool), settings.steps_per_turn)
+    with np.errstate(invalid="ignore"):
+        same = np.abs(wrapped(other.disphasing - known.disphasing[rows])) < NEAR
+    new = other.found & ~same
+    known.learn(rows[new], other.take(new))
+    return new
+
+
+def run_last_second(
+    live: Live, time: Array, known: Known, out: Outcome, settings: Settings, final: bool
+) -> NDArray[np.bool_]:
+    """Run the last second; tell which machines turned out to be locked elsewhere than expected.
+
+    Parameters
+    ----------
+    live : Live
+        Its states are updated in place.
+    time : ndarray, shape (n,)
+        So far [s].
+    known : Known
+        Learns where they are locked.
+    out : Outcome
+        Updated in place.
+    settings : Settings
+    final : bool
+        Whether nothing more can be learnt: locked machines are taken as they are.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    part, state, rows = live.machines, live.state, live.rows
+    turn = 2 * np.pi / part.synchronous_speed.max(axis=1)
+    per_turn = settings.steps_per_turn or _CLOSELY
+    needed = LAST * np.maximum(per_turn / turn, part.fastest / fixed_steps.STABLE)
+    part_of_two, power = np.frexp(np.minimum(needed, _LONGEST))
+    steps = 2 ** (power - (part_of_two == 0.5)).astype(np.int64)
+    again = np.zeros(len(rows), bool)
+    for count in np.unique(steps).tolist():
+        i = np.flatnonzero(steps == count)
+        some, here, these = part.take(i), state[i], rows[i]
+        before = here[:, 3:5].copy()
+        first = here[:, 3] - here[:, 4]
+        h = np.full(len(i), LAST / count)
+        target, accurate = known.disphasing[these], settings.steps_per_turn > 0
+        notes = fixed_steps.advance(some.constants, h, here, target, count, BAND, accurate)
+        speed = (here[:, 3:5] - before) / LAST
+        notes[:, : fixed_steps.SUMS] /= count
+        _note_means(these, notes, speed, some, out)
+        out.max_excursion[these] = np.sqrt(np.maximum(live.far[i], notes[:, fixed_steps.EXCURSION]))
+        last = notes[:, fixed_steps.LAST_ENTRY]
+        inside = np.where(last >= 0, time[i] + last * LAST / count, live.came[i])
+        low, high = notes[:, fixed_steps.ANGLE_LOW], notes[:, fixed_steps.ANGLE_HIGH]
+        fast = (speed >= CAPTURED_BELOW * some.synchronous_speed).all(axis=1)
+        locked = np.flatnonzero(fast & (high - low < _LOCKED))
+        if not final:
+            part_of, at = some.take(locked), these[locked]
+            again[i[locked]] = learn(part_of, here[locked], at, known, settings)
+        locked = locked[~again[i[locked]]]
+        where, mean = these[locked], wrapped(notes[locked, fixed_steps.ANGLE])
+        target = known.disphasing[where]
+        with np.errstate(invalid="ignore"):
+            off = [
+                np.abs(wrapped(angle[locked] - target))
+                for angle in (first, here[:, 3] - here[:, 4])
+            ]
+            near = np.abs(wrapped(mean - target)) < NEAR
+            coming = known.found[where] & ~near & (off[1] < off[0])
+        there = near | coming | final
+        # Locked, but on no orbit that was found: the means of the last second must do.
+        known.found[where[~there]] = False
+        known.disphasing[where[~there]] = mean[~there]
+        again[i[locked[~there]]] = True
+        out.disphasing[where[there]] = mean[there]
+        out.regime[where[there]] = locked_regime(mean[there])
+        late = time[i[locked]] + LAST
+        out.synchronisation_time[where[there]] = np.where(coming, late, inside[locked])[there]
+        out.censored[where[coming]] = True
+        describe(some.take(locked[there]), known.take(where[there]), out, where[there])
+    return again
+
+
+def _note_means(
+    rows: NDArray[np.intp], notes: Array, speed: Array, part: Machines, out: Outcome
+) -> None:
+    """Note the outputs of machines that are not locked, so far as is known."""
+
+    def half(low: int) -> Array:
+        return (notes[:, low + 1] - notes[:, low]) / 2
+
+    out.power_1[rows], out.power_2[rows] = (
+        notes[:, fixed_steps.POWER_1],
+        notes[:, fixed_steps.POWER_2],
+    )
+    out.angular_amplitude[rows] = half(fixed_steps.ALPHA_LOW)
+    out.stroke_left[rows], out.stroke_right[rows] = (
+        half(fixed_steps.LEFT_LOW),
+        half(fixed_steps.RIGHT_LOW),
+    )
+    out.speed[rows] = speed.mean(axis=1)
+    out.synchronisation_time[rows] = np.inf
+    out.regime[rows] = unlocked_regime(*speed.T, *part.synchronous_speed.T)

@@ -1,0 +1,229 @@
+"""The synchronous motion of rigid machines: proposed by the averaged theory, found as an orbit."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.numerics import elementary
+from models.vibrator.equations.system import System, systems
+from models.vibrator.equations.time_scales import fastest_rates
+from models.vibrator.exact.measures import kloss
+from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.fixed_steps import Array
+from models.vibrator.lanes.orbit import Orbits, find_orbits, follow
+from models.vibrator.parameters import Params, Rows
+from models.vibrator.start.regimes import CAPTURED_BELOW, Outcome, wrapped
+from models.vibrator.theory import averaged
+
+STEPS = 24  # of the orbit, unless the machine is stiff
+LADDER = tuple(base << k for k in range(7) for base in (24, 36))
+_FINE = 16  # points per step at which extremes are looked for
+
+
+class Machines(NamedTuple):
+    """n rigid machines, prepared.
+
+    Attributes
+    ----------
+    p : Params
+    system : System
+    constants : ndarray, shape (n, CONSTANTS)
+        Of `models.vibrator.lanes.fixed_steps.pack`.
+    fastest : ndarray, shape (n,)
+        See `models.vibrator.equations.time_scales.fastest_rates`.
+    synchronous_speed : ndarray, shape (n, 2)
+        [rad s-1]
+    """
+
+    p: Rows
+    system: System
+    constants: Array
+    fastest: Array
+    synchronous_speed: Array
+
+    @staticmethod
+    def prepared(p: Rows) -> "Machines":
+        """Prepare n machines."""
+        m = systems(p)
+        speeds = np.stack([p.synchronous_speed_1, p.synchronous_speed_2], axis=1)
+        return Machines(p, m, fixed_steps.pack(m), fastest_rates(m), speeds)
+
+    def take(self, rows: Any) -> "Machines":
+        """Return some of the machines."""
+        return Machines(
+            Params._make(field[rows] for field in self.p),
+            System._make(field[rows] for field in self.system),
+            self.constants[rows],
+            self.fastest[rows],
+            self.synchronous_speed[rows],
+        )
+
+
+class Known(NamedTuple):
+    """The stable synchronous motion that is known of n machines.
+
+    Attributes
+    ----------
+    found : ndarray of bool, shape (n,)
+        Whether one is known.
+    orbits : Orbits
+    steps : ndarray of int, shape (n,)
+        With which they were found.
+    disphasing : ndarray, shape (n,)
+        Mean disphasing angle in (-pi, pi] [rad], NaN if none is known.
+    ripple : ndarray, shape (n,)
+        Largest departure of the disphasing angle from its mean in a revolution [rad].
+    """
+
+    found: NDArray[np.bool_]
+    orbits: Orbits
+    steps: NDArray[np.int64]
+    disphasing: Array
+    ripple: Array
+
+    def learn(self, rows: Any, other: "Known") -> None:
+        """Take over what is known of the machines in `rows`."""
+        self.found[rows], self.steps[rows] = other.found, other.steps
+        self.disphasing[rows], self.ripple[rows] = other.disphasing, other.ripple
+        for mine, new in zip(self.orbits, other.orbits, strict=True):
+            mine[rows] = new
+
+    def take(self, rows: Any) -> "Known":
+        """Return what is known of some of the machines."""
+        orbits = Orbits._make(field[rows] for field in self.orbits)
+        others = (field[rows] for field in (self.steps, self.disphasing, self.ripple))
+        return Known(self.found[rows], orbits, *others)
+
+
+def propose(machines: Machines, steps: int) -> Known:
+    """Find the stable synchronous orbits that the averaged theory tells of.
+
+    Parameters
+    ----------
+    machines : Machines
+    steps : int
+        In a revolution, 24 at least; 0 chooses for each machine.
+
+    Returns
+    -------
+    Known
+    """
+    theirs = averaged.disphasing(machines.p)
+    return search(machines, theirs.speed, theirs.angle, theirs.exists & theirs.stable, steps)
+
+
+def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: int) -> Known:
+    """Find stable synchronous orbits of n machines at working speed, from a guess.
+
+    Parameters
+    ----------
+    machines : Machines
+    speed, angle : ndarray, shape (n,)
+        Guess of speed [rad s-1] and disphasing angle [rad].
+    wanted : ndarray of bool, shape (n,)
+        Where there is a guess.
+    steps : int
+        In a revolution, 24 at least; 0 chooses for each machine.
+
+    Returns
+    -------
+    Known
+    """
+    n = len(speed)
+    speed, angle = np.where(wanted, speed, 1.0), np.where(wanted, angle, 0.0)
+    state, period = _harmonic(machines.p, speed, angle), 2 * np.pi / speed
+    none = Orbits(np.zeros(n, bool), state, period, np.full(n, np.nan))
+    unknown = np.full((2, n), np.nan)
+    known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), *unknown)
+    needed = np.maximum(period * machines.fastest / fixed_steps.STABLE, max(steps, STEPS))
+    rung = np.array([*LADDER, 0])[np.searchsorted(LADDER, needed)]
+    rung = np.where((rung > 0) & (steps > 0) & (needed <= steps), steps, rung)
+    for count in np.unique(rung[wanted & (rung > 0)]).tolist():
+        rows = np.flatnonzero(wanted & (rung == count))
+        constants = machines.constants[rows]
+        orbits = find_orbits(constants, state[rows], period[rows], count)
+        trace = follow(constants, orbits.state, orbits.period, count)
+        angle = trace[:, :, 3] - trace[:, :, 4]
+        mean = angle.mean(axis=1)
+        ripple = np.abs(angle - mean[:, None]).max(axis=1)
+        slowest = CAPTURED_BELOW * machines.synchronous_speed[rows].max(axis=1)
+        fast = 2 * np.pi / orbits.period >= slowest
+        found = orbits.found & (orbits.multiplier < 1) & fast
+        disphasing = np.where(found, wrapped(mean), np.nan)
+        known.learn(rows, Known(found, orbits, np.full(len(rows), count), disphasing, ripple))
+    return known
+
+
+def _harmonic(p: Rows, speed: Array, angle: Array) -> Array:
+    """Return the state at psi_1 = 0 of harmonic motion at constant speed."""
+    motion = averaged.steady_motion(p, speed, angle)
+    state = np.zeros((len(speed), fixed_steps.STATE))
+    for i, amplitude in enumerate((motion.x, motion.y, motion.alpha)):
+        state[:, i], state[:, 5 + i] = amplitude.real, -speed * amplitude.imag
+    state[:, 4] = -angle
+    state[:, 8] = state[:, 9] = speed
+    return state
+
+
+def describe(machines: Machines, known: Known, out: Outcome, rows: NDArray[np.intp]) -> None:
+    """Note the outputs of machines that run on their orbits, where these are known.
+
+    Parameters
+    ----------
+    machines : Machines
+    known : Known
+    out : Outcome
+        Updated in place.
+    rows : ndarray of int, shape (n,)
+        Where in it the n machines are.
+    """
+    for count in np.unique(known.steps[known.found]).tolist():
+        i = np.flatnonzero(known.found & (known.steps == count))
+        some, part, orbits = rows[i], machines.take(i), known.take(i).orbits
+        trace = follow(part.constants, orbits.state, orbits.period, count)
+        alpha, speed = trace[:, :, 2], trace[:, :, 8:10]
+        turn = 2 * np.pi * np.arange(1, count + 1) / count
+        phase = elementary.cos(turn) - 1j * elementary.sin(turn)
+        out.disphasing[some] = known.disphasing[i]
+        out.multiplier[some] = orbits.multiplier
+        harmonic = 2 * (alpha * phase).mean(axis=1)
+        out.angular_amplitude[some] = np.hypot(harmonic.real, harmonic.imag)
+        left, right = deck_ends(part.system, trace)
+        out.stroke_left[some], out.stroke_right[some] = _half_range(left), _half_range(right)
+        out.speed[some] = 2 * np.pi / orbits.period
+        m = part.system
+        for power, torque, slip, top, w in (
+            (out.power_1, m.torque_1, m.slip_1, m.synchronous_speed_1, speed[:, :, 0]),
+            (out.power_2, m.torque_2, m.slip_2, m.synchronous_speed_2, speed[:, :, 1]),
+        ):
+            lag = top[:, None] - w
+            power[some] = (w * kloss(torque[:, None], slip[:, None], lag)).mean(axis=1)
+
+
+def deck_ends(m: System, trace: Array) -> tuple[Array, Array]:
+    """Return the displacements along xi of the left and the right end of the deck [m].
+
+    Parameters
+    ----------
+    m : System
+        n machines.
+    trace : ndarray, shape (n, k, 10)
+        States.
+
+    Returns
+    -------
+    left, right : ndarray, shape (n, k)
+    """
+    cos = elementary.cos(m.working_angle)[:, None]
+    sin = elementary.sin(m.working_angle)[:, None]
+    along = cos * trace[:, :, 0] + sin * trace[:, :, 1]
+    lever = sin * m.half_spacing[:, None] * trace[:, :, 2]
+    return along - lever, along + lever
+
+
+def _half_range(samples: Array) -> Array:
+    """Return half the peak-to-peak of periodic signals, by their trigonometric interpolant."""
+    count = samples.shape[1]
+    fine = np.fft.irfft(np.fft.rfft(samples, axis=1), _FINE * count, axis=1) * _FINE
+    return np.ptp(fine, axis=1) / 2

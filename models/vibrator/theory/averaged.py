@@ -1,0 +1,293 @@
+"""The averaged theory of synchronous running: one formula for every disturbance.
+
+With both vibrators at the mean speed w and psi_1 - psi_2 = dphi, the shaking body brakes or drives
+rotor i by the vibratory moment
+
+    L_i = (w^2/2) Im(m e_i H_i^* . q e^(-j psi_i)),    q = w^2 G(w) sum_i m e_i H_i e^(j psi_i),
+
+and synchronous running is where motor torque less bearing torque balances it, T_i(w) + L_i = 0.
+At given w the difference of the two balances is c + rho cos(dphi - delta) = 0: where it has
+solutions, just one of the two is restoring, d(L_1 - L_2)/d dphi < 0. That leaves one equation for
+w, the sum of the balances along the restoring dphi.
+
+Forces are taken at the undeflected geometry and to first harmonic; the linear body is treated
+exactly. What is left out, the ripple of the speeds within a revolution, changes dphi of the
+nominal machine by up to 5e-5 rad, its speed by 4e-5 and its amplitudes by 0.25 %. Feed on the deck
+is taken at its declared throw coefficient, however much its own weight damps the deck.
+"""
+
+import cmath
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models.numerics.jit import kernel
+from models.vibrator.parameters import Params, Rows
+from models.vibrator.theory.balance import balance, is_stable, kloss, moments, motors
+from models.vibrator.theory.linear_machine import machines
+from models.vibrator.theory.receptance import respond
+
+_SECANTS = 12
+_NEAR = 0.9  # of the larger synchronous speed: where the secants may look
+_CLOSE = 1e-10  # a step this small, over that speed, is the last
+_SPEEDS = 200  # looked at where the secants fail, geometrically spaced
+_SLOWEST = 0.05  # of the larger synchronous speed: slower is stalled
+
+
+class Disphasing(NamedTuple):
+    """Synchronous running of n machines.
+
+    Attributes
+    ----------
+    angle : ndarray, shape (n,)
+        dphi = psi_1 - psi_2 in (-pi, pi] [rad].
+    speed : ndarray, shape (n,)
+        w [rad s-1].
+    exists : ndarray of bool, shape (n,)
+        Whether the torque balances have a solution; if not, all numbers are NaN.
+    stable : ndarray of bool, shape (n,)
+        Whether it is stable as a solution of the averaged equations
+        I_i psi_i'' = T_i(psi_i') + L_i, the body following at once.
+    angular_amplitude : ndarray, shape (n,)
+        Amplitude of the body's rotation [rad].
+    power_1, power_2 : ndarray, shape (n,)
+        Of the motors, before bearing loss [W]; negative for one that is driven.
+    """
+
+    angle: NDArray[np.float64]
+    speed: NDArray[np.float64]
+    exists: NDArray[np.bool_]
+    stable: NDArray[np.bool_]
+    angular_amplitude: NDArray[np.float64]
+    power_1: NDArray[np.float64]
+    power_2: NDArray[np.float64]
+
+
+class Motion(NamedTuple):
+    """Harmonic motion of n machines: each quantity is Re(amplitude e^(j psi_1)).
+
+    Attributes
+    ----------
+    x, y : ndarray of complex, shape (n,)
+        Displacement of C, the mass centre of the bare body [m].
+    alpha : ndarray of complex, shape (n,)
+        Rotation of the body [rad].
+    slide, turn : ndarray of complex, shape (n,)
+        Of the motor set against the body along its mount's direction [m] and about the midpoint
+        of the shafts [rad]; 0 for a rigid mount.
+    """
+
+    x: NDArray[np.complex128]
+    y: NDArray[np.complex128]
+    alpha: NDArray[np.complex128]
+    slide: NDArray[np.complex128]
+    turn: NDArray[np.complex128]
+
+
+@kernel
+def _by_secants(a, motor_1, motor_2, top):
+    """Return the speed of a state just below the top, NaN if the secants do not lead there."""
+    w = top
+    at = balance(a, motor_1, motor_2, w)
+    slope = -motor_1.breakdown / motor_1.slip**2 - motor_2.breakdown / motor_2.slip**2
+    for _ in range(_SECANTS):
+        step = -at.sum / slope
+        if not _NEAR * top < w + step <= top:
+            return math.nan
+        if abs(step) <= _CLOSE * top:
+            return w + step
+        before = at.sum
+        w += step
+        at = balance(a, motor_1, motor_2, w)
+        slope = (at.sum - before) / step
+    return math.nan
+
+
+@kernel
+def _by_bisection(a, motor_1, motor_2, low, high):
+    """Return the speed between one where the sum is positive and one where it is not."""
+    middle = 0.5 * (low + high)
+    while low < middle < high:
+        if balance(a, motor_1, motor_2, middle).sum > 0.0:
+            low = middle
+        else:
+            high = middle
+        middle = 0.5 * (low + high)
+    return middle
+
+
+@kernel
+def _solve(a, motor_1, motor_2):
+    """Return the fastest stable state's speed and true, else the fastest state's (or NaN), false.
+
+    A state that is stable has a positive sum just below it.
+    """
+    top = max(motor_1.synchronous, motor_2.synchronous)
+    w = _by_secants(a, motor_1, motor_2, top)
+    if w > 0.0:
+        at = balance(a, motor_1, motor_2, w)
+        if at.reached and is_stable(a, motor_1, motor_2, w, at):
+            return w, True
+    found, high = math.nan, top
+    positive = balance(a, motor_1, motor_2, top).sum > 0.0  # if a breakdown speed is the higher
+    for k in range(1, _SPEEDS + 1):
+        low = top * _SLOWEST ** (k / _SPEEDS)
+        was_positive, positive = positive, balance(a, motor_1, motor_2, low).sum > 0.0
+        if positive and not was_positive:
+            w = _by_bisection(a, motor_1, motor_2, low, high)
+            at = balance(a, motor_1, motor_2, w)
+            if at.reached:
+                if is_stable(a, motor_1, motor_2, w, at):
+                    return w, True
+                if math.isnan(found):
+                    found = w
+        high = low
+    return found, False
+
+
+@kernel
+def _disphase(bodies, drives, numbers, flags):
+    for i in range(len(bodies)):
+        a, motor_1, motor_2 = bodies[i], drives[i, 0], drives[i, 1]
+        w, stable = _solve(a, motor_1, motor_2)
+        at = balance(a, motor_1, motor_2, w)
+        angle = math.atan2(at.sin, at.cos)
+        numbers[0, i] = angle if angle != -math.pi else math.pi
+        numbers[1, i] = w
+        numbers[2, i] = w * w * abs(at.alpha)
+        numbers[3, i] = w * kloss(motor_1, w)
+        numbers[4, i] = w * kloss(motor_2, w)
+        flags[0, i], flags[1, i] = not math.isnan(w), stable
+
+
+@kernel
+def _move(bodies, speed, angle, out):
+    for i in range(len(bodies)):
+        a = bodies[i]
+        w = speed[i]
+        g = respond(a, w)
+        one = w * w * a.unbalance_1
+        two = w * w * a.unbalance_2 * cmath.exp(-1j * angle[i])
+        xi, eta = one * g.xi_1 + two * g.xi_2, one * g.eta_1 + two * g.eta_2
+        out[0, i] = a.c * xi - a.s * eta
+        out[1, i] = a.s * xi + a.c * eta
+        out[2, i] = one * g.alpha_1 + two * g.alpha_2
+        out[3, i] = one * g.slide_1 + two * g.slide_2
+        out[4, i] = one * g.turn_1 + two * g.turn_2
+
+
+@kernel
+def _brake(bodies, speed, angle, out):
+    for i in range(len(bodies)):
+        a = bodies[i]
+        g = respond(a, speed[i])
+        l1, l2, _, _ = moments(a, g, speed[i], math.cos(angle[i]), math.sin(angle[i]))
+        out[0, i], out[1, i] = l1, l2
+
+
+def _rows(p: Rows, *more: ArrayLike) -> tuple[Params, list[NDArray[np.float64]]]:
+    """Return Params of equally long contiguous arrays, and whatever goes with them."""
+    columns = np.array(np.broadcast_arrays(*np.atleast_1d(*p, *more)), float)
+    return Params._make(columns[: len(p)]), list(columns[len(p) :])
+
+
+def disphasing(p: Rows) -> Disphasing:
+    """Find the synchronous running of n machines by the averaged theory.
+
+    Parameters
+    ----------
+    p : Params
+        Each field a number or an ndarray of shape (n,).
+
+    Returns
+    -------
+    Disphasing
+        Of several stable states the fastest, which is the one at working speed; a slower one is
+        running caught at a resonance. Of a machine that has no stable state, the fastest unstable
+        one. Not looked for: states faster than both synchronous speeds, slower than 0.05 of the
+        larger, or with dphi where the moments do not restore it.
+
+    Notes
+    -----
+    Below 0.9 of the larger synchronous speed states are looked for between 200 speeds, so two that
+    lie closer than 1.5 % of the speed, at a narrow resonance, may be missed.
+    """
+    p, _ = _rows(p)
+    n = len(p.body_mass)
+    numbers, flags = np.empty((5, n)), np.empty((2, n), np.bool_)
+    _disphase(machines(p), motors(p), numbers, flags)
+    angle, speed, alpha, power_1, power_2 = numbers
+    return Disphasing(angle, speed, flags[0], flags[1], alpha, power_1, power_2)
+
+
+def steady_motion(p: Rows, speed: ArrayLike, angle: ArrayLike) -> Motion:
+    """Return the motion of n machines whose vibrators turn at one constant speed.
+
+    Parameters
+    ----------
+    p : Params
+        Each field a number or an ndarray of shape (n,).
+    speed : array_like, shape (n,)
+        Of both vibrators [rad s-1].
+    angle : array_like, shape (n,)
+        dphi = psi_1 - psi_2 [rad].
+
+    Returns
+    -------
+    Motion
+        With psi_1 = w t and psi_2 = w t - dphi: x(t) = Re(x e^(jwt)), x'(t) = Re(jw x e^(jwt)).
+        psi_1 is counted from the working axis, counter-clockwise.
+    """
+    p, (speed, angle) = _rows(p, speed, angle)
+    out = np.empty((5, len(speed)), complex)
+    _move(machines(p), speed, angle, out)
+    return Motion._make(out)
+
+
+def vibratory_moments(
+    p: Rows, speed: ArrayLike, angle: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the mean moments by which the shaking body drives the two rotors.
+
+    Parameters
+    ----------
+    p : Params
+        Each field a number or an ndarray of shape (n,).
+    speed : array_like, shape (n,)
+        Of both vibrators [rad s-1].
+    angle : array_like, shape (n,)
+        dphi = psi_1 - psi_2 [rad].
+
+    Returns
+    -------
+    moment_1, moment_2 : ndarray, shape (n,)
+        L_i in the direction of rotation of vibrator i [N m].
+    """
+    p, (speed, angle) = _rows(p, speed, angle)
+    out = np.empty((2, len(speed)))
+    _brake(machines(p), speed, angle, out)
+    return out[0], out[1]
+
+
+def feed_gravity(p: Rows) -> NDArray[np.float64]:
+    """Return the gravity that gives the feed its declared throw coefficient.
+
+    Parameters
+    ----------
+    p : Params
+        Each field a number or an ndarray of shape (n,).
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        g = A_y w^2/k_p [m s-2] with A_y the vertical amplitude of the empty deck at the feed, both
+        vibrators in phase, at the mean w of the two synchronous speeds: defined whether or not
+        the vibrators synchronise.
+    """
+    p, _ = _rows(p)
+    speed = (p.synchronous_speed_1 + p.synchronous_speed_2) / 2
+    deck = steady_motion(p._replace(feed_mass=0.0), speed, 0.0)
+    moved = deck.y + p.feed_position * deck.alpha
+    return np.hypot(moved.real, moved.imag) * speed**2 / p.throw_coefficient

@@ -1,0 +1,121 @@
+"""The machine as the averaged theory sees it: what its linear response needs beyond the speed."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.numerics.elementary import cos, sin
+from models.vibrator.parameters import Rows
+from models.vibrator.theory.feed import apparent_mass
+
+
+class Machine(NamedTuple):
+    """What the response of a machine needs beyond the speed; n machines if fields are arrays.
+
+    Attributes
+    ----------
+    c, s : float
+        Cosine and sine of the working angle.
+    along, across, half : float
+        R, w_C and r: where the shafts are [m].
+    mass, inertia : float
+        Of everything that shakes, about C [kg, kg m2].
+    set_mass, set_inertia : float
+        Of the motor set, unbalanced masses included, about the midpoint of the shafts.
+    stiffness_x, damping_x, stiffness_y, damping_y, offset, spacing : float
+        Supports: k_x, b_x, k_y, b_y, h, l.
+    slide_xi, slide_eta : float
+        Unit vector of the mount's direction.
+    slide_stiffness, slide_damping, turn_stiffness, turn_damping : float
+        Mounts; a rigid one has infinite stiffness and no damping.
+    feed, feed_loss, feed_position : float
+        Real and imaginary part of the apparent mass of the feed [kg], and where it is [m].
+    unbalance_1, unbalance_2 : float
+        m e_i [kg m].
+    """
+
+    c: Any
+    s: Any
+    along: Any
+    across: Any
+    half: Any
+    mass: Any
+    inertia: Any
+    set_mass: Any
+    set_inertia: Any
+    stiffness_x: Any
+    damping_x: Any
+    stiffness_y: Any
+    damping_y: Any
+    offset: Any
+    spacing: Any
+    slide_xi: Any
+    slide_eta: Any
+    slide_stiffness: Any
+    slide_damping: Any
+    turn_stiffness: Any
+    turn_damping: Any
+    feed: Any
+    feed_loss: Any
+    feed_position: Any
+    unbalance_1: Any
+    unbalance_2: Any
+
+
+def _damping(ratio: Any, mass: Any, stiffness: Any) -> NDArray[np.float64]:
+    return 2 * ratio * np.sqrt(mass * np.where(np.isinf(stiffness), 0.0, stiffness))
+
+
+def machines(p: Rows) -> np.recarray[Any, Any]:
+    """Return the `Machine` of each of n rows.
+
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,).
+
+    Returns
+    -------
+    recarray, shape (n,)
+        Each a record with the fields of `Machine`.
+    """
+    m = p.unbalanced_mass
+    along = p.shaft_distance * cos(p.shaft_half_angle)
+    half = p.shaft_distance * sin(p.shaft_half_angle)
+    set_mass, set_inertia = p.mount_mass + 2 * m, p.mount_inertia + 2 * m * half**2
+    sprung = p.body_mass + 2 * m
+    loaded = p.feed_mass > 0
+    feed = np.zeros(len(m), complex)
+    feed[loaded] = p.feed_mass[loaded] * apparent_mass(p.throw_coefficient[loaded])
+    return np.rec.fromarrays(
+        Machine(
+            c=cos(p.working_angle),
+            s=sin(p.working_angle),
+            along=along,
+            across=p.axis_offset,
+            half=half,
+            mass=p.body_mass + set_mass,
+            inertia=p.body_inertia + set_inertia + set_mass * (along**2 + p.axis_offset**2),
+            set_mass=set_mass,
+            set_inertia=set_inertia,
+            stiffness_x=p.stiffness_x,
+            damping_x=_damping(p.damping_ratio, sprung, p.stiffness_x),
+            stiffness_y=p.stiffness_y,
+            damping_y=_damping(p.damping_ratio, sprung, p.stiffness_y),
+            offset=p.support_offset,
+            spacing=p.support_half_spacing,
+            slide_xi=cos(p.mount_angle),
+            slide_eta=sin(p.mount_angle),
+            slide_stiffness=p.mount_stiffness,
+            slide_damping=_damping(p.mount_damping_ratio, set_mass, p.mount_stiffness),
+            turn_stiffness=p.mount_rotational_stiffness,
+            turn_damping=_damping(p.mount_damping_ratio, set_inertia, p.mount_rotational_stiffness),
+            feed=feed.real,
+            feed_loss=feed.imag,
+            feed_position=p.feed_position,
+            unbalance_1=p.unbalance_1,
+            unbalance_2=p.unbalance_2,
+        ),
+        dtype=[(name, float) for name in Machine._fields],
+    )

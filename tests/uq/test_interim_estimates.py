@@ -1,0 +1,61 @@
+"""What a run sees when it looks: of which rows, of which element, and what it does not know."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from computed import UNIFORM, computed, kinds, study_of
+from until_studies import study, tables
+
+from uq.analysis.statistics import summarise
+from uq.rows import stopping
+from uq.running import runner
+
+
+def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
+    assert stopping.looks(study(0.1, samples=1000).design) == (32, 63, 125, 250, 500, 1000)
+    assert stopping.looks(study(0.1, samples=20).design) == (20,)
+    assert stopping.confidence(study(0.1, samples=1000).design) == pytest.approx(1 - 0.05 / 6)
+
+
+def look_at(ds, **until):
+    """Look at a result of the model with one output of every kind."""
+    given = tables(until, samples=256) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
+    return stopping.look(study_of(given, "sample_models:KINDS").design, ds)
+
+
+def test_the_element_that_is_known_worst_decides():
+    ds = kinds(samples=256)
+    ds["work"] = ds["work"] * xr.DataArray([1.0, 10.0], dims="side")
+
+    def look(half_width):
+        return look_at(ds, output="work", half_width=half_width)
+
+    half = (look(1.0).estimate.high - look(1.0).estimate.low) / 2
+    assert look(1.0).estimate.value == pytest.approx(float(ds["work"].sel(side="right").mean()))
+    assert look(1.01 * half).reached and not look(0.99 * half).reached
+
+
+def test_a_share_is_of_the_rows_that_did_not_fail():
+    of = study(0.1, above=4.0, samples=200, settings={"fail_above": 0.5})
+    ds = computed(of)
+    sound = ds["y"].values[~np.isnan(ds["y"].values)]
+    value, interval, _ = stopping.look(of.design, ds)
+    assert len(sound) < 150 and value == (sound > 4.0).mean()
+    assert interval.low < value < interval.high
+    whole = computed(study(0.1, above=4.0, samples=200))
+    narrower = stopping.look(of.design, whole).estimate
+    assert interval.high - interval.low > 1.2 * (narrower.high - narrower.low)
+
+
+def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
+    ds = kinds(samples=256)  # lives of 0.5 to 1.5, censored from 1.3 on
+    name = "life[side=left,depth=0.5]"
+    known = look_at(ds, output=name, below=1.0, half_width=0.5)
+    unknown = look_at(ds, output=name, below=1.4, half_width=0.5)
+    assert known.reached and 0.2 < known.estimate.value < 0.4
+    assert np.isnan(unknown.estimate.value) and not unknown.reached
+
+
+def test_it_is_said_at_which_look_a_run_knew_enough():
+    (note,) = summarise(runner.compute(study(10.0, samples=500), workers=0))["notes"]
+    assert "was reached at look 1 of at most 5" in note

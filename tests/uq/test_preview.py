@@ -1,0 +1,54 @@
+"""What is kept of the rows of a run to say how it goes: evenly spaced, and never much of it."""
+
+import numpy as np
+import pytest
+from computed import UNIFORM, as_text
+
+from uq.rows.evaluate import evaluate
+from uq.rows.preview import Glimpse
+from uq.rows.sampling import row_block
+from uq.rows.workload import work_of
+from uq.study.definition import study_from_text
+
+
+@pytest.mark.parametrize("sizes", [(100_000,), (1,), (7, 1000, 3), (4096, 1, 4097)])
+def test_of_many_lives_an_even_part_is_kept(sizes):
+    study = study_from_text(
+        as_text(
+            {
+                "study": {"name": "wear", "model": "exponential-wear"},
+                "design": {"method": "monte-carlo", "samples": 8},
+                "uncertain": {"rate": UNIFORM},
+            }
+        )
+    )
+    glimpse, rows = Glimpse(work_of(study)), row_block(study, 0, 1)
+    chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
+    total = 30_000 if max(sizes) < 30_000 else max(sizes)
+    start = i = 0
+    while start < total:
+        stop = min(start + sizes[i % len(sizes)], total)
+        lives = {"life": np.arange(start, stop, dtype=float)}
+        glimpse.see(chunk._replace(columns=chunk.columns | lives))
+        start, i = stop, i + 1
+    kept = glimpse._sample._values
+    assert 2000 < len(kept) <= 4096 and len(np.unique(np.diff(kept))) == 1
+    assert glimpse.median == ("life", pytest.approx(total / 2, rel=1e-3))
+    assert glimpse.shares == {}
+
+
+def test_what_is_still_going_on_has_not_ended_and_what_is_frequent_comes_first():
+    inside = {"distribution": "uniform", "lower": 0.3, "upper": 0.9}
+    given = {
+        "study": {"name": "kinds", "model": "linear"},
+        "design": {"method": "monte-carlo", "samples": 100},
+        "uncertain": {"x1": inside},
+    }
+    study = study_from_text(as_text(given), model="sample_models:KINDS")
+    glimpse, rows = Glimpse(work_of(study)), row_block(study, 0, 100)
+    chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
+    chunk.columns["life_censored"][:60] = True
+    glimpse.see(chunk)
+    assert glimpse.median == ("life[side=left,depth=0.5]", np.inf)
+    assert list(glimpse.shares) == ["fast", "slow"]
+    assert glimpse.shares["slow"] == (chunk.columns["regime"] == 0).mean() < 0.5

@@ -1,0 +1,204 @@
+"""Basins of attraction of any model, computed as a study is."""
+
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq import store
+from uq.contract import Model
+from uq.errors import InputError
+from uq.exploring.attractors import STANDARD_ERRORS, Compared, attractors
+from uq.exploring.grid import Axis, Grid, grid_of
+from uq.inputs.values import unknown_name
+from uq.rows import results
+from uq.rows.sampling import Rows
+from uq.rows.variables import outputs_of
+from uq.rows.workload import Work
+from uq.running import runner
+
+
+def basins(
+    model: str | Model,
+    axes: Mapping[str, Axis],
+    fixed: Mapping[str, float] | None = None,
+    settings: Mapping[str, Any] | None = None,
+    by: Sequence[str] | None = None,
+    tolerance: float = 0.01,
+    output: str | Path | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+) -> xr.Dataset:
+    """Run a model on a grid of its parameters, and tell on which attractor each point settles.
+
+    Parameters
+    ----------
+    model : str or Model
+        The name of an installed model, ``"package.module:ATTRIBUTE"``, or a model; one that is not
+        installed runs in this process.
+    axes : dict of str to tuple
+        Parameter -> (first value, last value, number of values), evenly spaced, in the parameter's
+        unit.
+    fixed : dict of str to float, optional
+        Other parameters that are not to have their nominal values.
+    settings : dict, optional
+        Numerical settings by name.
+    by : sequence of str, optional
+        Outputs that tell attractors apart, beside those that are categories; by default all but
+        the errors of others. Extremes of a chaotic response scatter: name its means instead.
+    tolerance : float
+        Values of an output are alike if they differ by no more than this share of its largest
+        magnitude on the grid, or by no more than four standard errors beyond that if the model
+        gives them, as ``<output>_error``.
+    output : str or Path, optional
+        NetCDF file to write; if it holds these very basins, they are read and not computed.
+    workers, scheduler
+        As in `uq.run`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Outputs, ``status`` and ``attractor`` on the grid, whose dimensions are the parameters.
+        Attractors are numbered from the most frequent, 0; -1 is a row that failed. Two rows share
+        one if their categories are equal and, output by output, rows whose values are alike lead
+        from one to the other. Along ``basin`` stands what is known of each attractor: its ``share``
+        of all rows, and the values of its first row as ``representative_<name>``. For a table, use
+        ``ds.drop_dims(list(axes)).to_dataframe()``.
+
+    Raises
+    ------
+    InputError
+        When a name is unknown, a value not admissible, or `output` holds something else.
+    RunError
+        When no result can be had: workers that die, a disk that is full.
+    """
+    grid = grid_of(model, axes, fixed or {}, settings or {})
+    compared = _compared_outputs(grid.model, by)
+    if not tolerance >= 0:
+        raise InputError(f"tolerance must not be negative: {tolerance!r}")
+    if not grid.reference and (workers or scheduler is not None):
+        raise InputError(
+            f"model '{grid.model.name}' is not installed, and workers would not find it: "
+            "give it as 'package.module:ATTRIBUTE'"
+        )
+    choices = json.dumps([grid.choices, compared, float(tolerance)])
+    identity = hashlib.sha256(choices.encode()).hexdigest()
+    finish = partial(_finish, grid, compared, float(tolerance), identity)
+    work = Work(
+        grid.model, grid.reference, grid.settings, grid.rows, 1, block=grid.block, finish=finish
+    )
+    path = None if output is None else Path(output)
+    if path is not None:
+        if path.is_file():
+            return _found(path, identity)
+        store.check_target(path, store.row_bytes(work) * work.total)
+    ds = runner.carry_out(work, workers if grid.reference else 0, scheduler)
+    if path is not None:
+        store.write(ds, path)
+    return ds
+
+
+def _compared_outputs(model: Model, by: Sequence[str] | None) -> tuple[str, ...]:
+    names = tuple(model.outputs)
+    if by is None:
+        return tuple(name for name in names if name not in {f"{other}_error" for other in names})
+    unknown = [name for name in by if name not in names]
+    if unknown:
+        raise InputError(*(f"by: {unknown_name('output', name, model, names)}" for name in unknown))
+    return tuple(name for name in names if name in by or model.outputs[name].is_category)
+
+
+def _found(path: Path, identity: str) -> xr.Dataset:
+    try:
+        ds = xr.load_dataset(path, engine="netcdf4", decode_timedelta=False)
+    except (OSError, ValueError, RuntimeError):
+        raise InputError(f"{path}: not a readable netCDF file; choose another output") from None
+    if ds.attrs.get("basins_identity") != identity:
+        raise InputError(f"{path}: holds something else; choose another output")
+    return ds
+
+
+def _finish(
+    grid: Grid,
+    compared: Sequence[str],
+    tolerance: float,
+    identity: str,
+    rows: Rows,
+    columns: results.Columns,
+    status: NDArray[np.int8],
+    failures: Mapping[str, str],
+) -> xr.Dataset:
+    """Tell the attractors apart, and fold the rows into a grid."""
+    model = grid.model
+    values = {
+        name: rows.x[:, i] if name in grid.axes else grid.constants[name]
+        for i, name in enumerate(model.parameter_names)
+    }
+    flat = results.build_rows(model, grid.settings, values, columns, status, failures)
+    known = np.flatnonzero(~results.failed(flat))
+    labels = np.full(grid.rows, -1, np.int32)
+    labels[known] = attractors(
+        list(_numbers(flat.isel(sample=known), compared, tolerance)), len(known)
+    )
+    about = {
+        "long_name": "attractor, -1 where the row failed",
+        "compared": " ".join(compared),
+        "tolerance": tolerance,
+        "standard_errors": STANDARD_ERRORS,
+    }
+    flat["attractor"] = ("sample", labels, about)
+    ds = _folded(flat, grid).merge(_table(flat.isel(sample=known), grid))
+    ds.attrs = flat.attrs | {
+        "title": f"Basins of attraction of model '{model.name}'",
+        "basins_identity": identity,
+    }
+    for variable in ds.variables.values():
+        variable.encoding["_FillValue"] = None
+    return ds
+
+
+def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterator[Compared]:
+    """Yield what is compared, element by element."""
+    declared = outputs_of(flat)
+    for name in names:
+        values = flat[name].astype(float)
+        errors = xr.zeros_like(values)
+        if f"{name}_error" in flat:
+            errors = (errors + flat[f"{name}_error"]).transpose(*values.dims)
+        slack = 0.0 if declared[name].is_category else tolerance
+        columns = (np.reshape(a.values, (len(a), -1)).T for a in (values, errors))
+        for value, error in zip(*columns, strict=True):
+            yield Compared(value, np.nan_to_num(error, posinf=0.0), slack)
+
+
+def _folded(flat: xr.Dataset, grid: Grid) -> xr.Dataset:
+    """Give the rows one dimension for each axis."""
+    axes, variables = tuple(grid.axes), {}
+    for name, rows in flat.data_vars.items():
+        if "sample" in rows.dims:
+            data = rows.values.reshape(*grid.shape, *rows.shape[1:])
+            variables[name] = xr.Variable((*axes, *rows.dims[1:]), data, rows.attrs)
+        else:
+            variables[name] = rows.variable
+    variables |= {name: xr.Variable(name, grid.values(name), flat[name].attrs) for name in axes}
+    return xr.Dataset(variables, flat.coords)
+
+
+def _table(flat: xr.Dataset, grid: Grid) -> xr.Dataset:
+    """Return what is known of each attractor, given the rows that did not fail."""
+    _, first, count = np.unique(flat["attractor"], return_index=True, return_counts=True)
+    some = flat[[*grid.axes, *grid.model.outputs]].isel(sample=first)
+    for name, output in grid.model.outputs.items():
+        if output.is_category:
+            words = np.array(["none", *output.categories])[some[name].values + 1]
+            about = {"long_name": output.meaning}
+            some[name] = some[name].dims, words, about
+    table = some.rename({"sample": "basin"} | {name: f"representative_{name}" for name in some})
+    table["share"] = ("basin", count / grid.rows, {"units": "1", "long_name": "share of all rows"})
+    return table.assign_coords(basin=("basin", np.arange(len(first)), {"long_name": "attractor"}))

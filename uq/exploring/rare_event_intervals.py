@@ -1,0 +1,81 @@
+"""What the rows of a rare event support: its interval, however the replicates ended."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.intervals import Ends, binomial_interval, scatter_interval
+
+if TYPE_CHECKING:
+    from uq.exploring.subset_simulation import Found
+
+Floats = NDArray[np.float64]
+
+
+def log_scatter_interval(estimates: Floats) -> Ends:
+    """Return the interval of a small probability from independent estimates of it.
+
+    Parameters
+    ----------
+    estimates : ndarray, shape (R,)
+        Not negative.
+
+    Returns
+    -------
+    low, high : float
+        Student's interval of the logarithms about the mean; where some estimates are zero, that of
+        the estimates themselves, from zero up.
+    """
+    mean = float(estimates.mean())
+    if (estimates > 0).all():
+        low, high = np.exp(scatter_interval(np.log(mean), np.log(estimates)))
+        return low, high
+    low, high = scatter_interval(mean, estimates)
+    return np.maximum(low, 0.0), high
+
+
+def subset_interval(found: "list[Found]", samples: int) -> Ends:
+    """Return the interval that replicates of subset simulation support.
+
+    Parameters
+    ----------
+    found : list of Found
+    samples : int
+        Rows of each level.
+
+    Returns
+    -------
+    low, high : float
+        Where every replicate reached the event: from their scatter, or where all ended at the first
+        level, whose rows are independent, that of a share of these. Else from zero, or what the
+        scatter leaves above it, to the lesser of two bounds from above. One is that of the share of
+        the first level's rows. The other takes for each replicate that never got there the
+        probability of the last level it reached, of which the event is a part.
+    """
+    estimates = np.array([one.probability for one in found])
+    rows = samples * len(found)
+    first = binomial_interval(sum(one.first_hits for one in found) / rows, rows)
+    if all(one.levels == 1 for one in found):
+        return first
+    scatter = log_scatter_interval(estimates)
+    if (estimates > 0).all():
+        return scatter
+    at_most = np.array([one.probability or one.reached for one in found])
+    high = np.fmin(first[1], log_scatter_interval(at_most)[1])
+    return float(np.fmax(scatter[0], 0.0)), float(high)
+
+
+def with_failed_inside(hits: int, failed: int, rows: int) -> float:
+    """Return the bound from above if the failed rows lay within the event.
+
+    Parameters
+    ----------
+    hits, failed, rows : int
+        Of independent rows.
+
+    Returns
+    -------
+    float
+    """
+    return float(binomial_interval((hits + failed) / rows, rows)[1])

@@ -1,0 +1,248 @@
+"""The rows of one run on their way: taken in order, computed here or on workers, kept.
+
+Rows are cut into chunks of whole design groups, one kernel call each. How they are cut and who
+computes them changes no bit of the result.
+"""
+
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from math import ceil
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+from uq.rows.evaluate import Chunk, KernelError
+from uq.rows.sampling import Rows
+from uq.rows.workload import Work
+from uq.running.isolation import Evaluate, task_of
+from uq.running.sent_chunks import Flight
+from uq.store import DiskStore, MemoryStore, row_bytes
+
+if TYPE_CHECKING:
+    from uq.running.cluster import Workers
+
+CHUNK_SECONDS = 0.5
+"""Work in a chunk, unless the caller says how many rows."""
+
+# Longest chunk for the sake of a whole block of the kernel: half a block may take as long.
+_BLOCK_SECONDS = 5.0
+_FIRST_ROWS = 16
+_IN_FLIGHT = 4  # chunks at least, also while workers start
+_LAST_SHARE = 1 / 8  # of a chunk: smaller ones towards the end would waste work
+_GROWTH = 4  # of the chunks of the pilot
+_LIMIT_SHARE = 0.25  # of the time limit of a row, for a whole chunk
+_CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
+_ENOUGH_ROWS = 32  # to blame the model and not the rows
+_POLL_SECONDS = 0.2
+
+
+class Progress(NamedTuple):
+    """How far a run is.
+
+    Attributes
+    ----------
+    done, total, failed : int
+        Rows.
+    found : int
+        Rows among those done that were there from the start.
+    status : dict of str to int
+        Status label -> rows.
+    median : tuple of (str, float) or None
+        Name and median of a life [s] that is of interest, among the rows that arrived in this
+        process.
+    shares : dict of str to float
+        Of regimes, among the same rows.
+    dashboard : str
+        Address of the page of a dask cluster, or "".
+    compiling : bool
+        Whether the model is being compiled, for which rows wait.
+    """
+
+    done: int
+    total: int
+    failed: int
+    found: int = 0
+    status: Mapping[str, int] = MappingProxyType({})
+    median: tuple[str, float] | None = None
+    shares: Mapping[str, float] = MappingProxyType({})
+    dashboard: str = ""
+    compiling: bool = False
+
+
+Report = Callable[[Progress], object]
+
+
+class Job:
+    """Work under way; rows are taken in order.
+
+    Parameters
+    ----------
+    work : Work
+    chunk_rows : int or None
+        Rows per chunk, if the caller has a wish.
+    report : callable
+        Called with a `Progress` whenever rows have arrived.
+    store : MemoryStore or DiskStore
+        Where they are kept; what it lacks is computed.
+    evaluate : callable
+        Computes rows on this computer.
+    row_limit : float or None
+        Longest time for one row [s].
+    stop : int, optional
+        Number behind the last row that is wanted; by default all are.
+
+    Attributes
+    ----------
+    store : MemoryStore or DiskStore
+        The rows that have arrived.
+    """
+
+    def __init__(
+        self,
+        work: Work,
+        chunk_rows: int | None,
+        report: Report,
+        store: MemoryStore | DiskStore,
+        evaluate: Evaluate,
+        row_limit: float | None = None,
+        stop: int | None = None,
+    ) -> None:
+        self.work = work
+        self.report = report
+        self.store = store
+        self._wish = chunk_rows
+        self._evaluate = evaluate
+        self._row_limit = row_limit
+        stop = store.total if stop is None else stop
+        self._todo = deque((a, min(b, stop)) for a, b in store.missing if a < stop)
+        self._rows = sum(b - a for a, b in self._todo)
+        self._untaken = self._left = self._rows
+        self._row_seconds = 0.0
+        self._dashboard = ""
+
+    @property
+    def complete(self) -> bool:
+        """Whether all rows have arrived."""
+        return self._left == 0
+
+    @property
+    def seconds(self) -> float:
+        """Work of all rows that were to be computed, by the cost of the latest."""
+        return self._row_seconds * self._rows
+
+    @property
+    def seconds_left(self) -> float:
+        """Work that is left, by the cost of the latest rows computed here."""
+        return self._row_seconds * self._left
+
+    @property
+    def groups(self) -> int:
+        """Tasks into which the rows can be cut at most."""
+        return self.store.total // self.work.group
+
+    def pilot(self, share: float) -> None:
+        """Run the first rows here, more and more of them, until a chunk takes a while.
+
+        The first call may compile, so only later ones tell the cost of a row. No more than about
+        `share` of all rows that are to be computed is done here.
+        """
+        size = self._whole(self._wish or _FIRST_ROWS)
+        least_left = (1 - share) * self._untaken
+        self._here(size)
+        spent = 0.0
+        while spent < CHUNK_SECONDS and self._untaken > least_left:
+            size = min(_GROWTH * size, self._chunk_rows())
+            spent += self._here(size)
+
+    def finish_here(self) -> None:
+        """Run the other rows without workers."""
+        while not self.complete:
+            self._here(self._chunk_rows())
+
+    def finish_on(self, crew: "Workers") -> None:
+        """Run the other rows on workers, and here while none of our own is there."""
+        self._dashboard = crew.dashboard
+        flight = Flight(self.work, task_of(self.work), crew, self._row_limit)
+        while not self.complete:
+            threads = crew.threads
+            sharing = max(1, threads or crew.own)
+            # No more chunks in flight than keep the workers busy.
+            while self._untaken and len(flight) < max(_IN_FLIGHT, 2 * sharing):
+                flight.send(*self._take(self._shared(sharing)))
+            if crew.own and not threads and self._untaken:
+                self._here(self._shared(sharing))
+            for start, some, chunk, seconds in flight.landed():
+                self._row_seconds = seconds / len(some.x)
+                self._keep(start, some, chunk)
+            self.store.keep_up()
+
+    def _here(self, size: int) -> float:
+        """Run the next rows on this computer; return the seconds it took."""
+        if not self._untaken:
+            return 0.0
+        start, some = self._take(size)
+        began = time.perf_counter()
+        chunk = self._evaluate(some.x, some.seed, start)
+        seconds = time.perf_counter() - began
+        self._row_seconds = seconds / len(some.x)
+        self._keep(start, some, chunk)
+        return seconds
+
+    def _take(self, size: int) -> tuple[int, Rows]:
+        start, end = self._todo.popleft()
+        stop = min(start + size, end)
+        if stop < end:
+            self._todo.appendleft((stop, end))
+        self._untaken -= stop - start
+        return start, self.work.block(start, stop)
+
+    def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
+        self.store.glimpse.see(chunk)
+        self.store.add(start, some, chunk)
+        self._left -= len(some.x)
+        self.tell()  # at once: an interrupt says how many rows are kept
+        wrong = self.store.shapes_all_wrong
+        if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
+            raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")
+        self.store.keep_up()
+
+    def tell(self) -> None:
+        """Report how far the run is."""
+        store = self.store
+        seen = store.glimpse.median, store.glimpse.shares
+        counts = store.done, store.total, store.failed, store.found, dict(store.status)
+        self.report(Progress(*counts, *seen, self._dashboard))
+
+    def _chunk_rows(self) -> int:
+        most = _CHUNK_BYTES // row_bytes(self.work)
+        if self._row_limit and self._row_seconds:  # sound chunks are not to be stopped
+            most = max(1, min(most, int(_LIMIT_SHARE * self._row_limit / self._row_seconds)))
+        if self._wish:
+            return self._whole(min(self._wish, most) if self._row_limit else self._wish)
+        return min(self._whole(most), chunk_rows(self.work, self._row_seconds))
+
+    def _shared(self, threads: int) -> int:
+        """Return the rows of the next chunk: all threads are to finish together."""
+        size = self._chunk_rows()
+        share = max(ceil(self._untaken / threads), int(_LAST_SHARE * size))
+        return min(size, self._whole(share))
+
+    def _whole(self, size: float) -> int:
+        """Round up to whole groups of the design."""
+        return self.work.group * ceil(size / self.work.group)
+
+
+def chunk_rows(work: Work, row_seconds: float) -> int:
+    """Return how many rows make a good chunk, whole groups of the design.
+
+    Parameters
+    ----------
+    work : Work
+    row_seconds : float
+        What a row costs [s], 0 if unknown.
+    """
+    size: float = _CHUNK_BYTES // row_bytes(work)
+    if row_seconds:
+        block = min(work.model.block, ceil(_BLOCK_SECONDS / row_seconds))
+        size = min(size, block * max(1, round(CHUNK_SECONDS / (row_seconds * block))))
+    return work.group * ceil(size / work.group)
