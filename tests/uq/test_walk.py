@@ -266,7 +266,7 @@ def test_rare_events(method, damage, settings):
 @pytest.mark.parametrize("estimate", [{}, {"quantile": 0.5}, {"above": 6.0}])
 def test_a_look_at_damaged_rows(damage, estimate):
     ds = damaged(linear(until={"output": "y", "half_width": 0.5} | estimate), damage, ("y",))
-    seen = stopping.look(study_file_of(ds).design, ds)
+    seen = stopping.interim_estimate(study_file_of(ds).design, ds)
     if damage == "all failed":
         assert not seen.reached and np.isnan(seen.estimate.numbers[:2]).all()
         return

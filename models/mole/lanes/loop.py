@@ -1,4 +1,4 @@
-"""The fast propagator: sixteen moles abreast, each with its own step, every event located.
+"""Sixteen moles abreast, each with its own step, every event located.
 
 All lanes take a trial step; what follows is each lane's own affair. A lane whose guards stay
 positive goes on. One that has met an event tries again with a step that ends there, which takes two
