@@ -35,6 +35,7 @@ LAYERS = (
     {"contract"},
     GROUND,
     {"designs"},
+    {"methods"},
     {"inputs"},
     {"study"},
     {"rows", "store"},
