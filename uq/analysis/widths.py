@@ -4,7 +4,8 @@ By the spread of independent rows. Intervals from replicates scatter, and good d
 narrower than that: for these the width is about the most to be expected.
 """
 
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -30,7 +31,31 @@ _ENOUGH_ROWS = 8
 _LEVEL = 0.975
 
 
-def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
+@dataclass(frozen=True)
+class Widths:
+    """Widths of the 95 % intervals of an element of an output; None where the pilot cannot tell.
+
+    Attributes
+    ----------
+    units : str
+        Of the output.
+    mean : float or None
+    quantiles : dict of float to float or None
+        Probability -> width.
+    thresholds : dict of float to float or None
+        Threshold -> width of the probability of lying above.
+    indices : dict of str to float or None
+        The widest of ``S1`` and of ``ST``, where the design is made for Sobol' indices.
+    """
+
+    units: str
+    mean: float | None
+    quantiles: Mapping[float, float | None]
+    thresholds: Mapping[float, float | None]
+    indices: Mapping[str, float | None]
+
+
+def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
     """Return the widths of the 95 % intervals that a whole study will give.
 
     Parameters
@@ -40,10 +65,8 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
 
     Returns
     -------
-    dict
-        Element of an output -> ``units``, width of the ``mean``'s interval, of ``quantiles`` by
-        probability and of ``thresholds``' probabilities, and, where the design is made for Sobol'
-        indices, the widest of ``S1`` and ``ST``. None where the pilot cannot tell.
+    dict of str to Widths
+        Element of an output -> widths.
     """
     analysis = analysis_of(pilot)
     samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
@@ -57,19 +80,17 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
         elements_of(independent_rows(pilot), shown_outputs(pilot, analysis)),
         strict=True,
     ):
-        found[element.name] = {
-            "units": element.units,
-            "mean": _mean(element, rows, factor),
-            "quantiles": {
-                repr(p): _quantile(element.at_least, p, rows, factor) for p in analysis.quantiles
-            },
-            "thresholds": {
-                repr(t): _share(element, t, rows, factor)
+        sobol = DESIGNS[pilot.attrs["design"]].crossed
+        found[element.name] = Widths(
+            units=element.units,
+            mean=_mean(element, rows, factor),
+            quantiles={p: _quantile(element.at_least, p, rows, factor) for p in analysis.quantiles},
+            thresholds={
+                t: _share(element, t, rows, factor)
                 for t in analysis.thresholds.get(element.output, ())
             },
-        }
-        if DESIGNS[pilot.attrs["design"]].crossed:
-            found[element.name] |= _indices(whole, groups, labels, samples * replicates, factor)
+            indices=_indices(whole, groups, labels, samples * replicates, factor) if sobol else {},
+        )
     return found
 
 
