@@ -33,6 +33,7 @@ LAYERS = (
     {"contract"},
     GROUND,
     {"designs"},
+    {"methods"},
     {"inputs"},
     {"study"},
     {"rows", "store"},

@@ -12,8 +12,12 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import stats
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.indices.targets import lightened, number_of
+from uq.methods.indices import Kind
+from uq.methods.method import Method
+from uq.methods.registry import METHODS, piloted_by
+from uq.methods.sample import Sample
 from uq.order_statistics import is_within
 from uq.rows.elements import (
     Element,
@@ -45,7 +49,7 @@ class Widths:
     thresholds : dict of float to float or None
         Threshold -> width of the probability of lying above.
     indices : dict of str to float or None
-        The widest of ``S1`` and of ``ST``, where the design is made for Sobol' indices.
+        The widest of each kind (``S1``, ``ST``) that the design feeds and a pilot can forecast.
     """
 
     units: str
@@ -74,13 +78,13 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
     rows = samples * replicates * (2 if "A" in labels else 1)
     factor = _factor(are_independent(pilot), replicates)
     groups = _groups(pilot, len(labels))
+    method = piloted_by(DESIGNS[pilot.attrs["design"]])
     found = {}
     for whole, element in zip(
         elements_of(pilot, shown_outputs(pilot, analysis)),
         elements_of(independent_rows(pilot), shown_outputs(pilot, analysis)),
         strict=True,
     ):
-        sobol = DESIGNS[pilot.attrs["design"]].crossed
         found[element.name] = Widths(
             units=element.units,
             mean=_mean(element, rows, factor),
@@ -89,7 +93,9 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
                 t: _share(element, t, rows, factor)
                 for t in analysis.thresholds.get(element.output, ())
             },
-            indices=_indices(whole, groups, labels, samples * replicates, factor) if sobol else {},
+            indices=_indices(whole, method, groups, labels, samples * replicates, factor)
+            if method
+            else {},
         )
     return found
 
@@ -140,19 +146,33 @@ def _groups(pilot: xr.Dataset, blocks: int) -> NDArray[np.intp]:
 
 
 def _indices(
-    element: Element, groups: NDArray[np.intp], labels: list[str], n: int, factor: float | None
+    element: Element,
+    method: str,
+    groups: NDArray[np.intp],
+    labels: list[str],
+    n: int,
+    factor: float | None,
 ) -> dict[str, float | None]:
-    """Return the widest interval of first-order and of total indices, as of independent groups."""
+    """Return the widest interval of each kind of index, as of independent groups."""
     target = lightened(number_of(element))
-    y = target.values[groups]
-    y = y[np.isfinite(y).all(axis=1)]
-    if target.refused or factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
-        return {"S1": None, "ST": None}
-    block = dict(zip(labels, ((y - y.mean()) / y.std()).T, strict=True))
-    mixed = [value for label, value in block.items() if label.startswith("AB_")]
-    first = max(np.std(block["B"] * (one - block["A"])) for one in mixed)
-    total = max(np.std(0.5 * (block["A"] - one) ** 2) for one in mixed)
+    own = Sample(target.values, {}, groups[None], tuple(labels))
+    spreads = {} if target.refused else _spreads(METHODS[method], own)
     return {
-        "S1": float(2 * factor * first / np.sqrt(n)),
-        "ST": float(2 * factor * total / np.sqrt(n)),
+        kind.key: _index(spreads.get(kind), n, factor)
+        for kind in METHODS[method].kinds
+        if not kind.of_pairs
     }
+
+
+def _spreads(method: Method, sample: Sample) -> dict[Kind, float]:
+    """Return what a few groups tell of each kind of index; nothing where they are too few."""
+    whole = sample.values[sample.groups][sample.whole]
+    enough = len(whole) >= _ENOUGH_ROWS and whole.std() > 0
+    return method.pilot(sample) if enough and method.pilot else {}
+
+
+def _index(spread: float | None, groups: int, factor: float | None) -> float | None:
+    """Return the widest interval of a kind of index, as of independent groups."""
+    if spread is None or factor is None:
+        return None
+    return float(2 * factor * spread / np.sqrt(groups))

@@ -3,7 +3,8 @@
 from itertools import combinations
 
 from uq.cli.printing import grid, heading, number
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
+from uq.methods.registry import fed_by
 from uq.rows.sampling import group_size, rows
 from uq.running.existing import output_path
 from uq.study.definition import Study, load_study
@@ -21,7 +22,7 @@ def check(path: str, model: str | None) -> None:
     stated = ", stated to be independent" * design.independent
     unsaid = DESIGNS[design.method].imported and not design.independent
     dependent = study.dependence is not None or unsaid
-    feeds = ", ".join(DESIGNS[design.method].feeds_with(dependent))
+    feeds = ", ".join(fed_by(DESIGNS[design.method], dependent))
     grid(
         [
             ("model", f"{study.model.name}, version {study.model.version}"),
