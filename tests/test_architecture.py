@@ -64,6 +64,7 @@ STOREYS = {
         {"start"},
         {"response"},
         {"wear"},
+        {"units"},
         {"batch", "trajectory"},
         {"branches"},
         {"explore"},
