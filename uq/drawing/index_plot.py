@@ -5,18 +5,18 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.drawing.figure import (
     COLOURS,
-    legend,
-    new_figure,
     place_in_words,
     roomy,
     sentence,
     styled,
     with_symbol,
 )
+from uq.drawing.panel import column, figure_of, heading, legend
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
 from uq.indices.targets import FORMS, split_name
@@ -41,7 +41,15 @@ def _is_bar(kind: str, value: Any) -> bool:
     return isinstance(value, dict) and kind not in ("S2", "dummy", "noise")
 
 
-def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:
+@styled
+def index_bars(
+    ds: xr.Dataset,
+    output: str,
+    *,
+    method: str | None = None,
+    found: Mapping[str, Any] | None = None,
+    axes: Axes | None = None,
+) -> Figure:
     """Draw the sensitivity indices of one output as bars, with their 95 % intervals.
 
     Parameters
@@ -49,9 +57,14 @@ def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure
     ds : xarray.Dataset
         A result.
     output : str
-        One of the names that `uq.indices.sensitivities` returns.
+        One of the names that `uq.sensitivity` returns.
     method : str, optional
         By default the first that the study asks for.
+    found : dict, optional
+        The entry of this output in what `uq.indices.sensitivities` returns, if that is known
+        already.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
 
     Returns
     -------
@@ -62,65 +75,53 @@ def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure
     InputError
         When there is no such output, it stands for several, or it has no indices.
     """
+    name, entry = (output, found) if found else _only(ds, output, method)
+    kinds = [kind for kind, value in entry.items() if _is_bar(kind, value)]
+    parameters = sorted(entry[kinds[-1]], key=lambda p: entry[kinds[-1]][p]["value"] or 0.0)
+    labels = [_named(ds[parameter]) for parameter in parameters]
+    lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
+    (panel,) = column(axes, 0.8 + 0.13 * lines.sum(), entries=2)
+    middle = np.cumsum(lines) - lines / 2
+    thickness = 0.8 * lines.min() / len(kinds)
+    for i, kind in enumerate(kinds):
+        y = middle + thickness * (len(kinds) / 2 - i - 0.5)
+        drawn = [entry[kind][parameter] for parameter in parameters]
+        table = np.array([(one["value"], one["low"], one["high"]) for one in drawn], dtype=float)
+        value, ends = table[:, 0], table[:, 1:].T
+        panel.barh(y, value, thickness, color=COLOURS[i], label=MEANING.get(kind, kind))
+        panel.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
+    for kind, limit in entry.get("dummy", {}).items():
+        of_all = kind.endswith("_any")
+        label = "the largest of as many" if of_all else "largest of inputs that play no part"
+        panel.axvline(limit, color="black", ls=":" if of_all else "--", lw=0.8, label=label)
+    panel.axvline(0, color="black", lw=0.6)
+    # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
+    shares = "mu_star" not in kinds
+    if shares:
+        low, high = panel.get_xlim()
+        panel.set_xlim(max(low, -0.25), min(high, 1.25))
+    panel.set_yticks(middle, labels)
+    panel.set_ylim(0, lines.sum())
+    roomy(panel, ticks=3)  # the labels take most of the width
+    known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
+    form, *_ = split_name(name)
+    unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect, in the unit of the output"
+    axis = "Sensitivity index [1]" if shares else unit
+    panel.set_xlabel(axis + known * ",\nwith 95 % interval")
+    heading(panel, subject(ds, name))
+    legend(panel)
+    return figure_of(panel)
+
+
+def _only(ds: xr.Dataset, output: str, method: str | None) -> tuple[str, Mapping[str, Any]]:
+    """Return name and entry of the only target that a name stands for."""
     found = sensitivities(ds, method, output)["outputs"]
     if len(found) > 1:
         raise InputError(f"'{output}' stands for several; name one of: {', '.join(found)}")
     ((name, entry),) = found.items()
     if "refused" in entry:
         raise InputError(f"{name}: {entry['refused']}")
-    return bars(ds, name, entry)
-
-
-@styled
-def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
-    """Draw one entry of what `uq.indices.sensitivities` returns.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-    name : str
-    entry : dict
-        Not refused.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    kinds = [kind for kind, value in entry.items() if _is_bar(kind, value)]
-    parameters = sorted(entry[kinds[-1]], key=lambda p: entry[kinds[-1]][p]["value"] or 0.0)
-    labels = [_named(ds[parameter]) for parameter in parameters]
-    lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
-    figure, (axes,) = new_figure(0.8 + 0.13 * lines.sum(), entries=2)
-    middle = np.cumsum(lines) - lines / 2
-    thickness = 0.8 * lines.min() / len(kinds)
-    for i, kind in enumerate(kinds):
-        y = middle + thickness * (len(kinds) / 2 - i - 0.5)
-        found = [entry[kind][parameter] for parameter in parameters]
-        table = np.array([(one["value"], one["low"], one["high"]) for one in found], dtype=float)
-        value, ends = table[:, 0], table[:, 1:].T
-        axes.barh(y, value, thickness, color=COLOURS[i], label=MEANING.get(kind, kind))
-        axes.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
-    for kind, limit in entry.get("dummy", {}).items():
-        of_all = kind.endswith("_any")
-        label = "the largest of as many" if of_all else "largest of inputs that play no part"
-        axes.axvline(limit, color="black", ls=":" if of_all else "--", lw=0.8, label=label)
-    axes.axvline(0, color="black", lw=0.6)
-    # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
-    shares = "mu_star" not in kinds
-    if shares:
-        low, high = axes.get_xlim()
-        axes.set_xlim(max(low, -0.25), min(high, 1.25))
-    axes.set_yticks(middle, labels)
-    axes.set_ylim(0, lines.sum())
-    roomy(axes, ticks=3)  # the labels take most of the width
-    known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
-    form, *_ = split_name(name)
-    unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect, in the unit of the output"
-    axis = "Sensitivity index [1]" if shares else unit
-    axes.set_xlabel(axis + known * ",\nwith 95 % interval")
-    figure.suptitle(subject(ds, name), x=0.01, ha="left", fontsize=8)
-    legend(axes)
-    return figure
+    return name, entry
 
 
 def _named(parameter: xr.DataArray) -> str:
