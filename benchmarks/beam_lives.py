@@ -13,9 +13,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from models.beam import MODEL, lanes
-from models.beam.batch import initial_gaps
 from models.beam.parameters import REGIMES, Params, Settings
 from models.beam.response.settling import settle
+from models.beam.start import initial_gaps
 from models.beam.structure.modal import beams
 from models.beam.wear.accelerated_life import run
 from models.beam.wear.regimes import changes_of, confirmed_regimes

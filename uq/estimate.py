@@ -22,6 +22,11 @@ class Estimate:
     reason: str = ""
 
     @property
+    def numbers(self) -> tuple[float, float, float]:
+        """Value and both ends."""
+        return self.value, self.low, self.high
+
+    @property
     def has_interval(self) -> bool:
         """Whether both ends are finite."""
         return isfinite(self.low) and isfinite(self.high)

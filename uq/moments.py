@@ -5,11 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy import stats
 
+from uq.estimate import Estimate
 from uq.intervals import (
     CONFIDENCE,
     UNKNOWN,
+    Ends,
     Floats,
-    Interval,
     Replicates,
     by_replicate,
     is_constant,
@@ -34,23 +35,17 @@ class Moments(NamedTuple):
 
     Attributes
     ----------
-    mean, sd : float
-        NaN where they do not exist.
-    mean_interval, sd_interval : Interval
+    mean, sd : Estimate
+        With the reason where the tail forbids the number, or its interval alone.
     tail : Tail or None
         The heavier one.
-    reasons : dict of str to str
-        For each of the four above that the tail forbids, a sentence.
     caution : str or None
         Why the interval of the mean, although given, may be too narrow.
     """
 
-    mean: float
-    mean_interval: Interval
-    sd: float
-    sd_interval: Interval
+    mean: Estimate
+    sd: Estimate
     tail: Tail | None
-    reasons: dict[str, str]
     caution: str | None
 
 
@@ -71,18 +66,24 @@ def moments(
     Moments
     """
     tail = heavier_tail(values)
-    reasons = {} if tail is None else _refused(tail)
-    unknown = replicate is None and "sd_interval" not in reasons and len(values) < FEWEST_ROWS
-    if unknown and len(values) > 1 and not is_constant(values):
-        reasons["sd_interval"] = f"needs {FEWEST_ROWS} rows that show how heavy the tails are"
+    no_mean, no_sd = ("", "") if tail is None else (_why_no_mean(tail), _why_no_sd(tail))
+    if not no_sd and replicate is None and 1 < len(values) < FEWEST_ROWS:
+        if not is_constant(values):
+            no_sd = f"needs {FEWEST_ROWS} rows that show how heavy the tails are"
+    has_mean, has_sd = tail is None or not tail.no_mean, tail is None or not tail.no_variance
     return Moments(
-        np.nan if "mean" in reasons else float(values.mean()),
-        UNKNOWN if "mean_interval" in reasons else mean_interval(values, replicate, confidence),
-        np.nan if "sd" in reasons else standard_deviation(values, replicate),
-        UNKNOWN if "sd_interval" in reasons else sd_interval(values, replicate, confidence),
+        Estimate(
+            float(values.mean()) if has_mean else np.nan,
+            *(UNKNOWN if no_mean else mean_interval(values, replicate, confidence)),
+            no_mean,
+        ),
+        Estimate(
+            standard_deviation(values, replicate) if has_sd else np.nan,
+            *(UNKNOWN if no_sd else sd_interval(values, replicate, confidence)),
+            no_sd,
+        ),
         tail,
-        reasons,
-        None if tail is None or "mean_interval" in reasons else _caution(tail),
+        None if tail is None or no_mean else _caution(tail),
     )
 
 
@@ -100,25 +101,32 @@ def _seen(tail: Tail) -> str:
     return f"k = {tail.k:.2f} ({tail.low:.2f} to {tail.high:.2f}) from the {tail.values} {which}"
 
 
-def _refused(tail: Tail) -> dict[str, str]:
-    seen = _seen(tail)
-    remedy = "; use quantiles, or the logarithm or rank of the output"
-    reasons = {}
-    if tail.k > LIGHT_ENOUGH:
-        reasons["sd_interval"] = f"tail too heavy for an interval of sd: {seen} values"
-    if tail.no_variance:
-        no_variance = f"heavy tail: {seen} values; with k above 0.5 there is no variance"
-        reasons["mean_interval"] = f"{no_variance}, hence no interval of the mean{remedy}"
-        reasons["sd"] = reasons["sd_interval"] = f"{no_variance}{remedy}"
+_REMEDY = "; use quantiles, or the logarithm or rank of the output"
+
+
+def _why_no_mean(tail: Tail) -> str:
+    """Say why the mean, or its interval alone, is forbidden, or return ""."""
     if tail.no_mean:
-        no_mean = f"heavy tail: {seen} values; with k above 1 there is no mean{remedy}"
-        reasons["mean"] = reasons["mean_interval"] = no_mean
-    return reasons
+        return f"heavy tail: {_seen(tail)} values; with k above 1 there is no mean{_REMEDY}"
+    no_interval = f"{_no_variance(tail)}, hence no interval of the mean{_REMEDY}"
+    return no_interval if tail.no_variance else ""
+
+
+def _why_no_sd(tail: Tail) -> str:
+    """Say why the standard deviation, or its interval alone, is forbidden, or return ""."""
+    if tail.no_variance:
+        return f"{_no_variance(tail)}{_REMEDY}"
+    too_heavy = f"tail too heavy for an interval of sd: {_seen(tail)} values"
+    return too_heavy if tail.k > LIGHT_ENOUGH else ""
+
+
+def _no_variance(tail: Tail) -> str:
+    return f"heavy tail: {_seen(tail)} values; with k above 0.5 there is no variance"
 
 
 def sd_interval(
     values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
-) -> Interval:
+) -> Ends:
     """Return the interval of the standard deviation.
 
     Parameters
@@ -130,7 +138,7 @@ def sd_interval(
 
     Returns
     -------
-    Interval
+    low, high : float
         Independent rows: after [1]_, which takes the kurtosis from the rows. Replicates: Student's
         t of the logarithms of their variances. Both with the high end raised by what one more row,
         as far out as the farthest, would add: samples that lack such rows also scatter too little.
@@ -153,7 +161,7 @@ def sd_interval(
             return UNKNOWN
         logarithm = float(np.log(variance))
         low, high = np.exp(scatter_interval(logarithm, np.log(found), confidence))
-    return Interval(float(np.sqrt(low)), float(np.sqrt(high + squares.max() / n)))
+    return float(np.sqrt(low)), float(np.sqrt(high + squares.max() / n))
 
 
 def _bonett(values: Floats, squares: Floats, confidence: float) -> Floats:

@@ -1,19 +1,8 @@
 """How far two estimates lie apart, with an interval, from the interval of each."""
 
-from typing import NamedTuple
-
 import numpy as np
 
-
-class Estimate(NamedTuple):
-    """A number with its 95 % interval, NaN where it is not known."""
-
-    value: float
-    low: float
-    high: float
-
-
-NOTHING = Estimate(np.nan, np.nan, np.nan)
+from uq.estimate import NOTHING, Estimate
 
 
 def difference(first: Estimate, second: Estimate, correlation: float) -> Estimate:
@@ -53,8 +42,12 @@ def ratio(first: Estimate, second: Estimate, correlation: float) -> Estimate:
     """Return the second over the first, both positive; parameters as in `difference`."""
     if not (first.value > 0 and second.value > 0):
         return NOTHING
+
+    def logarithm(number: float) -> float:
+        return float(np.log(number)) if number > 0 else np.nan
+
     below, above = (
-        Estimate(*(float(np.log(end)) if end > 0 else np.nan for end in one))
+        Estimate(logarithm(one.value), logarithm(one.low), logarithm(one.high))
         for one in (first, second)
     )
-    return Estimate(*np.exp(difference(below, above, correlation)).tolist())
+    return Estimate(*np.exp(difference(below, above, correlation).numbers).tolist())

@@ -72,7 +72,7 @@ def stopped(repetitions):
                 seen = stopping.look(one.design, ds.isel(sample=slice(None, size)))
                 if seen.reached:
                     break
-            tally.add(f"{what} when stopped", truth(), *seen.interval)
+            tally.add(f"{what} when stopped", truth(), seen.estimate.low, seen.estimate.high)
     return tally.lines()
 
 

@@ -29,10 +29,10 @@ def means(repetitions):
     for name, law, rows in MEANS:
         tally = Tally(f"{name}, {rows} independent rows", REASONS.get((name, rows)))
         for found in _found(law, rows, repetitions):
-            refused = "mean_interval" in found.reasons
-            _count(tally, "mean", law.mean(), found.mean_interval, refused)
+            refused = bool(found.mean.reason)
+            _count(tally, "mean", law.mean(), found.mean, refused)
             open_ = refused or found.caution is not None
-            tally.add(CAUTIONED, 1.0, *_held(law.mean(), found.mean_interval, open_))
+            tally.add(CAUTIONED, 1.0, *_held(law.mean(), found.mean, open_))
         lines += tally.lines()
     return lines
 
@@ -45,8 +45,8 @@ def scatters(repetitions):
             how = f"{rows} independent rows" if replicates == 1 else LATIN
             tally = Tally(f"{name}, {how}", REASONS.get((name, rows)))
             for found in _found(law, rows, repetitions, replicates):
-                refused = "sd_interval" in found.reasons
-                _count(tally, "sd", law.std(), found.sd_interval, refused)
+                refused = bool(found.sd.reason)
+                _count(tally, "sd", law.std(), found.sd, refused)
             lines += tally.lines()
     return lines
 
@@ -66,7 +66,7 @@ def _found(law, rows, repetitions, replicates=1):
 
 
 def _count(tally, what, truth, interval, refused):
-    tally.add(what, truth, *interval)
+    tally.add(what, truth, interval.low, interval.high)
     tally.add(f"{what}, held or refused", 1.0, *_held(truth, interval, refused))
 
 

@@ -6,18 +6,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam import exact, lanes
 from models.beam.parameters import Params, Rows, Settings
-from models.beam.response.neighbouring_starts import add_second_looks
-from models.beam.response.settling import NINE_IN_TEN, Response, settle
+from models.beam.response.neighbouring_starts import add_neighbour_error
+from models.beam.response.response import Response
+from models.beam.response.settling import NINE_IN_TEN, settle
 from models.beam.response.step_error import add_step_error
+from models.beam.start import PROPAGATORS, initial_gaps, initial_state
 from models.beam.structure.modal import Array, beams
 from models.beam.structure.random_load import has_band
 from models.beam.wear.lives import Lives, find_lives
 from models.beam.wear.random_lives import find_random_lives
 from uq.contract import Status
-
-PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
 
 # They scale lifetimes and nothing else (eq 12): rows that differ only here share a simulation.
 _SCALES = [Params._fields.index(name) for name in ("wear_coefficient", "contact_area")]
@@ -97,24 +96,17 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     return whole
 
 
-def initial_gaps(p: Rows) -> Array:
-    """Return the right and the left gap when new, in initial gaps, shape (n, 2)."""
-    return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
-
-
 def _simulate_group(
     propagator: ModuleType, system: Any, p: Rows, settings: Settings
 ) -> tuple[Response, Lives]:
-    gaps = initial_gaps(p)
-    x0 = p.initial_gap
-    state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
+    gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     begin = state.copy()
     settled = settle(propagator, system, state, gaps)
     work, error = settled.work.copy(), settled.error.copy()
     add_step_error(propagator, system, state, gaps, settled)
-    add_second_looks(propagator, system, begin, gaps, settled)
-    share = np.stack([np.ones_like(x0), p.wear_coefficient_ratio], axis=1)
-    growths = np.asarray(settings.depths) / x0[:, None]
+    add_neighbour_error(propagator, system, begin, gaps, settled)
+    share = np.stack([np.ones_like(p.initial_gap), p.wear_coefficient_ratio], axis=1)
+    growths = np.asarray(settings.depths) / p.initial_gap[:, None]
     lives = Lives.nothing(*growths.shape)
     known = np.isfinite(settled.work).all(axis=1)
     for is_random in (False, True):

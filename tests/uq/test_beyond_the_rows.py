@@ -8,7 +8,7 @@ from computed import asking, kinds, linear, with_output
 from scipy import stats
 
 import uq as api
-from uq import intervals
+from uq import order_statistics
 from uq.analysis.comparison import comparison
 from uq.analysis.overview import summary
 from uq.analysis.statistics import summarise
@@ -28,9 +28,9 @@ def test_ranks_reach_from_one_in_n_plus_one_to_n(rows):
     values = np.arange(rows, dtype=float)
     least = 1 / (rows + 1)
     for p in (least, 1 - least):
-        assert np.isfinite(intervals.quantile(values, p))
+        assert np.isfinite(order_statistics.quantile(values, p))
     for p in (0.99 * least, 1 - 0.99 * least):
-        assert np.isnan(intervals.quantile(values, p))
+        assert np.isnan(order_statistics.quantile(values, p))
 
 
 @pytest.mark.parametrize(

@@ -314,6 +314,6 @@ def test_variance_between_two_regimes(design):
     for ds in repeat("linear", design, inputs):
         codes = (ds["x4"].values > 0.7).astype(int)
         replicate = None if design[0] == "monte-carlo" else ds["replicate"].values
-        found = between_share(ds["x1"].values + 2.0 * codes, codes, replicate)[1]
+        found = between_share(ds["x1"].values + 2.0 * codes, codes, replicate)
         tally.add("between", between / (between + 1 / 12), found.low, found.high)
     tally.check()

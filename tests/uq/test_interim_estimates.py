@@ -30,8 +30,8 @@ def test_the_element_that_is_known_worst_decides():
     def look(half_width):
         return look_at(ds, output="work", half_width=half_width)
 
-    half = (look(1.0).interval.high - look(1.0).interval.low) / 2
-    assert look(1.0).value == pytest.approx(float(ds["work"].sel(side="right").mean()))
+    half = (look(1.0).estimate.high - look(1.0).estimate.low) / 2
+    assert look(1.0).estimate.value == pytest.approx(float(ds["work"].sel(side="right").mean()))
     assert look(1.01 * half).reached and not look(0.99 * half).reached
 
 
@@ -43,7 +43,7 @@ def test_a_share_is_of_the_rows_that_did_not_fail():
     assert len(sound) < 150 and value == (sound > 4.0).mean()
     assert interval.low < value < interval.high
     whole = computed(study(0.1, above=4.0, samples=200))
-    narrower = stopping.look(of.design, whole).interval
+    narrower = stopping.look(of.design, whole).estimate
     assert interval.high - interval.low > 1.2 * (narrower.high - narrower.low)
 
 
@@ -52,8 +52,8 @@ def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
     name = "life[side=left,depth=0.5]"
     known = look_at(ds, output=name, below=1.0, half_width=0.5)
     unknown = look_at(ds, output=name, below=1.4, half_width=0.5)
-    assert known.reached and 0.2 < known.value < 0.4
-    assert np.isnan(unknown.value) and not unknown.reached
+    assert known.reached and 0.2 < known.estimate.value < 0.4
+    assert np.isnan(unknown.estimate.value) and not unknown.reached
 
 
 def test_it_is_said_at_which_look_a_run_knew_enough():

@@ -9,7 +9,7 @@ from uq.analysis import b_lives
 from uq.analysis.location_scale import FAMILIES, anderson_darling, fit
 from uq.analysis.statistics import summarise
 from uq.errors import InputError
-from uq.intervals import rows_needed
+from uq.order_statistics import rows_needed
 from uq.wording import known
 
 WEIBULL = stats.weibull_min(1.7, scale=3e5)

@@ -90,19 +90,16 @@ def test_variance_between_regimes():
 def test_variance_between_regimes_of_noise_has_no_interval():
     rng = np.random.default_rng(0)
     y, codes = rng.normal(size=300), rng.integers(0, 3, 300)
-    value, interval = between_share(y, codes)
-    assert abs(value) < 0.03 and np.isnan(interval).all()
+    split = between_share(y, codes)
+    assert abs(split.value) < 0.03 and np.isnan((split.low, split.high)).all()
     # By hand: 1, 2 | 4, 6 has means 1.5 and 5, variance 59/16, of which 49/16 between.
-    value, _ = between_share(
-        np.array([1.0, 2.0, 4.0, 6.0]), np.array([0, 0, 1, 1]), np.zeros(4, int)
-    )
-    assert value == pytest.approx(49 / 59)
+    four, pairs = np.array([1.0, 2.0, 4.0, 6.0]), np.array([0, 0, 1, 1])
+    assert between_share(four, pairs, np.zeros(4, int)).value == pytest.approx(49 / 59)
     # Of independent rows, less what chance makes of it: 1 - (10/59) 3/2.
-    value, _ = between_share(np.array([1.0, 2.0, 4.0, 6.0]), np.array([0, 0, 1, 1]))
-    assert value == pytest.approx(44 / 59)
+    assert between_share(four, pairs).value == pytest.approx(44 / 59)
     for y, codes in (([1.0, 1.0, 1.0, 1.0], [0, 0, 1, 1]), ([1.0, 2.0], [0, 0]), ([], [])):
-        value, interval = between_share(np.array(y), np.array(codes, dtype=int))
-        assert np.isnan(value) and np.isnan(interval).all()
+        found = between_share(np.array(y), np.array(codes, dtype=int))
+        assert np.isnan(found.numbers).all()
 
 
 def test_variance_between_regimes_is_as_uncertain_as_the_jackknife_finds_it():
@@ -113,9 +110,9 @@ def test_variance_between_regimes_is_as_uncertain_as_the_jackknife_finds_it():
     def root(share):
         return np.arctanh(np.sqrt(share))
 
-    _, (low, high) = between_share(y, codes)
-    error = (root(high) - root(low)) / 2 / stats.norm.ppf(0.975)
-    without = [root(between_share(np.delete(y, i), np.delete(codes, i))[0]) for i in range(n)]
+    split = between_share(y, codes)
+    error = (root(split.high) - root(split.low)) / 2 / stats.norm.ppf(0.975)
+    without = [root(between_share(np.delete(y, i), np.delete(codes, i)).value) for i in range(n)]
     assert error == pytest.approx(np.std(without) * np.sqrt(n - 1), rel=0.05)
 
 

@@ -197,7 +197,7 @@ def test_intervals_stay_honest_under_stopping(estimate, half_width, truth):
     for seed in range(300):
         one = with_seed(of, seed)
         ds = runner.compute(one, workers=0, chunk_rows=4096)
-        low, high = stopping.look(one.design, ds).interval
+        low, high = stopping.look(one.design, ds).estimate.numbers[1:]
         held.append(low <= truth <= high)
         stopped.append(ds.attrs["samples"])
     print(f"\n{estimate or 'mean'}: {np.mean(held):.1%}, {np.mean(stopped):.0f} samples")

@@ -267,8 +267,8 @@ def test_a_look_at_damaged_rows(damage, estimate):
     ds = damaged(linear(until={"output": "y", "half_width": 0.5} | estimate), damage, ("y",))
     seen = stopping.look(study_file_of(ds).design, ds)
     if damage == "all failed":
-        assert not seen.reached and np.isnan(seen.value) and np.isnan(seen.interval.low)
+        assert not seen.reached and np.isnan(seen.estimate.numbers[:2]).all()
         return
     truth = 0.34 if "above" in estimate else 5.0
-    assert seen.value == pytest.approx(truth, abs=0.6 if truth == 5.0 else 0.15)
-    assert seen.interval.low < seen.value < seen.interval.high
+    assert seen.estimate.value == pytest.approx(truth, abs=0.6 if truth == 5.0 else 0.15)
+    assert seen.estimate.low < seen.estimate.value < seen.estimate.high

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from uq import intervals
+from uq import order_statistics
 from uq.analysis.lifetime import curve
-from uq.intervals import Interval, Replicates
+from uq.intervals import Ends, Replicates
 from uq.rows.elements import Element, Floats
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
@@ -131,25 +131,25 @@ def quantile_entry(element: Element, probability: float, replicate: Replicates) 
         with ``reason`` and ``rows_needed``; one end may still bound it.
     """
 
-    def estimate(values: Floats) -> tuple[float, Interval]:
-        interval = intervals.quantile_interval(values, probability, replicate)
-        return intervals.quantile(values, probability), interval
+    def estimate(values: Floats) -> tuple[float, Ends]:
+        interval = order_statistics.quantile_interval(values, probability, replicate)
+        return order_statistics.quantile(values, probability), interval
 
     value, early = estimate(element.at_least)
     latest, late = estimate(element.at_most) if element.censored.any() else (value, early)
     found = entry(
         value=(value, np.inf if value < latest else value),
-        low=(early.low, early.low),
-        high=(early.high, late.high),
+        low=(early[0], early[0]),
+        high=(early[1], late[1]),
     )
     return found | beyond(probability, len(element.at_least))
 
 
 def beyond(probability: float, rows: int) -> dict[str, Any]:
     """Say that rows do not reach a quantile; nothing where they do, or there are none."""
-    if rows == 0 or intervals.is_within(probability, rows):
+    if rows == 0 or order_statistics.is_within(probability, rows):
         return {}
-    needed = intervals.rows_to_reach(probability)
+    needed = order_statistics.rows_to_reach(probability)
     reason = f"{rows} rows do not reach the quantile {probability:g}: it takes {needed}"
     return {"reason": reason, "rows_needed": needed}
 

@@ -7,13 +7,14 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from uq import two_samples
+from uq import json_form, two_samples
 from uq.analysis.b_lives import B_LIVES
 from uq.analysis.input_changes import changes, only_change, spread
 from uq.analysis.pairing import MEAN, SD, SHARE, Estimator, Pair, Sample, quantile
 from uq.analysis.statistics import event, summarise
 from uq.contract import Status
 from uq.errors import InputError
+from uq.estimate import NOTHING, Estimate
 from uq.rows.elements import (
     Element,
     analysis_of,
@@ -24,7 +25,6 @@ from uq.rows.elements import (
     why_no_statistics,
 )
 from uq.study.file import AnalysisTable
-from uq.two_samples import NOTHING, Estimate
 
 Entry = dict[str, Any]
 _ENDS = ("value", "low", "high")
@@ -251,8 +251,8 @@ def _sds(pair: Pair, samples: list[Sample], entries: list[Entry]) -> Entry:
         return {**sides, "difference": {"value": 0.0} | same, "ratio": {"value": 1.0} | same}
     return {
         **sides,
-        "difference": _plain(pair.difference(SD, samples, known)),
-        "ratio": _plain(pair.ratio(samples, known)),
+        "difference": json_form.numbers(pair.difference(SD, samples, known)),
+        "ratio": json_form.numbers(pair.ratio(samples, known)),
     }
 
 
@@ -305,18 +305,12 @@ def _estimate(
         apart = two_samples.difference(known[0], known[1], pair.unpaired)
     else:
         apart = pair.difference(estimator, samples, known)
-    return {**dict(zip("ab", entries, strict=True)), "difference": _plain(apart)}
+    return {**dict(zip("ab", entries, strict=True)), "difference": json_form.numbers(apart)}
 
 
 def _known(entry: Entry) -> Estimate:
-    return Estimate(*(np.nan if entry[end] is None else entry[end] for end in _ENDS))
-
-
-def _plain(estimate: Estimate) -> Entry:
-    return {
-        end: float(number) if np.isfinite(number) else None
-        for end, number in zip(_ENDS, estimate, strict=True)
-    }
+    value, low, high = (np.nan if entry[end] is None else entry[end] for end in _ENDS)
+    return Estimate(value, low, high)
 
 
 def _notes(

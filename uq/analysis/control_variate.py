@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from uq import intervals
-from uq.intervals import UNKNOWN, Interval
+from uq.estimate import Estimate
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -28,16 +28,13 @@ class Controlled(NamedTuple):
 
     Attributes
     ----------
-    value : float
-    interval : Interval
-        95 %.
+    estimate : Estimate
     reduction : float
         Variance of the plain estimate over that of this one: how many times more rows would have
         done the same.
     """
 
-    value: float
-    interval: Interval
+    estimate: Estimate
     reduction: float
 
 
@@ -66,9 +63,9 @@ def controlled_mean(values: Floats, kept: Mask, controls: Floats, many: Floats) 
     slope, reduction = _regressed(errors, controls, np.ones(n), len(many))
     value = float(plain - slope @ (controls.mean(axis=0) - many.mean(axis=0)))
     if n < k + 3 or intervals.is_constant(values[kept]):
-        return Controlled(float(plain), UNKNOWN, 1.0)
+        return Controlled(Estimate(float(plain)), 1.0)
     half = stats.t.ppf(_UPPER_TAIL, n - 1 - k) * errors.std(ddof=1 + k) / np.sqrt(n * reduction)
-    return Controlled(value, Interval(value - float(half), value + float(half)), reduction)
+    return Controlled(Estimate(value, value - float(half), value + float(half)), reduction)
 
 
 def controlled_share(hits: Mask, kept: Mask, control: Floats, many: Floats) -> Controlled:
@@ -108,12 +105,12 @@ def controlled_share(hits: Mask, kept: Mask, control: Floats, many: Floats) -> C
     plain = float(hits[kept].mean())
     rarer = min(count, int(kept.sum()) - count)
     if rarer < FEWEST:
-        return Controlled(plain, intervals.share_interval(hits[kept]), 1.0)
+        return Controlled(Estimate(plain, *intervals.share_interval(hits[kept])), 1.0)
     known = ~np.isnan(control)
     oriented = _orientation(hits[kept & known], control[kept & known])
     beyond = _limit(oriented * control[known], count)
     if beyond is None:
-        return Controlled(plain, intervals.share_interval(hits[kept]), 1.0)
+        return Controlled(Estimate(plain, *intervals.share_interval(hits[kept])), 1.0)
     here, there = (1.0 * (oriented * some > beyond) for some in (control, many))
     errors = np.where(kept, hits - plain, 0.0) / kept.mean()
     padded = np.append(errors, np.array([1, 1, 0, 0]) - plain)
@@ -122,7 +119,8 @@ def controlled_share(hits: Mask, kept: Mask, control: Floats, many: Floats) -> C
     slope, reduction = _regressed(padded, cases, weight, len(many))
     value = float(np.clip(plain - slope[0] * (here.mean() - there.mean()), 0.0, 1.0))
     reduction = 1 + (reduction - 1) * rarer / (rarer + _AGAINST)
-    return Controlled(value, intervals.binomial_interval(value, reduction * kept.sum()), reduction)
+    ends = intervals.binomial_interval(value, reduction * kept.sum())
+    return Controlled(Estimate(value, *ends), reduction)
 
 
 def _orientation(hits: Mask, control: Floats) -> float:

@@ -121,10 +121,10 @@ def failed_share_bounds(hits: Mask, failed: Mask, replicate: Replicates) -> Entr
         return {}
     ends = {}
     plain = share_interval(hits[~failed], None if replicate is None else replicate[~failed])
-    for key, some, end in ((LOW, hits & ~failed, "low"), (HIGH, hits | failed, "high")):
-        bound = getattr(share_interval(some, replicate), end)
+    for key, some, end in ((LOW, hits & ~failed, 0), (HIGH, hits | failed, 1)):
+        bound = share_interval(some, replicate)[end]
         bound = bound if np.isfinite(bound) else some.mean()
-        ends[key] = float(outer(key, bound, getattr(plain, end)))
+        ends[key] = float(outer(key, bound, plain[end]))
     return ends
 
 

@@ -8,7 +8,8 @@ import xarray as xr
 
 from uq.analysis.b_lives import B_LIVES
 from uq.analysis.location_scale import FAMILIES, Family, anderson_darling, fit
-from uq.intervals import CONFIDENCE, is_within
+from uq.intervals import CONFIDENCE
+from uq.order_statistics import is_within
 from uq.rows.elements import Element, Floats, Mask, independent_rows, lifetimes, replicates_of
 
 MIN_ENDED = 20

@@ -10,7 +10,7 @@ from uq.analysis.failed_rows import HIGH, LOW, outer, with_failed_at
 from uq.analysis.kaplan_meier import Outliving, outliving
 from uq.analysis.survival_band import simultaneous_band
 from uq.exact_shares import are_few, exact_interval
-from uq.intervals import CONFIDENCE, Interval, Replicates, scattered_share_interval
+from uq.intervals import CONFIDENCE, Ends, Replicates, scattered_share_interval
 from uq.rows.elements import Element, Floats, independent_rows, lifetimes, replicates_of
 
 
@@ -147,10 +147,11 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, An
         rows = np.where((found.share > 0) & (found.share < 1), seen, np.nan)
         interval = scattered_share_interval(found.share, np.array(estimates), rows=rows)
     never = element.never.sum() / len(values)
-    return counts | {"never": never, "survival": found.share} | interval._asdict()
+    low, high = interval
+    return counts | {"never": never, "survival": found.share, "low": low, "high": high}
 
 
-def band(element: Element, time: Floats) -> Interval:
+def band(element: Element, time: Floats) -> Ends:
     """Return the simultaneous 95 % band of `survival` for one element of independent rows."""
     values, censored = element.at_least, element.censored[element.present]
     if len(values) == 0:
@@ -174,7 +175,7 @@ def band(element: Element, time: Floats) -> Interval:
 _FEW_ENDS = 4
 
 
-def _greenwood(estimate: Outliving) -> Interval:
+def _greenwood(estimate: Outliving) -> Ends:
     """Return the interval that is symmetric about the logarithm of -log(share).
 
     Where few rows have ended, or are left, it is exact for a share that is known as well: there it
@@ -189,11 +190,12 @@ def _greenwood(estimate: Outliving) -> Interval:
     known, few = (share > 0) & (share < 1), are_few(share, worth, _FEW_ENDS)
     exact = exact_interval(share, worth, CONFIDENCE)
     ends = (np.where(few, *pair) for pair in zip(exact, (low, high), strict=True))
-    return Interval(*(np.where(known, end, np.nan) for end in ends))
+    low, high = (np.where(known, end, np.nan) for end in ends)
+    return low, high
 
 
-def _no_band(time: Floats) -> Interval:
-    return Interval(*np.full((2, len(time)), np.nan))
+def _no_band(time: Floats) -> Ends:
+    return np.full(len(time), np.nan), np.full(len(time), np.nan)
 
 
 def _finite(values: Floats) -> Floats:

@@ -14,8 +14,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq import intervals, two_samples
+from uq import intervals, order_statistics, two_samples
 from uq.designs.table import DESIGNS
+from uq.estimate import Estimate
 from uq.rows.elements import (
     Floats,
     Mask,
@@ -25,7 +26,6 @@ from uq.rows.elements import (
     study_file_of,
 )
 from uq.study.file import Tied
-from uq.two_samples import Estimate
 
 _ROUNDING = 1e-6  # the root of what an interval that is a difference of two may lose
 
@@ -165,7 +165,7 @@ def quantile(probability: float) -> Estimator:
     """Return the estimator of a quantile; a row pulls it to its own side, however far it lies."""
 
     def of(x: Floats) -> float:
-        return intervals.quantile(x, probability)
+        return order_statistics.quantile(x, probability)
 
     def pull(x: Floats) -> Floats:
         below = x <= of(x)
@@ -197,10 +197,10 @@ class Pair:
             value = known[1].value - known[0].value
             own = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
             if not np.isfinite(own).all():
-                return Estimate(value, np.nan, np.nan)
+                return Estimate(value)
             apart = own[1] - own[0]
             if intervals.is_constant(apart + np.abs(own).max()):  # they differ by rounding alone
-                return Estimate(value, np.nan, np.nan)
+                return Estimate(value)
             return Estimate(value, *intervals.scatter_interval(value, apart))
         if estimator is SHARE and all(one is None for one in self._replicate):
             known = [_newcombe(sample) for sample in samples]
@@ -208,7 +208,7 @@ class Pair:
         wide = sum(one.high - one.low for one in known)
         paired = self.kinship in (Kinship.ROWS, Kinship.REPLICATES)
         if paired and found.high - found.low <= _ROUNDING * wide < np.inf:
-            return found._replace(low=np.nan, high=np.nan)  # as good as the same in each pair
+            return Estimate(found.value)  # as good as the same in each pair
         return found
 
     def identical(self, samples: list[Sample]) -> bool:
@@ -285,6 +285,6 @@ def _newcombe(sample: Sample) -> Estimate:
 def _factor(value: float, above: Floats, below: Floats) -> Estimate:
     """Return a ratio with its interval from those of the replicates, in which it is logarithmic."""
     if not (value > 0 and (above > 0).all() and (below > 0).all()):  # nor are they where unknown
-        return Estimate(value, np.nan, np.nan)
-    interval = intervals.scatter_interval(float(np.log(value)), np.log(above / below))
-    return Estimate(value, *np.exp(interval).tolist())
+        return Estimate(value)
+    ends = intervals.scatter_interval(float(np.log(value)), np.log(above / below))
+    return Estimate(value, *np.exp(ends).tolist())

@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Interval, Replicates, scatter_interval
+from uq.estimate import NOTHING, Estimate
+from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Replicates, scatter_interval
 from uq.tails import lacks_variance
 
 MIN_IN_REGIME = 2
@@ -13,7 +14,7 @@ MIN_IN_REGIME = 2
 
 def between_share(
     values: Floats, codes: NDArray[np.integer], replicate: Replicates = None
-) -> tuple[float, Interval]:
+) -> Estimate:
     """Estimate the share of the variance that the regime's mean explains.
 
     Parameters
@@ -26,12 +27,11 @@ def between_share(
 
     Returns
     -------
-    value : float
+    Estimate
         The correlation ratio; for independent rows less what chance makes of it (epsilon squared
         [1]_). NaN where no two regimes have rows enough, or all values are the same,
-        or their tail is too heavy for a variance.
-    interval : Interval
-        For independent rows by the normal law of the estimate's influence function, and unknown
+        or their tail is too heavy for a variance. Its interval is for independent rows by the
+        normal law of the estimate's influence function, and unknown
         where an F-test finds no difference between the regimes: there the estimate has no normal
         law. For replicates from their scatter.
 
@@ -47,19 +47,19 @@ def between_share(
     y = values[kept]
     value, deviation, residual = _split(y, regime)
     if not np.isfinite(value) or lacks_variance(y):
-        return np.nan, UNKNOWN
+        return NOTHING
     if replicate is None:
-        value, interval = _independent(value, deviation, residual, regime.max() + 1)
+        value, low, high = _independent(value, deviation, residual, regime.max() + 1)
     else:
         of = replicate[kept]
         found = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
-        interval = scatter_interval(value, found) if np.isfinite(found).all() else UNKNOWN
-    return value, Interval(max(float(interval.low), 0.0), min(float(interval.high), 1.0))
+        low, high = scatter_interval(value, found) if np.isfinite(found).all() else UNKNOWN
+    return Estimate(value, max(float(low), 0.0), min(float(high), 1.0))
 
 
 def _independent(
     ratio: float, deviation: Floats, residual: Floats, regimes: int
-) -> tuple[float, Interval]:
+) -> tuple[float, float, float]:
     n = len(deviation)
     value = 1 - (1 - ratio) * (n - 1) / (n - regimes) if n > regimes else np.nan
     total = deviation + residual
@@ -69,12 +69,12 @@ def _independent(
     with np.errstate(divide="ignore", invalid="ignore"):
         statistic = ratio / freedom[0] / ((1 - ratio) / freedom[1])
     if not half > 0 or stats.f.sf(statistic, *freedom) > 1 - CONFIDENCE:
-        return value, UNKNOWN
+        return value, np.nan, np.nan
     # Fisher's transformation of the root, in which the estimate is as good as normal.
     root = np.sqrt(value)
     wide = half / (2 * root * (1 - value))
     low, high = (np.tanh(np.arctanh(root) + side * wide) for side in (-1, 1))
-    return value, Interval(np.copysign(low**2, low), high**2)
+    return value, float(np.copysign(low**2, low)), float(high**2)
 
 
 def _split(y: Floats, regime: NDArray[np.integer]) -> tuple[float, Floats, Floats]:

@@ -11,8 +11,8 @@ from uq.analysis.statistics import regime_shares
 from uq.errors import InputError
 from uq.indices.given_data import given_data_indices
 from uq.indices.targets import RefusedError, Target, category_targets, number_of
-from uq.intervals import is_within
 from uq.moments import moments
+from uq.order_statistics import is_within
 from uq.rows.elements import (
     Floats,
     analysis_of,
@@ -78,9 +78,9 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
         ),
         "distance": (("regime", "parameter"), distance[:, :-1]),
         "distance_dummy": ("regime", distance[:, -1]),
-        "between": ("output", [value for value, _ in split]),
-        "between_low": ("output", [interval.low for _, interval in split]),
-        "between_high": ("output", [interval.high for _, interval in split]),
+        "between": ("output", [one.value for one in split]),
+        "between_low": ("output", [one.low for one in split]),
+        "between_high": ("output", [one.high for one in split]),
     }
     for i, name in enumerate(("rows", "mean", "sd")):
         data[name] = (("output", "regime"), np.reshape(moments, (*sizes[:2], 3))[..., i])
@@ -120,4 +120,4 @@ def _moments(values: Floats) -> tuple[float, float, float]:
     if not len(kept):
         return 0, np.nan, np.nan
     found = moments(kept)
-    return len(kept), found.mean, found.sd
+    return len(kept), found.mean.value, found.sd.value

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq import intervals
+from uq import intervals, json_form, order_statistics
 from uq.analysis.accuracy import accuracy_missed
 from uq.analysis.b_lives import b_lives, ended_by, entry, life_quantiles, quantile_entry
 from uq.analysis.failed_rows import failed_note, failed_share_bounds, with_failed_bounds
@@ -14,9 +14,10 @@ from uq.analysis.life_fit import fits_of
 from uq.analysis.regime_split import between_share
 from uq.contract import Status
 from uq.designs.table import DESIGNS
+from uq.estimate import NOTHING
 from uq.indices.targets import number_of
-from uq.intervals import Interval, Replicates
-from uq.moments import moments
+from uq.intervals import Replicates
+from uq.moments import Moments, moments
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
@@ -187,19 +188,27 @@ def _quantiles(
 def _moments(element: Element, within: Replicates) -> dict[str, Any]:
     values = element.at_least
     if not len(values) or element.never.any() or element.censored.any():
-        nothing = _ends(intervals.UNKNOWN)
+        nothing = json_form.ends(NOTHING)
         numbers = {"mean": None, "mean_interval": nothing, "sd": None, "sd_interval": nothing}
         return numbers | {"tail": None, "reasons": {}, "caution": None}
     found = moments(values, within)
     return {
-        "mean": _plain(found.mean),
-        "mean_interval": _ends(found.mean_interval),
-        "sd": _plain(found.sd),
-        "sd_interval": _ends(found.sd_interval),
+        "mean": _plain(found.mean.value),
+        "mean_interval": json_form.ends(found.mean),
+        "sd": _plain(found.sd.value),
+        "sd_interval": json_form.ends(found.sd),
         "tail": found.tail and found.tail._asdict(),
-        "reasons": found.reasons,
+        "reasons": _reasons(found),
         "caution": found.caution,
     }
+
+
+def _reasons(found: Moments) -> dict[str, str]:
+    reasons = {"sd_interval": found.sd.reason, "mean_interval": found.mean.reason}
+    for name, one in (("sd", found.sd), ("mean", found.mean)):
+        if np.isnan(one.value):
+            reasons[name] = one.reason
+    return {name: reason for name, reason in reasons.items() if reason}
 
 
 def _tolerance(
@@ -208,10 +217,10 @@ def _tolerance(
     if analysis.tolerance is None or replicate is not None:
         return None
     failed = int(element.failed.sum())
-    early = intervals.tolerance_bounds(element.at_least, failed, *analysis.tolerance)
-    late = intervals.tolerance_bounds(element.at_most, failed, *analysis.tolerance)
-    bounds = entry(lower=(early.low, early.low), upper=(early.high, late.high))
-    return bounds | {"rows_needed": intervals.rows_needed(*analysis.tolerance, failed)}
+    early = order_statistics.tolerance_bounds(element.at_least, failed, *analysis.tolerance)
+    late = order_statistics.tolerance_bounds(element.at_most, failed, *analysis.tolerance)
+    bounds = entry(lower=(early[0], early[0]), upper=(early[1], late[1]))
+    return bounds | {"rows_needed": order_statistics.rows_needed(*analysis.tolerance, failed)}
 
 
 def _fitted(element: Element, fits: bool) -> bool:
@@ -224,11 +233,10 @@ def _between(
     target = number_of(element)
     if codes is None or target.refused:
         return {}
-    value, interval = between_share(target.values, codes, replicate)
-    if not np.isfinite(value):
+    split = between_share(target.values, codes, replicate)
+    if not np.isfinite(split.value):
         return {}
-    ends = {"low": _plain(interval.low), "high": _plain(interval.high)}
-    return {"between_regimes": {"value": _plain(value)} | ends | {"of": target.name}}
+    return {"between_regimes": json_form.numbers(split) | {"of": target.name}}
 
 
 def _threshold(element: Element, threshold: float, replicate: Replicates) -> dict[str, Any]:
@@ -269,13 +277,9 @@ def event(element: Element, threshold: float) -> tuple[Mask, Mask] | None:
 
 
 def _share(hits: Mask, replicate: Replicates) -> dict[str, Any]:
-    interval = intervals.share_interval(hits, replicate)
+    low, high = intervals.share_interval(hits, replicate)
     value = hits.mean() if len(hits) else np.nan
-    return {"value": _plain(value), "low": _plain(interval.low), "high": _plain(interval.high)}
-
-
-def _ends(interval: Interval) -> dict[str, float | None]:
-    return {"low": _plain(interval.low), "high": _plain(interval.high)}
+    return {"value": _plain(value), "low": _plain(low), "high": _plain(high)}
 
 
 def _of(replicate: Replicates, rows: Mask) -> Replicates:

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy import stats
 
-from uq.intervals import CONFIDENCE, Floats, Interval
+from uq.intervals import CONFIDENCE, Ends, Floats
 
 DRAWS = 4000
 """Curves drawn from the limiting law; its quantile is then known to 1 %."""
@@ -26,7 +26,7 @@ def simultaneous_band(
     rows: int,
     ended: int,
     complete: bool,
-) -> Interval:
+) -> Ends:
     """Return the 95 % band of the share that outlives each time.
 
     Parameters
@@ -48,7 +48,7 @@ def simultaneous_band(
 
     Returns
     -------
-    Interval
+    low, high : ndarray, shape (k,)
         NaN where there is none.
 
     Notes
@@ -74,7 +74,7 @@ def simultaneous_band(
         return _within(share, half, np.ones(len(share), dtype=bool))
     known = np.isfinite(deviation) & (among > 0) & (at_risk >= AT_RISK)
     if not (known & (deviation > 0)).any():
-        return Interval(*np.full((2, len(share)), np.nan))
+        return np.full(len(share), np.nan), np.full(len(share), np.nan)
     of_share = np.sqrt(ending * (1 - ending) / rows) * (1 - among)
     of_among = ending * among
     relative = rows * (of_share**2 + (of_among * deviation) ** 2) / share**2
@@ -100,6 +100,6 @@ def _largest(
     return float(np.quantile(largest, CONFIDENCE))
 
 
-def _within(share: Floats, half: Floats, known: np.ndarray) -> Interval:
+def _within(share: Floats, half: Floats, known: np.ndarray) -> Ends:
     low, high = np.maximum(share - half, 0.0), np.minimum(share + half, 1.0)
-    return Interval(np.where(known, low, np.nan), np.where(known, high, np.nan))
+    return np.where(known, low, np.nan), np.where(known, high, np.nan)

@@ -13,13 +13,15 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
+from uq import json_form
 from uq.analysis.control_variate import FEWEST, Controlled, controlled_mean, controlled_share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.statistics import event
 from uq.errors import InputError
+from uq.estimate import Estimate
 from uq.exact_shares import FEW
 from uq.inputs.values import read_settings
-from uq.intervals import Interval, share_interval
+from uq.intervals import share_interval
 from uq.literals import toml
 from uq.moments import moments
 from uq.rows.elements import Element, elements_of, shown_outputs
@@ -126,9 +128,9 @@ def _estimates(
     present = element.present
     if present.any() and not (element.never | element.censored).any():
         alone = moments(element.values[present])
-        if "mean_interval" not in alone.reasons:
+        if not alone.mean.reason:
             found = controlled_mean(element.values, present, *map(_filled, (control, many)))
-            yield "mean", _entry(found, alone.mean, alone.mean_interval)
+            yield "mean", _entry(found, alone.mean)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         sides = event(element, threshold)
         kept = ~element.failed
@@ -136,10 +138,10 @@ def _estimates(
             continue
         for sign, hits in zip("><", sides, strict=True):
             found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
-            plain = share_interval(hits[kept])
+            plain = Estimate(float(hits[kept].mean()), *share_interval(hits[kept]))
             lost = failed_share_bounds(hits, element.failed, None)
             few = few_hits(int(hits[kept].sum()), int(kept.sum()))
-            yield f"P({sign}{threshold!r})", _entry(found, hits[kept].mean(), plain) | lost | few
+            yield f"P({sign}{threshold!r})", _entry(found, plain) | lost | few
 
 
 def few_hits(hits: int, rows: int) -> dict[str, str]:
@@ -154,14 +156,10 @@ def few_hits(hits: int, rows: int) -> dict[str, str]:
     return {"note": f"{seen} lie there: {told}"}
 
 
-def _entry(found: Controlled, plain: float, interval: Interval) -> dict[str, Any]:
-    def numbers(value: float, ends: Interval) -> dict[str, Any]:
-        named = {"value": value, "low": ends.low, "high": ends.high}
-        return {key: float(one) if np.isfinite(one) else None for key, one in named.items()}
-
+def _entry(found: Controlled, plain: Estimate) -> dict[str, Any]:
     return {
-        **numbers(found.value, found.interval),
-        "plain": numbers(plain, interval),
+        **json_form.numbers(found.estimate),
+        "plain": json_form.numbers(plain),
         "reduction": found.reduction,
     }
 

@@ -13,7 +13,7 @@ from scipy import stats
 
 from uq.designs.table import DESIGNS
 from uq.indices.targets import lightened, number_of
-from uq.intervals import is_within
+from uq.order_statistics import is_within
 from uq.rows.elements import (
     Element,
     Floats,

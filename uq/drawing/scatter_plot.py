@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from uq import intervals
+from uq import intervals, order_statistics
 from uq.drawing.elements_plot import (
     label,
     occurring_regimes,
@@ -128,8 +128,8 @@ def _conditional(
     slices = np.array_split(np.argsort(x, kind="stable"), count)
     middle = np.array([x[rows].mean() for rows in slices])
     if medians:
-        line = np.array([intervals.quantile(values[rows], 0.5) for rows in slices])
-        ends = [intervals.quantile_interval(values[rows], 0.5) for rows in slices]
+        line = np.array([order_statistics.quantile(values[rows], 0.5) for rows in slices])
+        ends = [order_statistics.quantile_interval(values[rows], 0.5) for rows in slices]
     else:
         line = np.array([values[rows].mean() for rows in slices])
         ends = [intervals.mean_interval(values[rows]) for rows in slices]

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.intervals import Interval, binomial_interval, scatter_interval
+from uq.intervals import Ends, binomial_interval, scatter_interval
 
 if TYPE_CHECKING:
     from uq.exploring.subset_simulation import Found
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 
-def log_scatter_interval(estimates: Floats) -> Interval:
+def log_scatter_interval(estimates: Floats) -> Ends:
     """Return the interval of a small probability from independent estimates of it.
 
     Parameters
@@ -23,18 +23,19 @@ def log_scatter_interval(estimates: Floats) -> Interval:
 
     Returns
     -------
-    Interval
+    low, high : float
         Student's interval of the logarithms about the mean; where some estimates are zero, that of
         the estimates themselves, from zero up.
     """
     mean = float(estimates.mean())
     if (estimates > 0).all():
-        return Interval(*np.exp(scatter_interval(np.log(mean), np.log(estimates))))
+        low, high = np.exp(scatter_interval(np.log(mean), np.log(estimates)))
+        return low, high
     low, high = scatter_interval(mean, estimates)
-    return Interval(np.maximum(low, 0.0), high)
+    return np.maximum(low, 0.0), high
 
 
-def subset_interval(found: "list[Found]", samples: int) -> Interval:
+def subset_interval(found: "list[Found]", samples: int) -> Ends:
     """Return the interval that replicates of subset simulation support.
 
     Parameters
@@ -45,7 +46,7 @@ def subset_interval(found: "list[Found]", samples: int) -> Interval:
 
     Returns
     -------
-    Interval
+    low, high : float
         Where every replicate reached the event: from their scatter, or where all ended at the first
         level, whose rows are independent, that of a share of these. Else from zero, or what the
         scatter leaves above it, to the lesser of two bounds from above. One is that of the share of
@@ -61,8 +62,8 @@ def subset_interval(found: "list[Found]", samples: int) -> Interval:
     if (estimates > 0).all():
         return scatter
     at_most = np.array([one.probability or one.reached for one in found])
-    high = np.fmin(first.high, log_scatter_interval(at_most).high)
-    return Interval(float(np.fmax(scatter.low, 0.0)), float(high))
+    high = np.fmin(first[1], log_scatter_interval(at_most)[1])
+    return float(np.fmax(scatter[0], 0.0)), float(high)
 
 
 def with_failed_inside(hits: int, failed: int, rows: int) -> float:
@@ -77,4 +78,4 @@ def with_failed_inside(hits: int, failed: int, rows: int) -> float:
     -------
     float
     """
-    return float(binomial_interval((hits + failed) / rows, rows).high)
+    return float(binomial_interval((hits + failed) / rows, rows)[1])

@@ -19,7 +19,7 @@ from uq.exploring.rare_event_intervals import (
     with_failed_inside,
 )
 from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, subset_simulation
-from uq.intervals import Interval, binomial_interval
+from uq.intervals import Ends, binomial_interval
 from uq.study.definition import Study, load_study
 
 METHODS = ("subset", "importance")
@@ -109,9 +109,9 @@ def rare_event(
     ds = xr.Dataset(
         {
             "probability": ((), found["estimate"][1].mean()),
-            "low": ((), interval.low),
-            "high": ((), interval.high),
-            "failed_high": ((), max(worst, float(interval.high)) if margin.failed else np.nan),
+            "low": ((), interval[0]),
+            "high": ((), interval[1]),
+            "failed_high": ((), max(worst, float(interval[1])) if margin.failed else np.nan),
             "rows": ((), evaluator.rows),
             "failed": ((), margin.failed),
             "undefined": ((), margin.undefined),
@@ -132,7 +132,7 @@ def rare_event(
     return ds.assign_attrs(notes="\n".join(_notes(ds, margin)))
 
 
-_Found = tuple[dict[str, Any], Interval, float]
+_Found = tuple[dict[str, Any], Ends, float]
 """Variables of the result, the interval, and its high end if failed rows lay within the event."""
 
 

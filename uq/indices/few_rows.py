@@ -12,7 +12,7 @@ import xarray as xr
 from scipy import stats
 
 from uq.indices.targets import RefusedError, Target
-from uq.intervals import CONFIDENCE, Interval
+from uq.intervals import CONFIDENCE, Ends
 from uq.rows.elements import Floats, independent_rows, why_no_statistics
 
 FEWEST_HITS = 5
@@ -65,10 +65,10 @@ def one_more_row(deviations: Floats, groups: int, replicates: int) -> float:
     return float(student * (deviations**2).max() / groups)
 
 
-def widened(value: float, interval: Interval, by: float) -> Interval:
+def widened(value: float, interval: Ends, by: float) -> Ends:
     """Return an interval about `value` with half-widths sqrt(half^2 + by^2)."""
     below, above = (np.hypot(end - value, by) for end in interval)
-    return Interval(float(value - below), float(value + above))
+    return float(value - below), float(value + above)
 
 
 def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from uq.indices.groups import whole_groups
 from uq.indices.steps import steps
 from uq.indices.targets import ALL_NOISE, Index, Indices, RefusedError
-from uq.intervals import UNKNOWN, Interval, is_constant, scatter_interval
+from uq.intervals import UNKNOWN, Ends, is_constant, scatter_interval
 from uq.rows.elements import Floats
 
 MIN_PATHS = 32
@@ -112,6 +112,6 @@ def shapley_indices(design: Paths, values: Floats) -> Indices:
     )
 
 
-def _interval(share: float, errors: Floats) -> Interval:
+def _interval(share: float, errors: Floats) -> Ends:
     """Return the interval of a share from the errors of its paths, none of rounding alone."""
     return UNKNOWN if is_constant(share + errors) else scatter_interval(share, errors)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import xarray as xr
 
-from uq import intervals
-from uq.intervals import Interval
+from uq import intervals, order_statistics
+from uq.estimate import NOTHING, Estimate
 from uq.moments import moments
 from uq.rows.elements import Element, independent_rows, named_elements
 
@@ -26,16 +26,14 @@ class Look(NamedTuple):
 
     Attributes
     ----------
-    value : float
-    interval : Interval
-        With the confidence of one look.
+    estimate : Estimate
+        Its interval has the confidence of one look.
     reached : bool
         Whether every element asked for is known as well as asked for; the numbers are those of the
         one known worst.
     """
 
-    value: float
-    interval: Interval
+    estimate: Estimate
     reached: bool
 
 
@@ -75,9 +73,9 @@ def look(design: "DesignTable", ds: xr.Dataset) -> Look:
         _estimate(element, until, replicate, confidence(design))
         for element in named_elements(rows, until.output)
     ]
-    halves = [(interval.high - interval.low) / 2 for _, interval in seen]
+    halves = [(one.high - one.low) / 2 for one in seen]
     worst = int(np.argmax(np.nan_to_num(halves, nan=np.inf)))
-    return Look(*seen[worst], bool(halves[worst] <= until.half_width))
+    return Look(seen[worst], bool(halves[worst] <= until.half_width))
 
 
 def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
@@ -107,8 +105,8 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     size = _latest(design, ds)
     seen = look(design, _first(ds, size))
     what = f"{until.estimate} of {until.output}"
-    known = f"{seen.value:.6g}, {seen.interval.low:.6g} to {seen.interval.high:.6g}"
-    if np.isnan(seen.interval).all():
+    known = "{:.6g}, {:.6g} to {:.6g}".format(*seen.estimate.numbers)
+    if np.isnan(seen.estimate.low) and np.isnan(seen.estimate.high):
         return f"the budget of {samples} samples is spent, and {what} has no interval"
     known += _lost(design, ds)
     if not seen.reached:
@@ -136,23 +134,23 @@ def _lost(design: "DesignTable", ds: xr.Dataset) -> str:
 
 def _estimate(
     element: Element, until: "Until", replicate: intervals.Replicates, level: float
-) -> tuple[float, Interval]:
+) -> Estimate:
     kept = ~element.failed
     if until.threshold is not None:
         values = element.for_thresholds
         if (element.censored & (values < until.threshold)).any():
-            return np.nan, intervals.UNKNOWN
+            return NOTHING
         hits = values > until.threshold if until.above is not None else values < until.threshold
         within = None if replicate is None else replicate[kept]
         value = hits[kept].mean() if kept.any() else np.nan
-        return float(value), intervals.share_interval(hits[kept], within, level)
+        return Estimate(float(value), *intervals.share_interval(hits[kept], within, level))
     present = element.present
     within = None if replicate is None else replicate[present]
     values = element.at_most
     if until.quantile is not None:
-        value = intervals.quantile(values, until.quantile)
-        return value, intervals.quantile_interval(values, until.quantile, within, level)
+        value = order_statistics.quantile(values, until.quantile)
+        ends = order_statistics.quantile_interval(values, until.quantile, within, level)
+        return Estimate(value, *ends)
     if not len(values) or not np.isfinite(values).all():
-        return np.nan, intervals.UNKNOWN
-    found = moments(values, within, level)
-    return found.mean, found.mean_interval
+        return NOTHING
+    return moments(values, within, level).mean

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.structure.modal import Array, Beams
-from models.beam.structure.random_load import AMPLITUDE, COUNT, SPEED
+from models.beam.structure.random_lines import AMPLITUDE, COUNT, SPEED
 from models.numerics.jit import kernel
 
 Complex = NDArray[np.complex128]

@@ -16,9 +16,9 @@ from models.beam.exact.passage import passage
 from models.beam.exact.phases import Phase, phases, set_lines
 from models.beam.exact.tuning import Beam
 from models.beam.parameters import Settings
-from models.beam.response.averages import LONGEST
-from models.beam.structure.modal import Array, Beams, Record, reach, steady_response
-from models.beam.structure.random_load import COUNT, SPEED, TURN, draw, turn_at
+from models.beam.structure.modal import Array, Beams, reach, steady_response
+from models.beam.structure.random_lines import COUNT, SPEED, TURN, draw, turn_at
+from models.beam.structure.record import LONGEST, Record
 
 CLOCK = -3
 """Column of the state that counts forcing periods."""

@@ -15,16 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.structure.modal import Array
-from models.beam.structure.random_load import (
-    AMPLITUDE,
-    COUNT,
-    SPEED,
-    TURN,
-    add_modes,
-    draw,
-    respond,
-    turn_at,
-)
+from models.beam.structure.random_lines import AMPLITUDE, COUNT, SPEED, TURN, draw, turn_at
+from models.beam.structure.random_response import add_modes, respond
 from models.numerics.blocks import LANES, aligned
 from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel

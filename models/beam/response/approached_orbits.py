@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.structure.modal import Array, Record
+from models.beam.structure.modal import Array
+from models.beam.structure.record import Record
 from models.numerics.linear import inverse, product
 from models.numerics.multipliers import largest_multiplier
 

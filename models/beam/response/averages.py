@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from models.beam.structure.modal import Array
+from models.beam.structure.record import LONGEST
 from models.numerics.batch_means import mean_and_error
 
 SHORTEST = 1024  # periods
-LONGEST = 16_384  # periods; a propagator may take fewer
 MEMORIES = 20
 _PIECE = 32  # periods in one call, and in the shortest batch
 _BATCHES = 24  # cut from what is kept

@@ -13,14 +13,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.response.settling import APERIODIC, MEMORIES, SEGMENT, Response, look
+from models.beam.response.response import APERIODIC, Response
+from models.beam.response.settling import MEMORIES, SEGMENT, look
 from models.beam.structure.modal import Array
 
 _SHORTEST = 16  # segments of a further look
 _AWAY = (-1e-3, 1e-3, 2e-3)  # where they begin, in the first mode and in initial gaps
 
 
-def add_second_looks(
+def add_neighbour_error(
     propagator: ModuleType, system: Any, begin: Array, gaps: Array, out: Response
 ) -> None:
     """Look at aperiodic responses again, from starts close to the first.

@@ -10,14 +10,21 @@ random load it never settles, see `models.beam.response.averages`.
 """
 
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.parameters import REGIMES
 from models.beam.response.approached_orbits import Approached, approached
 from models.beam.response.averages import time_mean
+from models.beam.response.response import (
+    APERIODIC,
+    ASYMMETRIC,
+    NO_IMPACT,
+    PERIODIC,
+    SYMMETRIC,
+    Response,
+)
 from models.beam.structure.modal import Array
 from models.numerics.batch_means import mean_and_bound
 from models.numerics.jit import kernel
@@ -35,63 +42,6 @@ _NEAR = 0.05  # k times the distance of strobe points k periods apart, relative 
 _SHRINKING = 0.9  # factor of that distance from one look to the next
 _NEARER = 0.5  # that distance over the one at which an orbit was looked for in vain
 _SYMMETRIC = 1e-3  # difference of the sites' work, relative to their sum
-
-NO_IMPACT, SYMMETRIC, ASYMMETRIC, PERIODIC, APERIODIC = range(len(REGIMES))
-
-
-class Response(NamedTuple):
-    """The settled response of n beams at constant gaps.
-
-    Attributes
-    ----------
-    work : ndarray, shape (n, 2)
-        Mean dimensionless work per forcing period at the right and the left site.
-    error : ndarray, shape (n, 2)
-        Within which nine in ten means lie, 0 if periodic.
-    peak : ndarray, shape (n, 2)
-        Largest penetration, in initial gaps.
-    regime : ndarray of int8, shape (n,)
-        Index into `models.beam.parameters.REGIMES`.
-    period : ndarray, shape (n,)
-        In forcing periods, 0 if aperiodic.
-    multiplier : ndarray, shape (n,)
-        Largest modulus of the orbit's Floquet multipliers, over its period; NaN if aperiodic or
-        without impacts.
-    """
-
-    work: Array
-    error: Array
-    peak: Array
-    regime: NDArray[np.int8]
-    period: Array
-    multiplier: Array
-
-    @staticmethod
-    def settling(n: int) -> "Response":
-        """Return a response of n beams to be filled in: aperiodic, at rest."""
-        regime = np.full(n, APERIODIC, np.int8)
-        return Response._make([*np.zeros((3, n, 2)), regime, np.zeros(n), np.full(n, np.nan)])
-
-    @staticmethod
-    def nothing(n: int) -> "Response":
-        """Return what is known of n beams before they are run."""
-        regime = np.full(n, APERIODIC, np.int8)
-        unknown = np.full((2, n), np.nan)
-        return Response._make([*np.full((3, n, 2), np.nan), regime, *unknown])
-
-    def take(self, rows: NDArray[np.intp]) -> "Response":
-        """Return the responses of some beams."""
-        return Response._make(field[rows] for field in self)
-
-    def put(self, rows: NDArray[np.intp], known: "Response") -> None:
-        """Set the responses of some beams."""
-        fields: tuple[Any, ...] = self
-        for mine, theirs in zip(fields, known, strict=True):
-            mine[rows] = theirs
-
-    def forget(self, rows: NDArray[np.intp]) -> None:
-        """Know nothing of some beams."""
-        self.put(rows, Response.nothing(len(rows)))
 
 
 def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Response:

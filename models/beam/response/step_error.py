@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from models.beam.response.approached_orbits import approached
-from models.beam.response.settling import NO_IMPACT, Response, look, note_orbit
+from models.beam.response.response import NO_IMPACT, Response
+from models.beam.response.settling import look, note_orbit
 from models.beam.structure.modal import Array
 
 _SEGMENTS = 16  # of the look at what leaves its orbit

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.response.settling import NO_IMPACT, TURNS
+from models.beam.response.response import NO_IMPACT
+from models.beam.response.settling import TURNS
 from models.beam.structure.modal import Array
 from models.beam.wear.lost_stability import push_off_unstable_orbits
 from models.beam.wear.regimes import WINDOW, History, regime_of

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.response.settling import ASYMMETRIC, SYMMETRIC
+from models.beam.response.response import ASYMMETRIC, SYMMETRIC
 from models.beam.structure.modal import Array
 from models.numerics.multipliers import largest_multiplier
 

@@ -10,14 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.response.settling import (
-    APERIODIC,
-    ASYMMETRIC,
-    LONGEST_PERIOD,
-    NO_IMPACT,
-    PERIODIC,
-    SYMMETRIC,
-)
+from models.beam.response.response import APERIODIC, ASYMMETRIC, NO_IMPACT, PERIODIC, SYMMETRIC
+from models.beam.response.settling import LONGEST_PERIOD
 from models.beam.structure.modal import Array
 from models.numerics.jit import kernel
 

@@ -10,7 +10,8 @@ from models.beam import MODEL, exact, lanes
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
 from models.beam.response.settling import settle
 from models.beam.structure.modal import beams, reach
-from models.beam.structure.random_load import COUNT, force, tip_deviation
+from models.beam.structure.random_lines import COUNT, force
+from models.beam.structure.random_response import tip_deviation
 from models.beam.wear.random_lives import _fit, _step, _Wear
 from models.numerics.blocks import LANES
 from uq import simulate

@@ -7,9 +7,9 @@ import pytest
 from hard_rows import DELAYED, GRAZING, LIGHT, STEPPED, SWITCHING, TRANSIENT
 
 from models.beam import MODEL, lanes
-from models.beam.batch import initial_gaps
 from models.beam.parameters import REGIMES, Params, Settings
 from models.beam.response.settling import settle
+from models.beam.start import initial_gaps
 from models.beam.structure.modal import beams
 from models.beam.wear.accelerated_life import run
 from uq.contract import Status

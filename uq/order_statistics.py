@@ -1,0 +1,151 @@
+"""Quantiles, their intervals and tolerance bounds, by the order of the rows."""
+
+import numpy as np
+from scipy import stats
+
+from uq.intervals import (
+    CONFIDENCE,
+    ROUNDING,
+    UNKNOWN,
+    Ends,
+    Floats,
+    Replicates,
+    by_replicate,
+    scattered_share_interval,
+    upper_tail,
+)
+
+
+def is_within(probability: float, rows: int) -> bool:
+    """Whether so many values reach a quantile: their ranks, on average, lie at i/(n + 1).
+
+    Rows of replicates count together: their designs spread as evenly, or more so.
+    """
+    return bool(1 - ROUNDING <= probability * (rows + 1) <= rows + ROUNDING * rows)
+
+
+def rows_to_reach(probability: float) -> int:
+    """Return the least number of values that reach a quantile."""
+    rarer = min(probability, 1 - probability)
+    rows = int(np.ceil(1 / rarer - 1))
+    return next(n for n in (rows - 1, rows, rows + 1) if n > 0 and is_within(probability, n))
+
+
+def quantile(values: Floats, probability: float) -> float:
+    """Return the median-unbiased estimate of a quantile (type 8 of [1]_).
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite or infinite.
+    probability : float
+
+    Returns
+    -------
+    float
+        Infinite as soon as an infinite value takes part; NaN beyond what the values reach, see
+        `is_within`.
+
+    References
+    ----------
+    .. [1] R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", Am. Stat. 50,
+       361-365 (1996).
+    """
+    if not is_within(probability, len(values)):
+        return np.nan
+    # Infinity times zero is no number: numpy interpolates towards a huge number instead.
+    huge, finite = np.finfo(float).max / 4, values[np.isfinite(values)]
+    found = np.quantile(np.clip(values, -huge, huge), probability, method="median_unbiased")
+    if found > finite.max(initial=-huge):
+        return np.inf
+    return float(found) if found >= finite.min(initial=huge) else -np.inf
+
+
+def quantile_interval(
+    values: Floats, probability: float, replicate: Replicates = None, confidence: float = CONFIDENCE
+) -> Ends:
+    """Return the interval of a quantile.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite or infinite.
+    probability : float
+    replicate : ndarray of int, shape (n,), optional
+    confidence : float, optional
+
+    Returns
+    -------
+    low, high : float
+        Independent rows: order statistics, by the binomial law [1]_. Replicates: the quantiles at
+        both ends of the interval of the share of rows below the quantile [2]_. Bounds may
+        be infinite.
+
+    References
+    ----------
+    .. [1] W. J. Conover, "Practical nonparametric statistics", 3rd ed., Wiley (1999), 3.2.
+    .. [2] R. S. Woodruff, "Confidence intervals for medians and other position measures", J. Am.
+       Stat. Assoc. 47, 635-646 (1952).
+    """
+    n = len(values)
+    if n == 0:
+        return UNKNOWN
+    if replicate is None:
+        tail = 1 - upper_tail(confidence)  # a frozen law would cost more than the rest
+        return (
+            order_statistic(values, int(stats.binom.ppf(tail, n, probability))),
+            order_statistic(values, int(stats.binom.isf(tail, n, probability)) + 1),
+        )
+    value = quantile(values, probability)
+    if np.isnan(value):
+        return UNKNOWN
+    below = values < value if np.isposinf(value) else values <= value
+    low, high = scattered_share_interval(
+        probability, by_replicate(below, replicate), below.mean(), confidence
+    )
+    return (
+        quantile(values, low) if low * n >= 1 else np.nan,
+        quantile(values, high) if (1 - high) * n >= 1 else np.nan,
+    )
+
+
+def order_statistic(values: Floats, rank: int) -> float:
+    """Return the value of this rank, from 1 to n, or NaN beyond."""
+    if not 1 <= rank <= len(values):
+        return np.nan
+    return float(np.partition(values, rank - 1)[rank - 1])
+
+
+def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: float) -> Ends:
+    """Return two one-sided tolerance bounds from independent rows (Wilks 1941).
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        Finite or +inf.
+    failed : int
+        Number of further rows without a value: they count as the worst one on each side.
+    coverage : float
+        Share of all values that a bound must have on its side.
+    confidence : float
+        Probability that it has.
+
+    Returns
+    -------
+    low, high : float
+        NaN where there are fewer rows than `rows_needed`.
+
+    References
+    ----------
+    S. S. Wilks, "Determination of sample sizes for setting tolerance limits", Ann. Math. Stat. 12,
+    91-96 (1941).
+    """
+    n = len(values)
+    outside = int(stats.binom.ppf(1 - confidence, n + failed, 1 - coverage)) - failed
+    return order_statistic(values, outside), order_statistic(values, n + 1 - outside)
+
+
+def rows_needed(coverage: float, confidence: float, failed: int = 0) -> int:
+    """Return the least number of rows, `failed` of them failed, that gives a tolerance bound."""
+    beyond = failed + 1  # rows that must lie outside the bound
+    return beyond + int(stats.nbinom.ppf(confidence, beyond, 1 - coverage))
