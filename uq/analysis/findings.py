@@ -10,7 +10,7 @@ from uq.analysis.convergence import running_estimates
 from uq.analysis.statistics import summarise
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
-from uq.rows.elements import independent_rows
+from uq.rows.elements import elements_of, independent_rows, output_names
 
 _COLUMNS = ["output", "estimate", "samples", "value", "low", "high"]
 
@@ -32,6 +32,13 @@ class Findings:
     def rows(self) -> xr.Dataset:
         """The independent rows."""
         return independent_rows(self.ds)
+
+    @cached_property
+    def absent(self) -> frozenset[str]:
+        """The outputs that none of the independent rows has."""
+        names = output_names(self.rows)
+        there = (one.output for one in elements_of(self.rows, names) if one.present.any())
+        return frozenset(names) - frozenset(there)
 
     @cached_property
     def summary(self) -> dict[str, Any]:

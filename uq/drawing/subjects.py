@@ -7,6 +7,7 @@ from uq.analysis.sampled_inputs import stated_and_realised
 from uq.drawing.catalogue import Subject
 from uq.drawing.convergence_plot import followed, total_indices
 from uq.drawing.elements_plot import occurring_regimes
+from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.sensitivities import methods
 from uq.rows.elements import analysis_of, shown_outputs
@@ -14,26 +15,30 @@ from uq.rows.variables import outputs_of
 
 
 def the_result(findings: Findings) -> Iterator[Subject]:
-    """The result as a whole."""
+    """Yield the result as a whole."""
     yield Subject()
 
 
 def outputs(findings: Findings) -> Iterator[Subject]:
-    """Each output with numbers."""
+    """Yield each output with numbers."""
     if findings.rows.sizes["sample"]:
         yield from map(Subject, _numbers(findings))
 
 
 def targets(findings: Findings) -> Iterator[Subject]:
-    """Each target of each sensitivity method."""
+    """Yield each target of each sensitivity method."""
     for method in methods(findings.ds):
-        for name, found in findings.sensitivities(method)["outputs"].items():
+        try:
+            entries = findings.sensitivities(method)["outputs"]
+        except InputError:  # the report says why
+            continue
+        for name, found in entries.items():
             if "refused" not in found:
                 yield Subject(name, method, found)
 
 
 def crossed_targets(findings: Findings) -> Iterator[Subject]:
-    """Each target with total indices of fewer rows."""
+    """Yield each target with total indices of fewer rows."""
     if any(outputs(findings)):
         names = findings.running["output"]
         known = total_indices(findings.running)["output"]

@@ -1,17 +1,19 @@
 """What a report says of sensitivities: one table for each target of each method."""
 
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import xarray as xr
 
+from uq.analysis.findings import Findings
 from uq.drawing.figure import sentence, with_symbol
-from uq.drawing.index_plot import bars, subject
+from uq.drawing.index_plot import subject
 from uq.errors import InputError
-from uq.indices.sensitivities import methods, sensitivities
+from uq.indices.sensitivities import methods
 from uq.indices.targets import FORMS, split_name
 from uq.report.cells import Cell, Table
-from uq.report.pictures import Picture, picture
+from uq.report.pictures import Picture, pictures
 from uq.wording import index, index_interval
 
 _SHARES, _LEAST = ("S1", "ST", "shapley"), 0.05
@@ -28,7 +30,7 @@ class Subject(NamedTuple):
     refused : str
         Why there are none, or "".
     tables : list of Table
-    picture : Picture or None
+    pictures : tuple of Picture
     notes : list of str
     leading : str
         A sentence on the input with the largest index; "" where none is larger than that of an
@@ -39,7 +41,7 @@ class Subject(NamedTuple):
     words: str
     refused: str = ""
     tables: tuple[Table, ...] = ()
-    picture: Picture | None = None
+    pictures: tuple[Picture, ...] = ()
     notes: tuple[str, ...] = ()
     leading: str = ""
 
@@ -53,24 +55,30 @@ class Method(NamedTuple):
     subjects: tuple[Subject, ...] = ()
 
 
-def sensitivity_of(ds: xr.Dataset) -> list[Method]:
+Drawn = defaultdict[tuple[str, str], list[Picture]]
+"""Method and target -> their figures."""
+
+
+def sensitivity_of(findings: Findings) -> list[Method]:
     """Return the indices by every method that the study asks for.
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        A result.
+    findings : Findings
 
     Returns
     -------
     list of Method
     """
-    return [_method(ds, name) for name in methods(ds)]
+    drawn: Drawn = defaultdict(list)
+    for of, picture in pictures(findings, "sensitivities"):
+        drawn[of.method, of.name].append(picture)
+    return [_method(findings, name, drawn) for name in methods(findings.ds)]
 
 
-def _method(ds: xr.Dataset, name: str) -> Method:
+def _method(findings: Findings, name: str, drawn: Drawn) -> Method:
     try:
-        found = sensitivities(ds, name)
+        found = findings.sensitivities(name)
     except InputError as error:
         return Method(name, refused=str(error))
     used = f"Of {found['rows_used']} rows"
@@ -78,11 +86,16 @@ def _method(ds: xr.Dataset, name: str) -> Method:
         used += (
             f", {found['groups_dropped']} groups dropped for lack of a value in some of their rows"
         )
-    subjects = (_subject(ds, name, *one) for one in found["outputs"].items())
+    subjects = (
+        _subject(findings.ds, name, label, entry, drawn[name, label])
+        for label, entry in found["outputs"].items()
+    )
     return Method(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(ds: xr.Dataset, method: str, name: str, entry: Mapping[str, Any]) -> Subject:
+def _subject(
+    ds: xr.Dataset, method: str, name: str, entry: Mapping[str, Any], drawn: Sequence[Picture]
+) -> Subject:
     words = " ".join(subject(ds, name).split())
     if "refused" in entry:
         return Subject(name, words, refused=entry["refused"])
@@ -97,11 +110,9 @@ def _subject(ds: xr.Dataset, method: str, name: str, entry: Mapping[str, Any]) -
     if noise := entry.get("noise"):
         line = [(Cell("noise"), _cell(noise, "ST"))]
         tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
-    caption = f"Sensitivity indices of {name} by {method}"
-    drawn = picture(bars(ds, name, entry), caption) if kinds else None
     article = "the " * (split_name(name)[0] in FORMS)
     leading = _leading(ds, method, f"{article}{words[:1].lower()}{words[1:]}", kinds, dummy)
-    return Subject(name, words, "", tables, drawn, tuple(entry["notes"]), leading)
+    return Subject(name, words, "", tables, tuple(drawn), tuple(entry["notes"]), leading)
 
 
 def _leading(

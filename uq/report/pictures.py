@@ -2,7 +2,7 @@
 
 import base64
 import re
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from io import BytesIO, StringIO
 from typing import NamedTuple
 from xml.etree import ElementTree
@@ -33,10 +33,26 @@ class Picture(NamedTuple):
     is_image: bool
 
 
-def pictures(findings: Findings, section: str) -> Iterator[tuple[Subject, Picture]]:
-    """Yield the figures of one section of the report, and what each is drawn of."""
+def pictures(
+    findings: Findings, section: str, without: Container[str] = ()
+) -> Iterator[tuple[Subject, Picture]]:
+    """Yield the figures of one section of the report, and what each is drawn of.
+
+    Parameters
+    ----------
+    findings : Findings
+    section : str
+        As in `uq.drawing.catalogue.Entry`.
+    without : container of str
+        Outputs of which none is drawn.
+
+    Yields
+    ------
+    tuple of Subject and Picture
+    """
     for one in drawables(FIGURES, findings, section):
-        yield one.subject, picture(one.draw(), one.caption)
+        if one.subject.name not in without:
+            yield one.subject, picture(one.draw(), one.caption)
 
 
 @styled
