@@ -10,7 +10,7 @@ import numba
 import numpy as np
 
 from models.beam.structure.modal import Beams
-from models.beam.structure.record import Record
+from models.beam.structure.propagation import Record
 
 
 class System(NamedTuple):

@@ -35,6 +35,7 @@ LAYERS = (
     {"contract"},
     GROUND,
     {"designs"},
+    {"methods"},
     {"inputs"},
     {"study"},
     {"rows", "store"},
@@ -199,7 +200,7 @@ def test_few_files_stand_side_by_side(machine):
     assert {place for place in files if files.count(place) > SIDE_BY_SIDE} == set()
 
 
-@pytest.mark.parametrize("machine", ["beam"])
+@pytest.mark.parametrize("machine", STOREYS)
 def test_each_package_says_what_to_read(machine):
     silent = set()
     for path in (HOUSE / "models" / machine).rglob("*.py"):

@@ -1,6 +1,5 @@
 """From rows of parameters to work-rates, regimes and lifetimes."""
 
-from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from models.beam.response.settling import NINE_IN_TEN, settle
 from models.beam.response.step_error import add_step_error
 from models.beam.start import PROPAGATORS, initial_gaps, initial_state
 from models.beam.structure.modal import Array, beams
+from models.beam.structure.propagation import Propagator, System
 from models.beam.structure.random_load import has_band
 from models.beam.wear.lives import Lives, find_lives
 from models.beam.wear.random_lives import find_random_lives
@@ -47,7 +47,7 @@ def batch(
     Returns
     -------
     outputs : dict of str to ndarray, shape (n, ...)
-        As `models.beam.parameters.OUTPUTS` says, with ``*_censored`` beside each lifetime.
+        Those of `models.beam.parameters.OUTPUTS`, with ``*_censored`` beside each lifetime.
     status : ndarray of int8, shape (n,)
         Non-finite, as are all outputs, where the band of a random force has no width.
     """
@@ -55,9 +55,9 @@ def batch(
     seed = np.where(p.random_force_level > 0, seed, np.uint64(0))
     # The halves of a seed are floats without rounding.
     halves = np.stack([seed >> np.uint64(32), seed & np.uint64(0xFFFFFFFF)], axis=1)
-    told = x.copy()
-    told[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load is none
-    dynamic = np.hstack([np.delete(told, _SCALES, axis=1), halves.astype(float)])
+    given = x.copy()
+    given[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load is none
+    dynamic = np.hstack([np.delete(given, _SCALES, axis=1), halves.astype(float)])
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
     some: Rows = Params._make(np.ascontiguousarray(x[first].T))
     simulated = simulate_rows(some, settings, seed[first])
@@ -97,7 +97,7 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
 
 
 def _simulate_group(
-    propagator: ModuleType, system: Any, p: Rows, settings: Settings
+    propagator: Propagator, system: System, p: Rows, settings: Settings
 ) -> tuple[Response, Lives]:
     gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     begin = state.copy()
@@ -110,7 +110,7 @@ def _simulate_group(
     lives = Lives.nothing(*growths.shape)
     known = np.isfinite(settled.work).all(axis=1)
     for is_random in (False, True):
-        rows = np.flatnonzero(known & (system.is_random == is_random))
+        rows = np.flatnonzero(known & (system.beams.is_random == is_random))
         if not len(rows):
             continue
         start = (propagator, system.take(rows), state[rows], gaps[rows], work[rows])

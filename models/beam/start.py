@@ -1,18 +1,16 @@
 """Where a beam starts: its propagator, its gaps and its state."""
 
-from types import ModuleType
-from typing import Any
-
 import numpy as np
 
 from models.beam import exact, lanes
 from models.beam.parameters import Rows, Settings
 from models.beam.structure.modal import Array, Beams
+from models.beam.structure.propagation import Propagator, System
 
-PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
+PROPAGATORS: dict[str, Propagator] = {"fast": lanes, "exact": exact}
 
 
-def one_system(beams: Beams, settings: Settings) -> tuple[ModuleType, Any]:
+def one_system(beams: Beams, settings: Settings) -> tuple[Propagator, System]:
     """Return a propagator that can follow one beam, and the system it prepares.
 
     The exact one where contact is too stiff, or a random force too fast, for fixed steps.
@@ -28,7 +26,7 @@ def initial_gaps(p: Rows) -> Array:
     return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
 
 
-def initial_state(propagator: ModuleType, system: Any, p: Rows) -> Array:
+def initial_state(propagator: Propagator, system: System, p: Rows) -> Array:
     """Return the state of n beams at the start, as their propagator keeps it."""
     x0 = p.initial_gap
     return propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)

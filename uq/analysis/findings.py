@@ -9,7 +9,7 @@ import xarray as xr
 from uq.analysis.convergence import running_estimates
 from uq.analysis.statistics import summarise
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities
+from uq.indices.sensitivities import Sensitivities, sensitivities
 from uq.rows.elements import elements_of, independent_rows, output_names
 
 _COLUMNS = ["output", "estimate", "samples", "value", "low", "high"]
@@ -26,7 +26,7 @@ class Findings:
 
     def __init__(self, ds: xr.Dataset):
         self.ds = ds
-        self._sensitivities: dict[str, dict[str, Any]] = {}
+        self._sensitivities: dict[str, Sensitivities] = {}
 
     @cached_property
     def rows(self) -> xr.Dataset:
@@ -62,7 +62,7 @@ class Findings:
         except InputError as refused:
             return pd.DataFrame(columns=_COLUMNS), str(refused)
 
-    def sensitivities(self, method: str) -> dict[str, Any]:
+    def sensitivities(self, method: str) -> Sensitivities:
         """Return what `uq.indices.sensitivities.sensitivities` finds by a method.
 
         Raises

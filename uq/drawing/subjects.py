@@ -29,11 +29,11 @@ def targets(findings: Findings) -> Iterator[Subject]:
     """Yield each target of each sensitivity method."""
     for method in methods(findings.ds):
         try:
-            entries = findings.sensitivities(method)["outputs"]
+            targets_of = findings.sensitivities(method).targets
         except InputError:  # the report says why
             continue
-        for name, found in entries.items():
-            if "refused" not in found:
+        for name, found in targets_of.items():
+            if not found.refused and found.kinds():
                 yield Subject(name, method, found)
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 from markupsafe import Markup, escape
 
 from uq.analysis.findings import Findings
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.literals import plain
 from uq.provenance import provenance

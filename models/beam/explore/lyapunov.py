@@ -44,8 +44,8 @@ def lyapunov_exponent(
     if params.random_force_level > 0:
         raise ValueError("what a random load does has no Lyapunov exponent")
     p: Rows = Params._make(np.full(1, float(value)) for value in params)
-    propagator, system = one_system(beams(p, settings), settings)
-    if propagator is not lanes:
+    _, system = one_system(beams(p, settings), settings)
+    if not isinstance(system, System):
         raise ValueError("the fast propagator is needed, and contact that its steps can follow")
     state = initial_state(lanes, system, p)
     gaps = initial_gaps(p)
@@ -96,5 +96,5 @@ def exponents(
     per_batch = -(-periods // (BATCHES * _STRETCH))
     batches = growth(BATCHES * per_batch).reshape(n, BATCHES, per_batch).mean(axis=2)
     exponent, error = mean_and_error(batches / _STRETCH)
-    to_rate = system.forcing / (2 * np.pi)
+    to_rate = system.beams.forcing / (2 * np.pi)
     return exponent * to_rate, error * to_rate

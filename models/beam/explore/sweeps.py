@@ -12,7 +12,7 @@ from models.beam.response.response import Response
 from models.beam.response.settling import settle
 from models.beam.start import PROPAGATORS, initial_state
 from models.beam.structure.modal import Array, beams
-from models.beam.structure.record import Record
+from models.beam.structure.propagation import Record
 
 Sweep = Literal["none", "up", "down"]
 Settled = tuple[NDArray[np.intp], Response, Record]
@@ -50,7 +50,7 @@ def settled_rows(
             continue
         order = rows if sweep == "up" else rows[::-1]
         before, now = order[0], state[order[:1]]
-        m = system.modal.shape[1]
+        m = b.frequency.shape[1]
         for row in order:
             one = np.array([row])
             if np.isfinite(now).all():

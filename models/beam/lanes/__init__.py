@@ -12,7 +12,7 @@ Reading order; a module imports only those above it:
 """
 
 from models.beam.lanes.propagator import CLOCK, advance, monodromy
-from models.beam.lanes.states import refine, start
-from models.beam.lanes.systems import finer, groups
+from models.beam.lanes.states import finer, start
+from models.beam.lanes.systems import groups
 
-__all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "refine", "start"]
+__all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "start"]

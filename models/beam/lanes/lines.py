@@ -28,7 +28,7 @@ _STEPS = 4  # taken together, as are four lines
 
 
 class Load(NamedTuple):
-    """The random load of n beams, and what responds to it: the fields of `systems.System`."""
+    """The random load of n beams, and what responds to it."""
 
     load: NDArray[np.void]
     oscillators: Array
@@ -73,7 +73,7 @@ class Lines(NamedTuple):
 
 @kernel
 def draw_lines(load, state, first, steps, lines):
-    """Bring the lines of up to LANES rows from `first` on into lanes; tell whether there are any.
+    """Bring the lines of up to LANES rows from `first` on into lanes; return whether there are any.
 
     Spare lanes repeat the last row.
     """

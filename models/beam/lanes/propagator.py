@@ -3,18 +3,14 @@
 import numpy as np
 
 from models.beam.lanes.lines import Lines, Load
-from models.beam.lanes.states import refine, start
 from models.beam.lanes.steps import advance_blocks, room
-from models.beam.lanes.systems import System, finer, groups
+from models.beam.lanes.systems import System
 from models.beam.lanes.tangents import carry
 from models.beam.structure.modal import Array
-from models.beam.structure.record import Record
+from models.beam.structure.propagation import Record
 from models.numerics.elementary import cos, sin
 
-__all__ = ["advance", "finer", "groups", "monodromy", "refine", "start"]
-
 CLOCK = -1
-"""Column of the state that counts forcing periods."""
 
 _NOWHERE = 1e6  # displacement, over the gap and what the tip reaches without contact
 
@@ -22,41 +18,26 @@ _NOWHERE = 1e6  # displacement, over the gap and what the tip reaches without co
 def advance(
     system: System, state: Array, gaps: Array, growth: Array, periods: int, trace: bool = False
 ) -> Record:
-    """Advance n beams by whole periods of the force, their gaps growing with the work done.
+    """Advance n beams; gaps grow at the end of each period.
 
-    Parameters
-    ----------
-    system : System
-    state : ndarray, shape (n, 2 m + 4)
-        Updated in place.
-    gaps : ndarray, shape (n, 2)
-        Right and left, in initial gaps; updated in place, at the end of each period.
-    growth : ndarray, shape (n, 2)
-        Gap growth per unit of dimensionless work; zero for no wear.
-    periods : int
-    trace : bool
-        Whether to keep the tip's displacement at every step.
-
-    Returns
-    -------
-    Record
-        NaN, as is then the state, of a beam that is thrown out of all bounds.
+    Record and state are NaN of a beam that is thrown out of all bounds.
     """
     n, _, m = system.modes.shape
+    beams = system.beams
     record = Record.empty(n, periods, system.steps if trace else 0)
     phase = 2 * np.pi * np.arange(1, system.steps + 1) / system.steps
     advance_blocks(
         system.modes,
         system.sigma,
         system.modal.sum(axis=1),
-        Load(system.load, system.oscillators, system.begin, system.forcing),
+        Load(beams.load, system.oscillators, system.begin, beams.forcing),
         state,
         gaps,
         growth,
         cos(phase),
         sin(phase),
         *room(m),
-        Lines.room(bool(system.is_random.any()), system.steps, system.oscillators.shape[2]),
+        Lines.room(bool(beams.is_random.any()), system.steps, system.oscillators.shape[2]),
         tuple(record),
     )
     # Steps too long for a beam that long contacts make ring feed it: that is no motion of the beam.
@@ -67,23 +48,9 @@ def advance(
 
 
 def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
-    """Return the derivative of the state after some periods with respect to the state now.
+    """Return the derivative, zero for the clock.
 
     It is that of the scheme itself, not of the beam that the scheme approximates.
-
-    Parameters
-    ----------
-    system : System
-    state : ndarray, shape (n, 2 m + 4)
-        Not changed.
-    gaps : ndarray, shape (n, 2)
-        In initial gaps, constant.
-    periods : int
-
-    Returns
-    -------
-    ndarray, shape (n, 2 m + 4, 2 m + 4)
-        Zero for the clock.
     """
     record = advance(system, state.copy(), gaps.copy(), np.zeros_like(gaps), periods, trace=True)
     n, size = state.shape

@@ -1,9 +1,12 @@
 """The state of beams in lanes: at the start, and the same in steps of half the size."""
 
+from collections.abc import Iterator
+
 import numpy as np
+from numpy.typing import NDArray
 
 from models.beam.lanes.recurrence import is_static, mode_step
-from models.beam.lanes.systems import System, gains
+from models.beam.lanes.systems import System, gains, systems
 from models.beam.structure.modal import Array
 from models.beam.structure.random_lines import COUNT, draw
 from models.beam.structure.random_response import add_modes
@@ -22,30 +25,19 @@ def _open(load, forcing, oscillators, opening):
 
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:
-    """Return the state at phase 0 of the force, tip displaced in the shape of the first mode.
+    """Return y and r of each mode, penetration, two displacements a step apart, and the clock.
 
-    A contact that exists at the start acts from the end of the first step.
-
-    Parameters
-    ----------
-    system : System
-    displacement, velocity : ndarray, shape (n,)
-        Of the tip, in initial gaps and initial gaps per second.
-
-    Returns
-    -------
-    ndarray, shape (n, 2 m + 4)
-        y and r of each mode, then penetration, displacement, the displacement a step before, and
-        the clock: forcing periods since the start.
+    The shape is (n, 2 m + 4), the newer displacement first. A contact that exists at the start acts
+    from the end of the first step.
     """
     n, _, m = system.modes.shape
     to_displacement, to_velocity, moving = system.begin.transpose(1, 0, 2)
     modal = system.modal[:, :m]
     z = -modal.real * moving
-    v = modal.imag * system.forcing[:, None]
-    if system.is_random.any():
+    v = modal.imag * system.beams.forcing[:, None]
+    if system.beams.is_random.any():
         opening = np.zeros((n, 2, system.oscillators.shape[2]))
-        _open(system.load, system.forcing, system.oscillators, opening)
+        _open(system.beams.load, system.beams.forcing, system.oscillators, opening)
         z -= opening[:, 0, :m] * moving
         v -= opening[:, 1, :m]
     z[:, 0] += displacement
@@ -58,26 +50,18 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
     return state
 
 
-def refine(system: System, state: Array, fine: System) -> Array:
-    """Return nearly the same state in steps of half the size.
+def finer(system: System, state: Array) -> Iterator[tuple[NDArray[np.intp], System, Array]]:
+    """Halve the steps; the displacement a step before is interpolated, with the tip's velocity."""
+    for rows, fine in systems(system.beams, 2 * system.steps):
+        yield rows, fine, _in_half_steps(system.take(rows), state[rows], fine)
 
-    Parameters
-    ----------
-    system : System
-    state : ndarray, shape (n, 2 m + 4)
-        Of `start`.
-    fine : System
-        The same beams; see `finer`.
 
-    Returns
-    -------
-    ndarray, shape (n, 2 m' + 4)
-        The displacement a step before is interpolated, with the tip's velocity.
-    """
+def _in_half_steps(system: System, state: Array, fine: System) -> Array:
+    """Return nearly the same state, shape (n, 2 m' + 4)."""
     b = system.beams
     out = np.zeros((len(state), 2 * fine.modes.shape[2] + 4))
-    step = 2 * np.pi / (system.forcing * system.steps)
-    modal = (system.modal * system.forcing[:, None]).imag.sum(axis=1)
+    step = 2 * np.pi / (system.beams.forcing * system.steps)
+    modal = (system.modal * system.beams.forcing[:, None]).imag.sum(axis=1)
     _refine(b.frequency, b.decay, gains(b), b.moving, step, -modal, state, out)
     return out
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from models.beam.lanes.recurrence import is_static, mode_step
 from models.beam.parameters import Settings
 from models.beam.structure.modal import Array, Beams, reach, steady_response
-from models.beam.structure.record import LONGEST
+from models.beam.structure.propagation import LONGEST
 from models.numerics.jit import kernel
 
 LADDER = tuple(base << k for k in range(8) for base in (64, 96))
@@ -21,7 +21,7 @@ _MOST = 2**20  # steps in a time mean
 
 
 class System(NamedTuple):
-    """n beams, prepared for steps of one size.
+    """n beams with steps of one size, see `models.beam.structure.propagation.System`.
 
     Attributes
     ----------
@@ -33,47 +33,24 @@ class System(NamedTuple):
         Displacement within the step per unit of its final penetration, negative.
     modal : ndarray, shape (n, all modes), complex
         Steady amplitude of each mode.
-    reach : ndarray, shape (n,)
-        Bound of the tip's displacement without contact.
-    load : ndarray of random_load.LOAD, shape (n,)
     oscillators : ndarray, shape (n, 3, all modes)
         w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode: how it responds to the random load.
-    forcing : ndarray, shape (n,)
-        [rad s-1]
-    beams : Beams
-    steps : int
-        In a forcing period.
+    reach, beams, steps
+        As there.
     """
 
     modes: Array
     begin: Array
     sigma: Array
     modal: NDArray[np.complex128]
-    reach: Array
-    load: NDArray[np.void]
     oscillators: Array
-    forcing: Array
+    reach: Array
     beams: Beams
     steps: int
 
     @property
-    def is_random(self) -> NDArray[np.bool_]:
-        """Which beams have a random load, shape (n,)."""
-        return self.load["power"] > 0
-
-    @property
-    def memory(self) -> Array:
-        """Forcing periods in which the first mode's free motion falls to 1/e, shape (n,)."""
-        return self.forcing / (2 * np.pi * self.oscillators[:, 1, 0])
-
-    @property
-    def turn(self) -> Array:
-        """Forcing periods in a free oscillation of the first mode, shape (n,)."""
-        return self.forcing / self.beams.frequency[:, 0]
-
-    @property
     def longest(self) -> int:
-        """Forcing periods in a time mean, at most."""
+        """The fewer the more steps there are in a period."""
         return min(LONGEST, _MOST // self.steps)
 
     def take(self, rows: NDArray[np.intp]) -> "System":
@@ -130,25 +107,12 @@ def _choose_steps(forcing, frequency, decay, gain, moving, least, steps):
 def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
     """Prepare n beams, in groups that share a number of steps and, by fours, of moving modes.
 
-    What a row is computed with depends on the row alone, and so do its bits.
-
     Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
     gives way by no more than `COMPLIANCE` of its penetration, residual flexibility left out; the
     error of a work-rate is then about 0.1 %. A turn of the fastest line of a random load takes
     `RESOLVED` steps at least. A row whose step stays too long, because contact is too stiff or the
     load too fast for the longest of the ladder or for the steps that are set, is in no group; nor
     is one under a random load, whose averages are long, that takes more than `MOST_UNDER_RANDOM`.
-
-    Parameters
-    ----------
-    beams : Beams
-    settings : Settings
-
-    Yields
-    ------
-    rows : ndarray of int
-        Which of the n beams are in the group.
-    system : System
     """
     steps = np.full(len(beams.forcing), settings.steps_per_period)
     if not settings.steps_per_period:
@@ -158,27 +122,11 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
         )
     for count in np.unique(steps):
         rows = np.flatnonzero(steps == count)
-        for part, system in _systems(beams.take(rows), int(count)):
+        for part, system in systems(beams.take(rows), int(count)):
             yield rows[part], system
 
 
-def finer(system: System) -> Iterator[tuple[NDArray[np.intp], System]]:
-    """Prepare the same beams for steps of half the size, in groups as `groups` yields them.
-
-    Parameters
-    ----------
-    system : System
-
-    Yields
-    ------
-    rows : ndarray of int
-        Which of the system's beams are in the group.
-    system : System
-    """
-    yield from _systems(system.beams, 2 * system.steps)
-
-
-def _systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
+def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
     """Prepare n beams for so many steps, in groups of one number of modes."""
     n, m = b.frequency.shape
     modes, begin = np.zeros((n, 4, m)), np.zeros((n, 3, m))
@@ -200,10 +148,8 @@ def _systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
         begin,
         sigma + residual,
         steady_response(b),
-        reach(b),
-        b.load,
         np.stack([b.frequency, b.decay, b.mobility], axis=1),
-        b.forcing,
+        reach(b),
         b,
         steps,
     )

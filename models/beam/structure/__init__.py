@@ -7,5 +7,5 @@ Reading order; a module imports only those above it:
     random_response    the steady response to it
     random_load        its lines for a given beam, and how long they last
     modal              rows of parameters as beams in modal form
-    record             what a propagator reports about them
+    propagation        what a propagator of them promises and reports
 """

@@ -50,6 +50,21 @@ class Beams(NamedTuple):
     moving: NDArray[np.int64]
     load: NDArray[np.void]
 
+    @property
+    def is_random(self) -> NDArray[np.bool_]:
+        """Which beams have a random load, shape (n,)."""
+        return self.load["power"] > 0
+
+    @property
+    def memory(self) -> Array:
+        """Forcing periods in which the first mode's free motion falls to 1/e, shape (n,)."""
+        return self.forcing / (2 * np.pi * self.decay[:, 0])
+
+    @property
+    def turn(self) -> Array:
+        """Forcing periods in a free oscillation of the first mode, shape (n,)."""
+        return self.forcing / self.frequency[:, 0]
+
     def take(self, rows: NDArray[np.intp]) -> "Beams":
         """Return the beams of some rows."""
         return Beams._make(a[rows] for a in self)

@@ -4,8 +4,10 @@ Reading order; a module imports only those above it:
 
     regimes             the regime of a response that drifts with wear, and its changes
     lost_stability      orbits that wear has made unstable
+    growth              how the gaps grow, and what is noted of it
     accelerated_life    one life, many times faster than in reality
     extrapolation       the limit of ever slower lives
     lives               lifetimes in that limit
+    fitted_wear         the wear of a site along the path, from noisy means
     random_lives        lifetimes under a random load
 """

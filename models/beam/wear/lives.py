@@ -5,14 +5,14 @@ fall shows how near: see `models.beam.wear.extrapolation`.
 """
 
 import math
-from types import ModuleType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.structure.modal import Array
-from models.beam.wear.accelerated_life import LOOKS, run
+from models.beam.structure.propagation import Propagator, System
+from models.beam.wear.accelerated_life import LOOKS, run_life
 from models.beam.wear.extrapolation import LEAST, SMOOTH, extrapolate, extrapolate_smooth
 from models.beam.wear.regimes import UNKNOWN, WINDOW, changes_of, confirmed_regimes
 
@@ -53,8 +53,8 @@ class Lives(NamedTuple):
 
 
 def find_lives(
-    propagator: ModuleType,
-    system: Any,
+    propagator: Propagator,
+    system: System,
     state: Array,
     gaps: Array,
     work: Array,
@@ -67,10 +67,10 @@ def find_lives(
     Parameters
     ----------
     propagator, system, state, gaps, work, share, growths
-        As in `accelerated_life.run`.
+        As in `accelerated_life.run_life`.
     accuracy : float
         Relative error at which a beam's lives are good enough. It also sets the longest run: where
-        that does not suffice, the error says so.
+        that does not suffice, the error shows it.
 
     Returns
     -------
@@ -83,7 +83,7 @@ def find_lives(
     left = np.arange(n)
     for level in range(levels):
         periods = SHORTEST << level
-        one = run(
+        one = run_life(
             propagator,
             system.take(left),
             state[left],
