@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from uq.analysis.findings import Findings
-from uq.analysis.sampled_inputs import stated_and_realised
+from uq.analysis.sampled_inputs import laws_and_values
 from uq.drawing.catalogue import Subject
 from uq.drawing.convergence_plot import followed, total_indices
 from uq.drawing.elements_plot import occurring_regimes
@@ -83,7 +83,7 @@ def has_several_inputs(findings: Findings, name: str) -> bool:
 
 def follows_laws(findings: Findings, name: str) -> bool:
     """Whether rows follow the laws of the inputs."""
-    return bool(stated_and_realised(findings.ds))
+    return bool(laws_and_values(findings.ds))
 
 
 def settles(findings: Findings, name: str) -> bool:
