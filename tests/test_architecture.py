@@ -12,9 +12,7 @@ import pytest
 HOUSE = Path(__file__).parents[1]
 
 GROUND = {
-    "columns",
     "compilation",
-    "environment",
     "errors",
     "estimate",
     "exact_shares",
