@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from models.beam.parameters import Settings
 from models.beam.structure.modal import Array, Beams
+from models.numerics import propagator
 
 LONGEST = 16_384
 """Forcing periods in a time mean, at most."""
@@ -67,11 +68,11 @@ class System(Protocol):
         """Return the systems of some rows."""
 
 
-class Propagator(Protocol):
-    """Takes n beams through forcing periods: `models.beam.lanes`, `models.beam.exact`.
+class Propagator(propagator.Propagator, Protocol):
+    """Takes n beams through forcing periods: `models.beam.lanes` and `models.beam.exact` do.
 
-    What a beam does depends on itself alone, to the bit. A beam that cannot be followed any
-    further gets NaN.
+    It keeps all promises of `models.numerics.propagator.Propagator`. A beam that cannot be followed
+    any further gets NaN.
     """
 
     CLOCK: int
