@@ -19,6 +19,7 @@ from uq.contract import Status
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
+from uq.plots import FIGURES
 from uq.study.file import (
     LAWS,
     AnalysisTable,
@@ -298,6 +299,20 @@ def questions() -> str:
     )
 
 
+def figures() -> str:
+    """Tabulate the figures of a result."""
+    lines = [
+        (f"`{name}`", _first_line(entry.of, "Yield"), _first_line(entry.draw, "Draw"))
+        for name, entry in FIGURES.items()
+    ]
+    return table(("figure", "of", "shows"), lines)
+
+
+def _first_line(function: Any, verb: str) -> str:
+    """Return the first line of a docstring without its verb and full stop."""
+    return (function.__doc__ or "").splitlines()[0].removeprefix(f"{verb} ").removesuffix(".")
+
+
 def verbs() -> str:
     """Describe every verb of the command line."""
     return "\n\n".join(_verb(name, command) for name, command in commands().items())
@@ -344,5 +359,6 @@ def functions(name: str) -> str:
 
 
 def _is_own(found: Any, module: ModuleType) -> bool:
-    own = isfunction(found) and found.__module__ == module.__name__
-    return own and not found.__name__.startswith("_")
+    if not isfunction(found) or found.__name__.startswith("_"):
+        return False
+    return found.__module__ == module.__name__ or found.__module__.endswith("_plot")

@@ -9,12 +9,6 @@ from .analysis.lifetime import survival as survival
 from .analysis.overview import summary as summary
 from .analysis.regime_table import regimes as regimes
 from .analysis.twin import two_fidelities as two_fidelities
-from .drawing.motion_plot import plot_history as plot_history
-from .drawing.motion_plot import plot_phase_portrait as plot_phase_portrait
-from .drawing.motion_plot import plot_section as plot_section
-from .drawing.response_plot import plot_basins as plot_basins
-from .drawing.response_plot import plot_bifurcation as plot_bifurcation
-from .drawing.response_plot import plot_curve as plot_curve
 from .errors import InputError as InputError
 from .errors import RunError as RunError
 from .exploring.basins import basins as basins
