@@ -114,6 +114,9 @@ def carried_mole():
         return np.array([1e-2, 1.0, 0.1, 1.0, 80.0]) * [*~sticks, True, True]
 
     rows = rows_of(Mole, ("bar_friction", "spring_stiffness", "resistance", "stop_gap"))
+    rng = np.random.default_rng(11)
+    rows[:, Mole._fields.index("control_frequency")] = rng.uniform(2.5, 13, N)
+    rows[:, Mole._fields.index("supply_phase")] = rng.uniform(0, 6, N)
     # Some bars meet the stop in 2 us: then the step with which a lane begins counts.
     rows[::4, Mole._fields.index("initial_displacement")] = -2.002e-3
     rows[::4, Mole._fields.index("stop_gap")] = -2e-3
