@@ -15,12 +15,14 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.compare import Rival, clock, compare
 from benchmarks.shooting import rates, shoot
+from models.numerics.blocks import LANES
 from models.vibrator import MODEL
 from models.vibrator.equations import rigid_motion
-from models.vibrator.equations.system import systems
+from models.vibrator.equations.system import rigid_machines, systems
 from models.vibrator.exact import orbit, propagator
 from models.vibrator.exact.budgeted import prepare
 from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.packed import pack
 from models.vibrator.parameters import Params
 from models.vibrator.start.synchronous import Machines, propose
 from models.vibrator.theory import averaged
@@ -52,9 +54,7 @@ def scattered(n):
 P = scattered(ROWS)
 SYSTEM = systems(P)
 START = rigid_motion.initial_state(P)
-CONSTANTS = np.repeat(
-    fixed_steps.pack(SYSTEM), fixed_steps.LANES, axis=1
-)  # of each row, in all lanes
+CONSTANTS = np.repeat(pack(SYSTEM.rigid), LANES, axis=1)  # of each row, in all lanes
 
 
 def angle_of(states):
@@ -87,7 +87,7 @@ def by_exact(rows, tolerance):
 def by_lanes(rows, steps):
     """Return the states at the end, with all that has to be set up."""
     p = Params._make(field[:rows] for field in P)
-    state, constants = rigid_motion.initial_state(p), fixed_steps.pack(systems(p))
+    state, constants = rigid_motion.initial_state(p), pack(rigid_machines(p))
     nowhere = np.full(rows, np.nan)
     fixed_steps.advance(
         constants, np.full(rows, DURATION / steps), state, nowhere, steps, 0.0, True
@@ -130,7 +130,7 @@ def run_ups():
 
         def by_taylor(n, tolerance):
             if tolerance not in made:
-                made[tolerance] = Taylor(SYSTEM, tolerance)
+                made[tolerance] = Taylor(SYSTEM.rigid, tolerance)
             return angle_of(made[tolerance].advance(START[:n], DURATION))
 
         rivals["heyoka, batches of 8, tolerance"] = Rival(by_taylor, tolerances, ROWS)

@@ -47,7 +47,7 @@ def batch(
     Returns
     -------
     outputs : dict of str to ndarray, shape (n, ...)
-        As `models.beam.parameters.OUTPUTS` says, with ``*_censored`` beside each lifetime.
+        Those of `models.beam.parameters.OUTPUTS`, with ``*_censored`` beside each lifetime.
     status : ndarray of int8, shape (n,)
         Non-finite, as are all outputs, where the band of a random force has no width.
     """
@@ -55,9 +55,9 @@ def batch(
     seed = np.where(p.random_force_level > 0, seed, np.uint64(0))
     # The halves of a seed are floats without rounding.
     halves = np.stack([seed >> np.uint64(32), seed & np.uint64(0xFFFFFFFF)], axis=1)
-    told = x.copy()
-    told[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load is none
-    dynamic = np.hstack([np.delete(told, _SCALES, axis=1), halves.astype(float)])
+    given = x.copy()
+    given[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load is none
+    dynamic = np.hstack([np.delete(given, _SCALES, axis=1), halves.astype(float)])
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
     some: Rows = Params._make(np.ascontiguousarray(x[first].T))
     simulated = simulate_rows(some, settings, seed[first])

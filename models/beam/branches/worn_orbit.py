@@ -208,7 +208,7 @@ def _contacts(place: _Place) -> list[int]:
 
 
 def _end(here: _Place, stop: float, last_rate: float) -> str:
-    """Tell why wear goes no further, empty if it does."""
+    """Return why wear ends here, empty if it does not."""
     if here.rate <= last_rate:
         return "no-impact"
     return "stop" if stop - here.at[:2].max() < _ARRIVED else ""

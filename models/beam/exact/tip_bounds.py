@@ -4,7 +4,7 @@ Between events the beam is linear and the tip a sum of exponentials, none of whi
 
     x(s) = Re sum_k a_k exp(r_k s),    |d^p x/ds^p (s')| <= sum_k |a_k| |r_k|^p |exp(r_k s)|
 
-for all s' >= s. These bounds of the second and third derivative say how long the next event is
+for all s' >= s. These bounds of the second and third derivative show how long the next event is
 certain to stay away.
 """
 

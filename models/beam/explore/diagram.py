@@ -33,7 +33,7 @@ def bifurcation_diagram(
     forcing_frequency : array_like, shape (n,)
         [Hz], in the order in which it is swept up.
     periods : int
-        Forcing periods that are looked at.
+        Forcing periods that are recorded.
     sweep : {"none", "up", "down"}
         Whether each frequency is met in the initial state of `params`, many at once, or, by the
         exact propagator, in the state left by the frequency before it or after it.

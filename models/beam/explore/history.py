@@ -61,16 +61,16 @@ def wear_history(
     life = run_life(
         propagator, system, state, gaps, settled.work, share, growths, periods, looks
     ).history
-    told = np.flatnonzero(np.isfinite(life.time[0]))
+    seen = np.flatnonzero(np.isfinite(life.time[0]))
     regime = confirmed_regimes(life.regime, CONFIRMED * max(1, looks // LOOKS))
     changed = np.flatnonzero(changes_of(regime)[0])
     wear_rate = (
         params.wear_coefficient / params.contact_area * params.contact_stiffness * x0[0]
     ) * params.forcing_frequency
     w0 = beams(p, settings).frequency[0, 0]
-    time = np.concatenate([[0.0], life.time[0, told]])
-    gap = np.concatenate([gaps, life.gaps[0, told]]) * x0[0]
-    work = np.concatenate([settled.work, life.work[0, told]])
+    time = np.concatenate([[0.0], life.time[0, seen]])
+    gap = np.concatenate([gaps, life.gaps[0, seen]]) * x0[0]
+    work = np.concatenate([settled.work, life.work[0, seen]])
     return dataset(
         {
             "time": ("look", time / wear_rate),
@@ -79,7 +79,7 @@ def wear_history(
             "gap_ratio": ("look", gap[:, 1] / gap[:, 0]),
             "work_rate": (("look", "site"), work * watt(params)),
             "mean_work": (("look", "site"), work * params.forcing_frequency / w0),
-            "regime": ("look", WORDS[np.concatenate([settled.regime, regime[0, told]])]),
+            "regime": ("look", WORDS[np.concatenate([settled.regime, regime[0, seen]])]),
             "change_time": ("regime_change", life.time[0, changed] / wear_rate),
             "change_gap": (("regime_change", "site"), life.gaps[0, changed] * x0[0]),
             "change_from": ("regime_change", WORDS[regime[0, changed - 1]]),

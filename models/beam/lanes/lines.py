@@ -73,7 +73,7 @@ class Lines(NamedTuple):
 
 @kernel
 def draw_lines(load, state, first, steps, lines):
-    """Bring the lines of up to LANES rows from `first` on into lanes; tell whether there are any.
+    """Bring the lines of up to LANES rows from `first` on into lanes; return whether there are any.
 
     Spare lanes repeat the last row.
     """

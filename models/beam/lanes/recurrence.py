@@ -54,6 +54,6 @@ def mode_step(w, d, h):
 
 @kernel
 def is_static(w, d, h):
-    """Tell a mode too fast for a force sampled at steps of h: its slower pole is beyond Nyquist."""
+    """Return whether a mode is too fast for steps of h: its slower pole is beyond Nyquist."""
     pole = w if d < w else w * (w / (d + np.sqrt(d * d - w * w)))
     return pole * h > np.pi

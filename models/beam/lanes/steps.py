@@ -125,7 +125,7 @@ def _step(w, head, groups, cosine, sine):
         x = fma(head[_SIGMA * LANES + lane], p, free)
         x1 = head[_X1 * LANES + lane]
         before, after = x1 - head[_X2 * LANES + lane], x - x1
-        # Of the contact's corrections below, some is left in p beyond it: it does not tell contact.
+        # The corrections below leave something in p after contact: p does not indicate contact.
         in_right, in_left = x1 > right, x1 < -left
         # Two divisions in one: of the turning point's parabola, and of the crossing's position.
         turned = (before * after < 0.0) & (in_right | in_left)

@@ -28,7 +28,7 @@ class Approached(NamedTuple):
     Attributes
     ----------
     found : ndarray of bool, shape (n,)
-        Where there is a stable orbit near the state; nothing else is said of the others.
+        Where there is a stable orbit near the state; the other fields are undefined elsewhere.
     state : ndarray, shape (n, k)
         On the orbit.
     work : ndarray, shape (n, 2)
@@ -61,7 +61,7 @@ class _Map(NamedTuple):
         return self._replace(system=self.system.take(rows), gaps=self.gaps[rows])
 
     def advance(self, state: Array) -> tuple[Array, Record]:
-        """Return the image of the state, and what is said of the way there."""
+        """Return the image of the state, and the record of the way there."""
         image, gaps = state.copy(), self.gaps.copy()
         still = np.zeros_like(gaps)
         record = self.propagator.advance(self.system, image, gaps, still, self.periods)

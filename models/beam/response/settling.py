@@ -1,12 +1,12 @@
 """The settled response at constant gaps: which regime it is, and its work-rate.
 
-The tip is looked at once per forcing period. Where its strobe points seem to approach an orbit of
-k periods, Newton's method on the map of k periods looks for it; if it is there, near and stable,
+The tip is observed once per forcing period. Where its strobe points seem to approach an orbit of
+k periods, Newton's method on the map of k periods searches for it; if it exists, near and stable,
 the response is that orbit and its work-rate is exact. A response that has not come near a stable
-orbit is aperiodic, and its work-rate is a time mean with the error of batch means. It is looked at
-for `SHORTEST` segments, and twice as long again and again where the mean is still uncertain, the
-start not forgotten yet, or a beam that could do without contact may still come to that. Under a
-random load it never settles, see `models.beam.response.averages`.
+orbit is aperiodic, and its work-rate is a time mean with the error of batch means. It is observed
+for `SHORTEST` segments; the time is doubled again and again while the mean is uncertain, the start
+not yet forgotten, or a beam that could live without contact may still do so. Under a random load it
+never settles, see `models.beam.response.averages`.
 """
 
 from typing import Any
@@ -150,7 +150,7 @@ def _settle_random(
     rows: NDArray[np.intp],
     out: Response,
 ) -> None:
-    """Average over a random load: nothing repeats, so only silence can be told from the rest."""
+    """Average over a random load: nothing repeats, so only silence can be distinguished."""
     now = state[rows]
     mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, 0)
     state[rows] = now

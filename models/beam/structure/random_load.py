@@ -1,16 +1,16 @@
 """The random load of n beams: how its band is divided into lines, and how long they last.
 
 Sub-bands of equal width would leave a sharp resonance to one line, or to none: the beam's own are
-some 0.3 Hz wide. So only half of their edges lie evenly, and the others at equal shares of the
+some 0.3 Hz wide. So only half of their edges are evenly spaced, the others at equal shares of the
 power that a white force gives to the modes, sum_i b_i d_i/((w - w_i)^2 + d_i^2).
 
-Lines last for ever as they were drawn; a process forgets. So all are drawn anew after each epoch of
-2/d + 200/B, with the slowest decay d and the bandwidth B: a few times as long as beam and force
-remember. The force never repeats, and the time mean of a work-rate tends to its mean over all
-realisations, that of the process. From epoch to epoch the force jumps, and the steady response with
-it; what the modes lack then they keep as free vibration. The jumps blur the band, to a level of
-S_F B/(2 pi^2 |f - f_low| |f - f_high|) over the epoch outside. Where that would make the tip vary
-more than 1 % by modes that lie outside, the epoch is longer, up to 30 times.
+Lines once drawn never change; a random process loses its memory. So all are drawn anew after each
+epoch of 2/d + 200/B, with the slowest decay d and the bandwidth B: a few correlation times of beam
+and force. The force never repeats, and the time mean of a work-rate converges to that of the
+process. From epoch to epoch the force jumps, and the steady response with it; the modes keep the
+difference as free vibration. The jumps blur the band, to a level of
+S_F B/(2 pi^2 |f - f_low| |f - f_high|) over the epoch outside. Where modes outside the band would
+thereby contribute more than 1 % of the tip's variance, the epoch is longer, up to 30 times.
 """
 
 import numpy as np
@@ -31,7 +31,7 @@ _LONGER = 30.0
 
 
 def has_band(p: Rows) -> NDArray[np.bool_]:
-    """Tell which of n beams have a random load that can exist, or none.
+    """Return which of n beams have a random force with a band, or no random force.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ def extrapolate(times: Array) -> tuple[Array, Array]:
     falls like N^(-2/3). In both cases the differences of the lives are a geometric series of
     ratio 2 or 1.6, whose rest is added. Any other sequence is, in part or wholly, that of an
     aperiodic response: then the four slowest lives are fitted by a constant and an error like
-    1/N, each with the weight of its periods. Differences that grow say that a change is not
+    1/N, each with the weight of its periods. Differences that grow mean that a change is not
     resolved yet.
 
     The error is made of what was added, how much it changes when the slowest life is left out, the
@@ -108,7 +108,7 @@ def _limit(times: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def _rest(times: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Add the rest of a geometric series to the last of three lives; tell whether it is one."""
+    """Add the rest of a geometric series to the last of three lives; return whether it is one."""
     last = times[2] - times[1]
     ratio = (times[1] - times[0]) / last
     return times[2] + last / (ratio - 1), (ratio > 1.4) & (ratio < 2.4)

@@ -1,9 +1,9 @@
 """How fast one site wears along the path, from noisy means of its wear at some nodes.
 
-One over a noisy mean is too large. So the logarithm of the wear along the path is taken for a
-cubic, fitted such that the ratios of means and fit average to one (the quasi-likelihood of a gamma
-law): unbiased, and the scatter about it shows how well it is known, what the cubic misses included.
-Where the means are good it is interpolated instead.
+The reciprocal of a noisy mean is biased upwards. So the logarithm of the wear along the path is
+fitted by a cubic such that the ratios of means and fit average to one (the quasi-likelihood of a
+gamma law): unbiased, and the scatter about it shows how well it is known, the misfit of the cubic
+included. Where the means are precise it is interpolated instead.
 """
 
 import numpy as np

@@ -101,7 +101,7 @@ def _total(work, j):
 
 @kernel
 def note_look(left, life, out, look, strobe, work):
-    """Enter in the history how things stand."""
+    """Enter the present gaps, work-rates and regime in the history."""
     periods = work.shape[1]
     history = out.history
     for j in range(left.size):
@@ -118,7 +118,7 @@ def note_look(left, life, out, look, strobe, work):
 
 @lean
 def _will_cross(i, life, out, step):
-    """Tell whether beam i reaches any growth in a step: most looks reach none."""
+    """Return whether beam i reaches any growth in a step: most looks reach none."""
     for site in range(2):
         for depth in range(life.growths.shape[1]):
             missing = not out.reached[i, site, depth]
@@ -150,7 +150,7 @@ def _note_crossings(i, life, out, grown, step, when, acceleration):
 
 @lean
 def _has_ended(i, life):
-    """Tell where no contact is left, or so little that no greater depth is ever reached.
+    """Return whether no contact is left, or so little that no greater depth is ever reached.
 
     A gap that grows towards the free amplitude comes near it like 1/t, not in finite time.
     """

@@ -70,7 +70,7 @@ def find_lives(
         As in `accelerated_life.run_life`.
     accuracy : float
         Relative error at which a beam's lives are good enough. It also sets the longest run: where
-        that does not suffice, the error says so.
+        that does not suffice, the error shows it.
 
     Returns
     -------

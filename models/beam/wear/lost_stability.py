@@ -3,7 +3,7 @@
 A beam that follows an orbit through the loss of its stability stays next to it until what is left
 of its disturbances has grown again. In a life of 1e9 periods that is no time at all; in an
 accelerated one it may be half of it, and the life comes out too long. So the multiplier of an orbit
-of one period is looked at on the way, and a beam whose orbit has just become unstable is pushed.
+of one period is computed on the way, and a beam whose orbit has just become unstable is pushed.
 """
 
 import numpy as np

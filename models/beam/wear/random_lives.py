@@ -42,8 +42,8 @@ def find_random_lives(
     error : ndarray, shape (n, 2)
         Standard error of `work`.
     accuracy : float
-        Sets how long a time mean is taken at each increment. What the lives lack in accuracy their
-        errors say.
+        Sets how long a time mean is taken at each increment. Their
+        errors show what accuracy the lives have.
 
     Returns
     -------

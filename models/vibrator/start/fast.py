@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from models.vibrator.equations.rigid_motion import initial_state
 from models.vibrator.equations.time_scales import slowest_period
 from models.vibrator.lanes import fixed_steps
-from models.vibrator.lanes.fixed_steps import Array
+from models.vibrator.lanes.notes import ANGLE_HIGH, ANGLE_LOW, EXCURSION, LAST_ENTRY
+from models.vibrator.lanes.packed import Array
 from models.vibrator.parameters import Rows, Settings
 from models.vibrator.start.last_second import LAST, NEAR, STEPS, Live, learn, run_last_second
 from models.vibrator.start.regimes import (
@@ -129,9 +130,9 @@ def _run(
         step, target = plan.step[live.rows], known.disphasing[live.rows]
         constants, accurate = live.machines.constants, settings.steps_per_turn > 0
         notes = fixed_steps.advance(constants, step, live.state, target, LOOK, BAND, accurate)
-        came = notes[:, fixed_steps.LAST_ENTRY]
-        far = np.maximum(live.far, notes[:, fixed_steps.EXCURSION])
-        near = notes[:, fixed_steps.EXCURSION] > COMPARABLE**2 * far
+        came = notes[:, LAST_ENTRY]
+        far = np.maximum(live.far, notes[:, EXCURSION])
+        near = notes[:, EXCURSION] > COMPARABLE**2 * far
         live = live._replace(
             came=np.where(came >= 0, (look * LOOK + came) * step, live.came),
             far=far,
@@ -139,10 +140,10 @@ def _run(
         )
         look += 1
         speed = (live.state[:, 3:5] - before) / (LOOK * step)[:, None]
-        low, high = notes[:, fixed_steps.ANGLE_LOW], notes[:, fixed_steps.ANGLE_HIGH]
+        low, high = notes[:, ANGLE_LOW], notes[:, ANGLE_HIGH]
         finite = np.isfinite(live.state).all(axis=1)
         arrived = finite & _is_near(known, live.rows, low, high, speed)
-        calm = look * LOOK * step - live.neared >= slowest_period(live.machines.system)
+        calm = look * LOOK * step - live.neared >= slowest_period(live.machines.rigid)
         done = arrived & (calm | (plan.looks[live.rows] <= look))
         _note_locked(known, live.take(done), out)
         going = finite & ~done

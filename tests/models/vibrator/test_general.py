@@ -61,7 +61,7 @@ def test_rigid_and_without_feed_they_are_the_plain_equations():
         state = rng.normal(size=10)
         state[8:] = rng.uniform(-50, 160, size=2)
         plain = np.empty(5)
-        rigid_motion.acceleration(m, state, plain)
+        rigid_motion.acceleration(m.rigid, state, plain)
         out = np.array(general.accelerations(m, True, general.extend(state)))
         np.testing.assert_allclose(out[:5], plain, rtol=0, atol=1e-12 * abs(plain).max())
         assert not out[5:].any()

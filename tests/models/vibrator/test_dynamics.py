@@ -8,7 +8,8 @@ from models.numerics.jit import kernel
 from models.numerics.nystrom import layout
 from models.vibrator.equations import rigid_motion
 from models.vibrator.equations.system import systems
-from models.vibrator.lanes import dynamics, fixed_steps
+from models.vibrator.lanes import dynamics
+from models.vibrator.lanes.packed import machine, pack
 
 AT = layout(dynamics.DEGREES)
 STEP = 3e-3
@@ -17,7 +18,7 @@ STEP = 3e-3
 @kernel
 def _rises(constants, w):
     for lane in range(LANES):
-        dynamics.prepare(fixed_steps.machine(constants, lane), STEP, w, lane)
+        dynamics.prepare(machine(constants, lane), STEP, w, lane)
     dynamics.accelerate(w)
 
 
@@ -31,10 +32,10 @@ def test_they_are_those_of_the_plain_algebra():
     speed = rng.uniform(-1, 1, (5, LANES)) * np.array([[1], [1], [1], [200], [200]])
     speed[4, ::4] = -speed[2, ::4] * rng.uniform(0.5, 1.5, len(speed[4, ::4]))  # of either sign
     w[AT.at : AT.speed], w[AT.speed : AT.rise] = position.ravel(), speed.ravel()
-    _rises(fixed_steps.pack(m).T.ravel(), w)
+    _rises(pack(m.rigid).T.ravel(), w)
     risen = w[AT.rise : AT.step].reshape(5, LANES)
     for i in range(LANES):
         expected = np.empty(5)
         state = np.concatenate([position[:, i], speed[:, i]])
-        rigid_motion.acceleration(m.row(i), state, expected)
+        rigid_motion.acceleration(m.row(i).rigid, state, expected)
         np.testing.assert_allclose(risen[:, i], STEP * expected, rtol=1e-11)

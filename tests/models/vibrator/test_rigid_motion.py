@@ -33,7 +33,7 @@ ODD = NOMINAL._replace(
 
 def accelerations(p, state):
     out = np.full(5, np.nan)
-    rigid_motion.acceleration(system(p), np.asarray(state, float), out)
+    rigid_motion.acceleration(system(p).rigid, np.asarray(state, float), out)
     return out
 
 
@@ -117,9 +117,9 @@ for p, kinematics in ((Params(), "small"), (Params(mount_stiffness=2e7), "exact"
     m = system(p, kinematics)
     if kinematics == "exact":
         m = m._replace(feed_mass=200.0, feed_gravity=9.81)
-    start = exact.start(p, m)
+    start = propagator.start(p, m)
     start[len(start) // 2 + 3 : len(start) // 2 + 5] = 150.0
-    out += exact.propagate(m, start, 0.005, 1e-6).state.tolist()
+    out += propagator.propagate(m, start, 0.005, 1e-6).state.tolist()
 print(out)
 """
 
