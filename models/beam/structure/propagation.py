@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from models.beam.parameters import Settings
 from models.beam.structure.modal import Array, Beams
+from models.numerics import propagator
 
 LONGEST = 16_384
 """Forcing periods in a time mean, at most."""
@@ -67,11 +68,10 @@ class System(Protocol):
         """Return the systems of some rows."""
 
 
-class Propagator(Protocol):
+class Propagator(propagator.Propagator, Protocol):
     """Takes n beams through forcing periods: `models.beam.lanes`, `models.beam.exact`.
 
-    What a beam does depends on itself alone, to the bit. A beam that cannot be followed any
-    further gets NaN.
+    A beam that cannot be followed any further gets NaN.
     """
 
     CLOCK: int
@@ -80,14 +80,7 @@ class Propagator(Protocol):
     def groups(
         self, beams: Beams, settings: Settings, /
     ) -> Iterator[tuple[NDArray[np.intp], System]]:
-        """Prepare n beams, in groups that are propagated together.
-
-        Yields
-        ------
-        rows : ndarray of int
-            Which of the n beams are in the group; one that cannot be followed is in none.
-        system : System
-        """
+        """Prepare n beams, in groups that are propagated together."""
 
     def finer(
         self, system: Any, state: Array, /
@@ -149,19 +142,4 @@ class Propagator(Protocol):
         """
 
     def monodromy(self, system: Any, state: Array, gaps: Array, periods: int, /) -> Array:
-        """Return how the states after whole periods of the force depend on the states now.
-
-        Parameters
-        ----------
-        system : System
-        state : ndarray, shape (n, k)
-            At phase 0 of the force; not changed.
-        gaps : ndarray, shape (n, 2)
-            Constant, in initial gaps.
-        periods : int
-
-        Returns
-        -------
-        ndarray, shape (n, k, k)
-            Derivative of each component after (rows) with respect to each before (columns).
-        """
+        """Return how the states after whole periods depend on those now, the gaps constant."""
