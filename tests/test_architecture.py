@@ -12,9 +12,7 @@ import pytest
 HOUSE = Path(__file__).parents[1]
 
 GROUND = {
-    "columns",
     "compilation",
-    "environment",
     "errors",
     "estimate",
     "exact_shares",
@@ -35,6 +33,7 @@ LAYERS = (
     {"contract"},
     GROUND,
     {"designs"},
+    {"methods"},
     {"inputs"},
     {"study"},
     {"rows", "store"},
@@ -199,7 +198,7 @@ def test_few_files_stand_side_by_side(machine):
     assert {place for place in files if files.count(place) > SIDE_BY_SIDE} == set()
 
 
-@pytest.mark.parametrize("machine", ["beam"])
+@pytest.mark.parametrize("machine", STOREYS)
 def test_each_package_says_what_to_read(machine):
     silent = set()
     for path in (HOUSE / "models" / machine).rglob("*.py"):

@@ -1,9 +1,9 @@
 """What takes machines through time, and what each such thing promises.
 
 A `Propagator` takes many machines along at once: `models.beam.lanes`, `models.beam.exact`,
-`models.mole.lanes`. A `Yardstick` follows one machine as closely as asked: `models.mole.exact`,
-`models.vibrator.exact.propagator`. Any package or module with these functions is one.
-`tests/models/test_propagators.py` holds all of them, and the vibrator's lanes, to these promises.
+`models.vibrator.lanes`, `models.mole.lanes`. A `Yardstick` follows one machine as closely as asked:
+`models.vibrator.exact`, `models.mole.exact`. Any package or module with these functions is one.
+`tests/models/test_propagators.py` holds all of them to these promises.
 """
 
 from collections.abc import Iterator

@@ -33,6 +33,17 @@ class Tableau(NamedTuple):
         return np.array([row + (0.0,) * (len(self.a) - len(row)) for row in self.a])
 
 
+BOGACKI_SHAMPINE_3 = Tableau(
+    a=((), (1 / 2,), (0.0, 3 / 4), (2 / 9, 1 / 3, 4 / 9)),
+    b=(2 / 9, 1 / 3, 4 / 9, 0.0),
+    c=(0.0, 1 / 2, 3 / 4, 1.0),
+)
+"""Order 3; the last stage is at the new state: P. Bogacki, L. F. Shampine, Appl. Math. Lett. 2
+(1989) 321."""
+
+ERROR_2 = (-5 / 72, 1 / 12, 1 / 9, -1 / 8)
+"""Weights of its k_i in the difference between the step and one of order 2."""
+
 TSITOURAS_5 = Tableau(
     a=(
         (),

@@ -21,13 +21,13 @@ from models.mole.theory.system import mole as mole_system
 from models.numerics.blocks import LANES
 from models.numerics.dop853 import REACHED_END
 from models.numerics.propagator import Propagator, Yardstick
-from models.vibrator.equations import rigid_motion
+from models.vibrator import exact as vibrator_exact
+from models.vibrator import lanes as vibrator_lanes
 from models.vibrator.equations.system import system as vibrator_system
-from models.vibrator.equations.system import systems
-from models.vibrator.exact import propagator as vibrator_exact
-from models.vibrator.lanes import fixed_steps
-from models.vibrator.lanes.tangents import FREE, revolve
+from models.vibrator.exact.propagator import scales_of
+from models.vibrator.lanes.tangents import FREE
 from models.vibrator.parameters import Params as Vibrator
+from models.vibrator.parameters import Settings as VibratorSettings
 
 N = LANES + 5  # more than a block, and not a whole one
 PERIODS = 6
@@ -126,58 +126,32 @@ def carried_mole():
     )
 
 
-class VibratorLanes:
-    """The vibrator's lanes: steps of fixed length, and tangents by another method."""
+def carried_vibrator():
+    per_turn = 96
 
-    PER_TURN = 96
+    def turns(state, count):
+        return np.full(len(state), count * 2 * np.pi / 157)
 
-    def groups(self, p, settings):
-        yield np.arange(len(p.body_mass)), _Vibrators(fixed_steps.pack(systems(p)), p)
+    def groups(rows):
+        return vibrator_lanes.groups(Vibrator._make(rows.T.copy()), VibratorSettings())
 
-    def start(self, system):
-        state = rigid_motion.initial_state(system.p)
-        state[:, 8] = state[:, 9] = 150.0
+    def start(system, rows):
+        state = vibrator_lanes.start(system)
+        state[:, 8:] = 150.0  # under way, where bearings keep their sign
         return state
 
-    def advance(self, system, state, periods):
-        none = np.full(len(state), np.nan)
-        steps = periods * self.PER_TURN
-        h = self._turn(state) / self.PER_TURN
-        return fixed_steps.advance(system.constants, h, state, none, steps, 0.05, False)
+    def advance(system, state, periods):
+        nowhere, h = np.full(len(state), np.nan), turns(state, 1) / per_turn
+        return vibrator_lanes.advance(system, state, h, nowhere, periods * per_turn, 0.05, False)
 
-    def monodromy(self, system, state, periods):
-        time = periods * self._turn(state)
-        end = revolve(system.constants, state, time, periods * self.PER_TURN)
-        out = np.zeros((len(state), fixed_steps.STATE, fixed_steps.STATE))
-        out[:, :, FREE] = end[:, :, 1:-1]
-        return out
+    def monodromy(system, state, periods):
+        return vibrator_lanes.monodromy(system, state, turns(state, periods), periods * per_turn)
 
-    def _turn(self, state):
-        return np.full(len(state), 2 * np.pi / 157)
+    def sizes(state):
+        return np.isin(np.arange(state.shape[1]), FREE) * np.repeat([1e-2, 1.0], 5)
 
-
-class _Vibrators(NamedTuple):
-    constants: np.ndarray
-    p: Any
-
-    def take(self, rows):
-        return _Vibrators(self.constants[rows], Vibrator._make(field[rows] for field in self.p))
-
-
-def carried_vibrator():
-    lanes = VibratorLanes()
-    rigid = {"mount_stiffness": np.inf, "mount_rotational_stiffness": np.inf, "feed_mass": 0.0}
-    rows = rows_of(Vibrator, ("body_mass", "unbalance_1", "stiffness_x"), **rigid)
-    return Carried(
-        lanes,
-        rows,
-        lambda rows: lanes.groups(Vibrator._make(rows.T.copy()), None),
-        lambda system, rows: lanes.start(system),
-        lanes.advance,
-        lanes.monodromy,
-        lambda state: np.isin(np.arange(state.shape[1]), FREE) * np.repeat([1e-2, 1.0], 5),
-        close=1e-5,
-    )
+    rows = rows_of(Vibrator, ("body_mass", "unbalance_1", "stiffness_x"))
+    return Carried(vibrator_lanes, rows, groups, start, advance, monodromy, sizes, close=1e-5)
 
 
 CARRIED = {
@@ -312,7 +286,7 @@ def followed_vibrator():
     p = Vibrator()
     m = vibrator_system(p)
     degrees = len(vibrator_exact.start(p, m)) // 2
-    scales = vibrator_exact.scales_of(m, degrees)
+    scales = scales_of(m, degrees)
     return Followed(vibrator_exact, p, m, scales, 0.3, lambda s: 0.0, lambda s: s)
 
 

@@ -107,7 +107,7 @@ def test_our_own_kernels_stay_where_they_are(kern):
     from models.numerics import cache
     from models.numerics.multipliers import _square
 
-    assert Path(_square._cache.cache_path).is_relative_to(cache.folder_of(_square))
+    assert cache.folder_of(_square).name in Path(_square._cache.cache_path).parts
     assert compiled.SourcesLocator.from_function(_square.py_func, cache.__file__) is None
 
 

@@ -102,7 +102,7 @@ def test_reports_say_what_the_indices_are_of():
 def test_plans_and_convergence_name_and_judge_the_same_number():
     ds = heavy(samples=128)
     work = expected_widths(asking(ds, outputs=["work", "y"]))
-    assert work["work"]["ST"] == pytest.approx(work["y"]["ST"])
+    assert work["work"].indices["ST"] == pytest.approx(work["y"].indices["ST"])
     found = uq.running_estimates(ds, "work")
     assert set(found[found["estimate"] == "ST x4"]["output"]) == {"log(work)"}
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import asking, linear, with_output
 from scipy import stats
 
@@ -14,7 +15,6 @@ from uq.analysis.regime_split import between_share
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
 from uq.cli.tables import show_summary
-from uq.indices.sensitivities import sensitivities
 from uq.moments import moments, sd_interval, standard_deviation
 from uq.report.outcomes import outcomes, result_tables
 from uq.store import write
@@ -89,7 +89,7 @@ def test_every_reader_is_told():
         line["tail_k"] > 1 and np.isnan(line[["mean", "mean_low", "sd", "sd_low"]].tolist()).all()
     )
     assert enough(ds, "z").loc["z", "estimate"] == "median"
-    assert expected_widths(ds)["z"]["mean"] is None
+    assert expected_widths(ds)["z"].mean is None
     z = comparison(ds, asking(light, outputs=["z"]))["outputs"]["z"]
     for one in (z["mean"]["difference"], z["sd"]["difference"], z["sd"]["ratio"]):
         assert one["low"] is None and one["high"] is None

@@ -2,15 +2,16 @@
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import UNIFORM, computed, study_of, with_seed, with_status
 
 from uq.analysis.comparison import compare
 from uq.analysis.convergence import running_estimates
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities, sensitivity
+from uq.indices.dataset import sensitivity
 from uq.rows.sampling import group_size, row_block, rows
 
 DRAWN = [name for name, design in DESIGNS.items() if design.draw is not None]
@@ -288,9 +289,9 @@ def test_arrays_have_the_share_of_noise():
 
 def test_widths_and_convergence_take_such_rows():
     ds = computed(noisy(samples=64))
-    assert expected_widths(ds)["y"]["ST"] > 0
+    assert expected_widths(ds)["y"].indices["ST"] > 0
     assert "S1 x1" in set(running_estimates(ds, "y")["estimate"])
-    assert "S1" not in expected_widths(computed(noisy("shapley", 64)))["y"]
+    assert not expected_widths(computed(noisy("shapley", 64)))["y"].indices
 
 
 def test_tables_show_the_share_of_noise(uq, folder):

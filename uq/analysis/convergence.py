@@ -9,11 +9,11 @@ import xarray as xr
 
 from uq.analysis.accuracy import error_name, stated_error
 from uq.analysis.statistics import summarise
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
-from uq.indices.sobol import MIN_GROUPS
 from uq.indices.targets import split_name
+from uq.methods.registry import METHODS, piloted_by
 from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
 
 _FEWEST = 16  # samples
@@ -149,14 +149,15 @@ Estimate = tuple[float, float, float]
 
 def _targets(ds: xr.Dataset) -> list[str]:
     """Return what all rows have indices of: whether a life has a logarithm may change with rows."""
-    if not _has_indices(ds):
-        return []
-    return list(sensitivities(ds, method="sobol")["outputs"])
+    method = _method(ds)
+    return list(sensitivities(ds, method).targets) if method else []
 
 
-def _has_indices(ds: xr.Dataset) -> bool:
-    crossed = DESIGNS[ds.attrs["design"]].crossed
-    return crossed and len(np.unique(ds["group"])) * ds.attrs["replicates"] >= MIN_GROUPS
+def _method(ds: xr.Dataset) -> str | None:
+    """Return the method whose indices are estimated from the first rows, if these are enough."""
+    groups = len(np.unique(ds["group"])) * ds.attrs["replicates"]
+    name = piloted_by(DESIGNS[ds.attrs["design"]])
+    return name if name and groups >= METHODS[name].least else None
 
 
 def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[tuple[str, str, Estimate]]:
@@ -167,11 +168,11 @@ def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[tuple[str, str, E
         for threshold, found in entry["thresholds"].items():
             yield name, f"P(>{threshold})", _numbers(found["above"])
             yield name, f"P(<{threshold})", _numbers(found["below"])
-    if _has_indices(ds):
-        for name, kinds in sensitivities(ds, "sobol", targets)["outputs"].items():
-            for kind in ("S1", "ST"):
-                for parameter, index in kinds.get(kind, {}).items():
-                    yield name, f"{kind} {parameter}", _numbers(index)
+    if method := _method(ds):
+        for name, found in sensitivities(ds, method, targets).targets.items():
+            for kind, values in found.kinds().items():
+                for parameter, index in values.items():
+                    yield name, f"{kind.key} {parameter}", index.numbers
 
 
 def _numbers(entry: dict[str, Any]) -> Estimate:

@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from uq import intervals, order_statistics, two_samples
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
 from uq.rows.elements import (
     Floats,

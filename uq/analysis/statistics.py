@@ -13,7 +13,7 @@ from uq.analysis.failed_rows import failed_note, failed_share_bounds, with_faile
 from uq.analysis.life_fit import fits_of
 from uq.analysis.regime_split import between_share
 from uq.contract import Status
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.estimate import NOTHING
 from uq.indices.targets import number_of
 from uq.intervals import Replicates

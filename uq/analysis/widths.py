@@ -4,15 +4,20 @@ By the spread of independent rows. Intervals from replicates scatter, and good d
 narrower than that: for these the width is about the most to be expected.
 """
 
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 from scipy import stats
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.indices.targets import lightened, number_of
+from uq.methods.indices import Kind
+from uq.methods.method import Method
+from uq.methods.registry import METHODS, piloted_by
+from uq.methods.sample import Sample
 from uq.order_statistics import is_within
 from uq.rows.elements import (
     Element,
@@ -30,7 +35,31 @@ _ENOUGH_ROWS = 8
 _LEVEL = 0.975
 
 
-def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
+@dataclass(frozen=True)
+class Widths:
+    """Widths of the 95 % intervals of an element of an output; None where the pilot cannot tell.
+
+    Attributes
+    ----------
+    units : str
+        Of the output.
+    mean : float or None
+    quantiles : dict of float to float or None
+        Probability -> width.
+    thresholds : dict of float to float or None
+        Threshold -> width of the probability of lying above.
+    indices : dict of str to float or None
+        The widest of each kind (``S1``, ``ST``) that the design feeds and a pilot can forecast.
+    """
+
+    units: str
+    mean: float | None
+    quantiles: Mapping[float, float | None]
+    thresholds: Mapping[float, float | None]
+    indices: Mapping[str, float | None]
+
+
+def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
     """Return the widths of the 95 % intervals that a whole study will give.
 
     Parameters
@@ -40,10 +69,8 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
 
     Returns
     -------
-    dict
-        Element of an output -> ``units``, width of the ``mean``'s interval, of ``quantiles`` by
-        probability and of ``thresholds``' probabilities, and, where the design is made for Sobol'
-        indices, the widest of ``S1`` and ``ST``. None where the pilot cannot tell.
+    dict of str to Widths
+        Element of an output -> widths.
     """
     analysis = analysis_of(pilot)
     samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
@@ -51,25 +78,25 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
     rows = samples * replicates * (2 if "A" in labels else 1)
     factor = _factor(are_independent(pilot), replicates)
     groups = _groups(pilot, len(labels))
+    method = piloted_by(DESIGNS[pilot.attrs["design"]])
     found = {}
     for whole, element in zip(
         elements_of(pilot, shown_outputs(pilot, analysis)),
         elements_of(independent_rows(pilot), shown_outputs(pilot, analysis)),
         strict=True,
     ):
-        found[element.name] = {
-            "units": element.units,
-            "mean": _mean(element, rows, factor),
-            "quantiles": {
-                repr(p): _quantile(element.at_least, p, rows, factor) for p in analysis.quantiles
-            },
-            "thresholds": {
-                repr(t): _share(element, t, rows, factor)
+        found[element.name] = Widths(
+            units=element.units,
+            mean=_mean(element, rows, factor),
+            quantiles={p: _quantile(element.at_least, p, rows, factor) for p in analysis.quantiles},
+            thresholds={
+                t: _share(element, t, rows, factor)
                 for t in analysis.thresholds.get(element.output, ())
             },
-        }
-        if DESIGNS[pilot.attrs["design"]].crossed:
-            found[element.name] |= _indices(whole, groups, labels, samples * replicates, factor)
+            indices=_indices(whole, method, groups, labels, samples * replicates, factor)
+            if method
+            else {},
+        )
     return found
 
 
@@ -119,19 +146,33 @@ def _groups(pilot: xr.Dataset, blocks: int) -> NDArray[np.intp]:
 
 
 def _indices(
-    element: Element, groups: NDArray[np.intp], labels: list[str], n: int, factor: float | None
+    element: Element,
+    method: str,
+    groups: NDArray[np.intp],
+    labels: list[str],
+    n: int,
+    factor: float | None,
 ) -> dict[str, float | None]:
-    """Return the widest interval of first-order and of total indices, as of independent groups."""
+    """Return the widest interval of each kind of index, as of independent groups."""
     target = lightened(number_of(element))
-    y = target.values[groups]
-    y = y[np.isfinite(y).all(axis=1)]
-    if target.refused or factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
-        return {"S1": None, "ST": None}
-    block = dict(zip(labels, ((y - y.mean()) / y.std()).T, strict=True))
-    mixed = [value for label, value in block.items() if label.startswith("AB_")]
-    first = max(np.std(block["B"] * (one - block["A"])) for one in mixed)
-    total = max(np.std(0.5 * (block["A"] - one) ** 2) for one in mixed)
+    own = Sample(target.values, {}, groups[None], tuple(labels))
+    spreads = {} if target.refused else _spreads(METHODS[method], own)
     return {
-        "S1": float(2 * factor * first / np.sqrt(n)),
-        "ST": float(2 * factor * total / np.sqrt(n)),
+        kind.key: _index(spreads.get(kind), n, factor)
+        for kind in METHODS[method].kinds
+        if not kind.of_pairs
     }
+
+
+def _spreads(method: Method, sample: Sample) -> dict[Kind, float]:
+    """Return what a few groups tell of each kind of index; nothing where they are too few."""
+    whole = sample.values[sample.groups][sample.whole]
+    enough = len(whole) >= _ENOUGH_ROWS and whole.std() > 0
+    return method.pilot(sample) if enough and method.pilot else {}
+
+
+def _index(spread: float | None, groups: int, factor: float | None) -> float | None:
+    """Return the widest interval of a kind of index, as of independent groups."""
+    if spread is None or factor is None:
+        return None
+    return float(2 * factor * spread / np.sqrt(groups))

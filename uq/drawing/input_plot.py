@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.analysis.sampled_inputs import EVERYWHERE, stated_and_realised
+from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values
 from uq.drawing.figure import (
     COLOURS,
     WIDTH,
@@ -38,7 +38,7 @@ def inputs(ds: xr.Dataset) -> Figure | None:
     matplotlib.figure.Figure or None
         None where the rows do not follow the laws.
     """
-    found = stated_and_realised(ds)
+    found = laws_and_values(ds)
     if not found:
         return None
     columns = 1 if len(found) <= _IN_ONE_COLUMN else 2

@@ -69,9 +69,10 @@ class System(Protocol):
 
 
 class Propagator(propagator.Propagator, Protocol):
-    """Takes n beams through forcing periods: `models.beam.lanes`, `models.beam.exact`.
+    """Takes n beams through forcing periods: `models.beam.lanes` and `models.beam.exact` do.
 
-    A beam that cannot be followed any further gets NaN.
+    It keeps all promises of `models.numerics.propagator.Propagator`. A beam that cannot be followed
+    any further gets NaN.
     """
 
     CLOCK: int
@@ -80,7 +81,14 @@ class Propagator(propagator.Propagator, Protocol):
     def groups(
         self, beams: Beams, settings: Settings, /
     ) -> Iterator[tuple[NDArray[np.intp], System]]:
-        """Prepare n beams, in groups that are propagated together."""
+        """Prepare n beams, in groups that are propagated together.
+
+        Yields
+        ------
+        rows : ndarray of int
+            Which of the n beams are in the group; one that cannot be followed is in none.
+        system : System
+        """
 
     def finer(
         self, system: Any, state: Array, /
@@ -142,4 +150,19 @@ class Propagator(propagator.Propagator, Protocol):
         """
 
     def monodromy(self, system: Any, state: Array, gaps: Array, periods: int, /) -> Array:
-        """Return how the states after whole periods depend on those now, the gaps constant."""
+        """Return how the states after whole periods of the force depend on the states now.
+
+        Parameters
+        ----------
+        system : System
+        state : ndarray, shape (n, k)
+            At phase 0 of the force; not changed.
+        gaps : ndarray, shape (n, 2)
+            Constant, in initial gaps.
+        periods : int
+
+        Returns
+        -------
+        ndarray, shape (n, k, k)
+            Derivative of each component after (rows) with respect to each before (columns).
+        """

@@ -11,6 +11,7 @@ from models.numerics.jit import kernel
 from models.numerics.nystrom import STAGES, layout, stepper
 from models.numerics.tableaux import DORMAND_PRINCE_8, TSITOURAS_5
 from models.vibrator.lanes import dynamics
+from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.notes import (
     CONSTANTS_ROOM,
     COS,
@@ -65,9 +66,9 @@ def _advance(constants, h, state, target, steps, accurate, band, notes, work):
 
 
 def advance(
-    constants: Array,
-    h: Array,
+    machines: Machines,
     state: Array,
+    h: Array,
     target: Array,
     steps: int,
     band: float,
@@ -77,12 +78,11 @@ def advance(
 
     Parameters
     ----------
-    constants : ndarray, shape (n, CONSTANTS)
-        Of `models.vibrator.lanes.packed.pack`.
-    h : ndarray, shape (n,)
-        Step [s].
+    machines : Machines
     state : ndarray, shape (n, STATE)
         Updated in place.
+    h : ndarray, shape (n,)
+        Step [s].
     target : ndarray, shape (n,)
         Disphasing angle about which the band is [rad]; NaN for none.
     steps : int
@@ -108,5 +108,6 @@ def advance(
         aligned(LANES),
         aligned(LANES),
     )
-    _advance(constants, h[:, None], state, target[:, None], steps, accurate, band, notes, work)
+    aim = target[:, None]
+    _advance(machines.constants, h[:, None], state, aim, steps, accurate, band, notes, work)
     return notes

@@ -15,6 +15,7 @@ from models.numerics.tableaux import TSITOURAS_5
 from models.numerics.tsit5 import STAGES, combiner, layout
 from models.vibrator.equations.rigid import accelerations
 from models.vibrator.equations.rigid_derivatives import derivatives
+from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, machine, slopes
 
 ANCHOR = 3  # psi_1
@@ -248,3 +249,25 @@ def revolve(constants: Array, start: Array, period: Array, steps: int) -> Array:
     )
     _revolve(constants, start, (period / steps)[:, None], steps, end, work)
     return end
+
+
+def monodromy(machines: Machines, state: Array, period: Array, steps: int) -> Array:
+    """Return how the states after a period depend on those at its start.
+
+    Parameters
+    ----------
+    machines : Machines
+    state : ndarray, shape (n, 10)
+    period : ndarray, shape (n,)
+        [s]
+    steps : int
+        In the period.
+
+    Returns
+    -------
+    ndarray, shape (n, 10, 10)
+        Derivatives of the components by those at the start, zero by psi_1.
+    """
+    out = np.zeros((len(state), STATE, STATE))
+    out[:, :, FREE] = revolve(machines.constants, state, period, steps)[:, :, 1:-1]
+    return out

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.equations.rigid_motion import initial_state
 from models.vibrator.equations.time_scales import slowest_period
-from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.fixed_steps import STABLE, advance
+from models.vibrator.lanes.machines import Machines, prepared, start
 from models.vibrator.lanes.notes import ANGLE_HIGH, ANGLE_LOW, EXCURSION, LAST_ENTRY
 from models.vibrator.lanes.packed import Array
 from models.vibrator.parameters import Rows, Settings
@@ -26,7 +26,7 @@ from models.vibrator.start.regimes import (
     Outcome,
     locked_regime,
 )
-from models.vibrator.start.synchronous import Known, Machines, describe, propose
+from models.vibrator.start.synchronous import Known, describe, propose
 from uq.contract import Status
 
 LOOK = 96  # steps between two looks at a run
@@ -57,7 +57,7 @@ class _Plan(NamedTuple):
         """Choose steps that are short enough, and fill the time in whole looks."""
         per_turn = settings.steps_per_turn or STEPS
         turn = 2 * np.pi / machines.synchronous_speed.max(axis=1)
-        step = np.minimum(turn / per_turn, fixed_steps.STABLE / machines.fastest)
+        step = np.minimum(turn / per_turn, STABLE / machines.fastest)
         time = settings.run_up - LAST
         looks = np.ceil(time / (LOOK * step)).astype(np.int64)
         over = looks > BUDGET
@@ -79,7 +79,7 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
     outcome : Outcome
     status : ndarray of int8, shape (n,)
     """
-    machines = Machines.prepared(p)
+    machines = prepared(p)
     known = propose(machines, settings.steps_per_turn)
     plan = _Plan.made(machines, settings)
     n = len(known.found)
@@ -114,7 +114,7 @@ def _run(
     """
     again = [np.empty(0, np.intp)]
     some, n = machines.take(rows), len(rows)
-    live = Live(rows, some, initial_state(some.p), *np.zeros((3, n)))
+    live = Live(rows, some, start(some), *np.zeros((3, n)))
     ending = plan.looks[rows] == 0
     look = 0
     while len(live.rows):
@@ -128,8 +128,8 @@ def _run(
                 break
         before = live.state[:, 3:5].copy()
         step, target = plan.step[live.rows], known.disphasing[live.rows]
-        constants, accurate = live.machines.constants, settings.steps_per_turn > 0
-        notes = fixed_steps.advance(constants, step, live.state, target, LOOK, BAND, accurate)
+        accurate = settings.steps_per_turn > 0
+        notes = advance(live.machines, live.state, step, target, LOOK, BAND, accurate)
         came = notes[:, LAST_ENTRY]
         far = np.maximum(live.far, notes[:, EXCURSION])
         near = notes[:, EXCURSION] > COMPARABLE**2 * far

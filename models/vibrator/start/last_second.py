@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.fixed_steps import STABLE, advance
+from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.notes import (
     ALPHA_LOW,
     ANGLE,
@@ -29,7 +30,7 @@ from models.vibrator.start.regimes import (
     unlocked_regime,
     wrapped,
 )
-from models.vibrator.start.synchronous import Known, Machines, describe, search
+from models.vibrator.start.synchronous import Known, describe, search
 
 LAST = 1.0  # [s]
 STEPS = 12  # in a turn at synchronous speed, unless the machine is stiff
@@ -107,7 +108,7 @@ def run_last_second(
     part, state, rows = live.machines, live.state, live.rows
     turn = 2 * np.pi / part.synchronous_speed.max(axis=1)
     per_turn = settings.steps_per_turn or _CLOSELY
-    needed = LAST * np.maximum(per_turn / turn, part.fastest / fixed_steps.STABLE)
+    needed = LAST * np.maximum(per_turn / turn, part.fastest / STABLE)
     part_of_two, power = np.frexp(np.minimum(needed, _LONGEST))
     steps = 2 ** (power - (part_of_two == 0.5)).astype(np.int64)
     again = np.zeros(len(rows), bool)
@@ -118,7 +119,7 @@ def run_last_second(
         first = here[:, 3] - here[:, 4]
         h = np.full(len(i), LAST / count)
         target, accurate = known.disphasing[these], settings.steps_per_turn > 0
-        notes = fixed_steps.advance(some.constants, h, here, target, count, BAND, accurate)
+        notes = advance(some, here, h, target, count, BAND, accurate)
         speed = (here[:, 3:5] - before) / LAST
         notes[:, :SUMS] /= count
         _note_means(these, notes, speed, some, out)

@@ -7,58 +7,18 @@ from numpy.typing import NDArray
 
 from models.numerics import elementary
 from models.vibrator.equations.rigid import Rigid
-from models.vibrator.equations.system import rigid_machines
-from models.vibrator.equations.time_scales import fastest_rates
 from models.vibrator.exact.measures import kloss
 from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.orbit import Orbits, find_orbits, follow
-from models.vibrator.lanes.packed import STATE, Array, pack
-from models.vibrator.parameters import Params, Rows
+from models.vibrator.lanes.packed import STATE, Array
+from models.vibrator.parameters import Rows
 from models.vibrator.start.regimes import CAPTURED_BELOW, Outcome, wrapped
 from models.vibrator.theory import averaged
 
 STEPS = 24  # of the orbit, unless the machine is stiff
 LADDER = tuple(base << k for k in range(7) for base in (24, 36))
 _FINE = 16  # points per step at which extremes are looked for
-
-
-class Machines(NamedTuple):
-    """n rigid machines, prepared.
-
-    Attributes
-    ----------
-    p : Params
-    rigid : Rigid
-    constants : ndarray, shape (n, CONSTANTS)
-        Of `models.vibrator.lanes.packed.pack`.
-    fastest : ndarray, shape (n,)
-        See `models.vibrator.equations.time_scales.fastest_rates`.
-    synchronous_speed : ndarray, shape (n, 2)
-        [rad s-1]
-    """
-
-    p: Rows
-    rigid: Rigid
-    constants: Array
-    fastest: Array
-    synchronous_speed: Array
-
-    @staticmethod
-    def prepared(p: Rows) -> "Machines":
-        """Prepare n machines."""
-        m = rigid_machines(p)
-        speeds = np.stack([p.synchronous_speed_1, p.synchronous_speed_2], axis=1)
-        return Machines(p, m, pack(m), fastest_rates(m), speeds)
-
-    def take(self, rows: Any) -> "Machines":
-        """Return some of the machines."""
-        return Machines(
-            Params._make(field[rows] for field in self.p),
-            Rigid._make(field[rows] for field in self.rigid),
-            self.constants[rows],
-            self.fastest[rows],
-            self.synchronous_speed[rows],
-        )
 
 
 class Known(NamedTuple):

@@ -11,15 +11,17 @@ import numpy as np
 import pytest
 
 from models.numerics.tableaux import (
+    BOGACKI_SHAMPINE_3,
     DENSE_STAGES,
     DENSE_WEIGHTS,
     DORMAND_PRINCE_8,
+    ERROR_2,
     ERROR_3,
     ERROR_5,
     TSITOURAS_5,
 )
 
-METHODS = {5: TSITOURAS_5, 8: DORMAND_PRINCE_8}
+METHODS = {3: BOGACKI_SHAMPINE_3, 5: TSITOURAS_5, 8: DORMAND_PRINCE_8}
 ROUNDING = 3e-14  # of the sums in the conditions
 
 
@@ -67,7 +69,9 @@ def test_all_rooted_trees_are_found():
     assert [len(trees(order)) for order in range(1, 9)] == [1, 1, 2, 4, 9, 20, 48, 115]
 
 
-@pytest.mark.parametrize("method", [TSITOURAS_5, DENSE_STAGES], ids=["5", "8"])
+@pytest.mark.parametrize(
+    "method", [BOGACKI_SHAMPINE_3, TSITOURAS_5, DENSE_STAGES], ids=["3", "5", "8"]
+)
 def test_each_row_sums_to_the_time_of_its_stage(method):
     np.testing.assert_allclose(method.matrix().sum(axis=1), method.c, rtol=0, atol=1e-14)
 
@@ -79,9 +83,11 @@ def test_a_method_has_its_order_and_no_higher_one(order):
     assert largest_error(b, a, order + 1) > 1e-6
 
 
-@pytest.mark.parametrize(("order", "error"), [(3, ERROR_3), (5, ERROR_5)], ids=["3", "5"])
-def test_an_error_estimate_compares_with_a_step_of_lower_order(order, error):
-    a, lower = DORMAND_PRINCE_8.matrix(), np.array(DORMAND_PRINCE_8.b) - error
+@pytest.mark.parametrize(
+    ("method", "order", "error"), [(3, 2, ERROR_2), (8, 3, ERROR_3), (8, 5, ERROR_5)]
+)
+def test_an_error_estimate_compares_with_a_step_of_lower_order(method, order, error):
+    a, lower = METHODS[method].matrix(), np.array(METHODS[method].b) - error
     assert max(largest_error(lower, a, n) for n in range(1, order + 1)) < ROUNDING
     assert largest_error(lower, a, order + 1) > 1e-6
 

@@ -5,13 +5,14 @@ import pytest
 
 from models.vibrator.equations.system import systems
 from models.vibrator.exact import propagator
+from models.vibrator.lanes.machines import prepared
 from models.vibrator.paper import closed_forms
 from models.vibrator.paper.centre import combined_centre, reduced_inertia, reduced_mass
 from models.vibrator.paper.table1 import machines
 from models.vibrator.parameters import REGIMES, Params, Settings
 from models.vibrator.start import fast
 from models.vibrator.start.regimes import ASYNCHRONOUS, CAPTURED, LOCKED_0, LOCKED_PI, wrapped
-from models.vibrator.start.synchronous import Machines, search
+from models.vibrator.start.synchronous import search
 from models.vibrator.theory import averaged
 from uq.contract import Status
 
@@ -201,7 +202,7 @@ def fold_of_synchronous_orbits(p):
             breakdown_speed_1=trial.synchronous_speed_1 - 31.0,
             breakdown_speed_2=trial.synchronous_speed_2 - 31.0,
         )
-        known = search(Machines.prepared(trial), speed, angle, np.ones(1, bool), 0)
+        known = search(prepared(trial), speed, angle, np.ones(1, bool), 0)
         if known.found[0]:
             apart += step
             angle, speed = known.disphasing, 2 * np.pi / known.orbits.period

@@ -5,12 +5,12 @@ import pytest
 from machines import plausible
 
 from models.numerics.blocks import LANES
+from models.vibrator import lanes
 from models.vibrator.equations import rigid_motion
 from models.vibrator.equations.system import systems
 from models.vibrator.exact import propagator
-from models.vibrator.lanes import fixed_steps
 from models.vibrator.lanes import notes as noted
-from models.vibrator.lanes.packed import pack
+from models.vibrator.lanes.machines import prepared
 from models.vibrator.theory.averaged import disphasing
 
 ROWS, TURNS, DURATION = 6, 25, 1.0
@@ -29,7 +29,7 @@ HIGHS = [
     noted.ANGLE_HIGH,
 ]
 SYSTEMS = systems(MACHINES)
-CONSTANTS = pack(SYSTEMS.rigid)
+PREPARED = prepared(MACHINES)
 TARGET = disphasing(MACHINES).angle
 
 
@@ -52,7 +52,7 @@ def advance(start, steps, target=TARGET, accurate=False):
     """Return the states after a second, and the notes."""
     state = start.copy()
     h = np.full(len(state), DURATION / steps)
-    return state, fixed_steps.advance(CONSTANTS, h, state, target, steps, BAND, accurate)
+    return state, lanes.advance(PREPARED, state, h, target, steps, BAND, accurate)
 
 
 @pytest.fixture(scope="module", params=STARTS)
@@ -98,13 +98,13 @@ def some(rows):
     state[:, 3:5] += rng.uniform(-4, 4, size=(rows, 2))
     state[:, 8:] = rng.uniform(100, 160, size=(rows, 2))
     h = rng.uniform(5e-4, 1e-3, rows)
-    return pack(systems(p).rigid), h, state, rng.uniform(-1, 1, rows)
+    return prepared(p), h, state, rng.uniform(-1, 1, rows)
 
 
-def bits(constants, h, state, target, accurate, rows):
+def bits(machines, h, state, target, accurate, rows):
     """Return states and notes of those rows, run together."""
     out = state[rows]
-    notes = fixed_steps.advance(constants[rows], h[rows], out, target[rows], 60, 0.3, accurate)
+    notes = lanes.advance(machines.take(rows), out, h[rows], target[rows], 60, 0.3, accurate)
     return np.concatenate([out, notes], axis=1)
 
 
@@ -115,8 +115,9 @@ def test_a_row_has_the_same_bits_in_any_company(accurate):
     sound = np.array([i for i in range(count) if i not in (3, 20, 36)])
     together = bits(*case, np.arange(count))
     assert np.isfinite(together).all() and (together[:, -1] >= 0).any()
-    for column, row in ((0, 3), (1, 20), (2, 36)):  # constants, step, state
-        case[column][row] = np.nan
+    machines, h, state = case[:3]
+    for numbers, row in ((machines.constants, 3), (h, 20), (state, 36)):
+        numbers[row] = np.nan
     order = np.random.default_rng(6).permutation(count)
     np.testing.assert_array_equal(bits(*case, np.arange(count))[sound], together[sound])
     shuffled = bits(*case, order)[np.argsort(order)]
@@ -129,9 +130,7 @@ def test_a_run_in_two_parts_is_the_run_in_one():
     parts, steps, start = (700, 500), 1200, STARTS["under way"]
     whole, notes = advance(start, steps)
     state, h = start.copy(), np.full(ROWS, DURATION / steps)
-    first, second = (
-        fixed_steps.advance(CONSTANTS, h, state, TARGET, n, BAND, False) for n in parts
-    )
+    first, second = (lanes.advance(PREPARED, state, h, TARGET, n, BAND, False) for n in parts)
     np.testing.assert_array_equal(state, whole)
     for i in (noted.POWER_1, noted.POWER_2):
         np.testing.assert_allclose(first[:, i] + second[:, i], notes[:, i], rtol=1e-13)

@@ -41,13 +41,13 @@ def sensitivity(
     json: Json = False,
 ) -> None:
     """Show which inputs the scatter comes from."""
-    from uq.cli import tables
     from uq.cli.printing import print_json
+    from uq.cli.sensitivity import plain, show
     from uq.indices.sensitivities import sensitivities
     from uq.rows.results import open_result
 
     found = sensitivities(open_result(result), method, output, regime)
-    print_json(found) if json else tables.show_sensitivity(found)
+    print_json(plain(found)) if json else show(found)
 
 
 def convergence(

@@ -1,13 +1,11 @@
 """Quantile-oriented indices: how much better a quantile is known once an input is."""
 
-from collections.abc import Mapping
-
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.indices.slices import even_cuts, slice_of, tells_nothing
-from uq.indices.targets import RefusedError
-from uq.rows.elements import Floats
+from uq.methods.indices import Kind, RefusedError
+from uq.methods.sample import Floats, Sample
+from uq.methods.slices import even_cuts, slice_of, tells_nothing
 
 MIN_SLICES = 5
 MOST_SLICES = 48
@@ -15,9 +13,7 @@ _ROWS_IN_SLICE = 30
 _ROWS_BEYOND = 5
 
 
-def quantile_indices(
-    x: Floats, y: Floats, quantiles: Mapping[str, float]
-) -> tuple[dict[str, Floats], tuple[str, ...]]:
+def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[Kind, Floats], tuple[str, ...]]:
     """Estimate the index of each input for each quantile.
 
     With psi(r) = r (p - [r < 0]), whose mean E psi(Y - q) is least at the quantile q of Y, the
@@ -27,14 +23,13 @@ def quantile_indices(
     Parameters
     ----------
     x : ndarray, shape (n, d)
-    y : ndarray, shape (n,)
-    quantiles : dict of str to float
-        Name of an index -> probability p.
+    sample : Sample
+        The output, and the quantiles.
 
     Returns
     -------
     indices : dict
-        Name -> raw indices, shape (d,), from slices of equally many rows, or by value where an
+        Kind -> raw indices, shape (d,), from slices of equally many rows, or by value where an
         input has few. They are too large, as each slice has its quantile fitted to it: those of
         inputs without effect show by how much. NaN where an input varies within one slice only.
     notes : tuple of str
@@ -50,8 +45,8 @@ def quantile_indices(
     .. [1] J.-C. Fort, T. Klein, N. Rachdi, "New sensitivity analysis subordinated to a contrast",
        Commun. Stat. Theory Methods 45, 4349-4364 (2016).
     """
-    found, notes = {}, []
-    for name, p in quantiles.items():
+    y, found, notes = sample.values, {}, []
+    for name, p in sample.quantiles.items():
         rows = max(_ROWS_IN_SLICE, int(np.ceil(_ROWS_BEYOND / min(p, 1 - p))))
         if len(y) < MIN_SLICES * rows:
             notes.append(
@@ -68,7 +63,7 @@ def quantile_indices(
                 np.nan if tells_nothing(column, own) else _remains(y, p, own)
                 for column, own in zip(x.T, number, strict=True)
             ]
-            found[name] = 1 - np.array(rest) / whole
+            found[Kind(name, name)] = 1 - np.array(rest) / whole
     if not found:
         raise RefusedError("; ".join(notes))
     return found, tuple(notes)

@@ -5,10 +5,10 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from SALib.analyze import enhanced_hdmr
 
-from uq.indices.targets import Index, Indices, RefusedError
-from uq.rows.elements import Floats
+from uq.estimate import Estimate
+from uq.methods.indices import S1, S2, SHAPLEY, ST, Indices, Null, RefusedError
+from uq.methods.sample import Floats, Sample
 
 MIN_ROWS = 300
 """SALib takes no fewer."""
@@ -24,21 +24,19 @@ _TERMS_PER_ROW = 0.8
 _MOST_TERMS = 500
 
 
-def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
+def hdmr_indices(sample: Sample) -> Indices:
     """Estimate the indices of an expansion in functions of one and of two inputs.
 
     Parameters
     ----------
-    x : dict of str to ndarray, shape (n,)
-        The uncertain parameters, independent.
-    y : ndarray, shape (n,)
-        Finite, not constant.
+    sample : Sample
+        Of independent inputs.
 
     Returns
     -------
     Indices
         ``S1``, ``S2``, ``ST`` and ``shapley``: S1 and half of the S2 that an input shares, which
-        are its Shapley effect where no three inputs interact [2]_. No intervals; `dummy` is what
+        are its Shapley effect where no three inputs interact [2]_. No intervals; the null is what
         the fit makes of one input that plays no part.
 
     Raises
@@ -54,6 +52,7 @@ def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
     .. [2] A. B. Owen, "Sobol' indices and Shapley value", SIAM/ASA J. Uncertainty Quantification
        2, 245-251 (2014).
     """
+    x, y = sample.inputs, sample.values
     if len(np.unique(y)) < _LEAST_VALUES:
         raise RefusedError(
             f"it takes fewer than {_LEAST_VALUES} values, and no polynomial has such steps; use"
@@ -98,20 +97,21 @@ def hdmr_indices(x: dict[str, Floats], y: Floats) -> Indices:
     shared = np.array(
         [sum(v for pair, v in second.items() if i in pair) for i in range(len(names))]
     )
-    kinds = {"S1": first, "ST": first + shared, "shapley": first + shared / 2}
+    kinds = {S1: first, ST: first + shared, SHAPLEY: first + shared / 2}
     values = {
-        kind: {name: Index(float(v)) for name, v in zip(x, found_, strict=False)}
+        kind: {name: Estimate(float(v)) for name, v in zip(x, found_, strict=False)}
         for kind, found_ in kinds.items()
     }
-    values["S2"] = {
-        f"{names[i]},{names[j]}": Index(float(v)) for (i, j), v in second.items() if names[j]
+    values[S2] = {
+        f"{names[i]},{names[j]}": Estimate(float(v)) for (i, j), v in second.items() if names[j]
     }
     note = (
         f"polynomials of degree {degree} in one and in two inputs explain {explained:.1%} of the"
         " variance of rows held out; an input without effect passes the one beside the indices in"
         " every second case"
     )
-    return Indices(values, (note,), {kind: float(found_[-1]) for kind, found_ in kinds.items()})
+    nulls = {kind: Null(float(found_[-1])) for kind, found_ in kinds.items()}
+    return Indices(values, (note,), nulls)
 
 
 def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
@@ -143,6 +143,8 @@ def _terms(inputs: int, degree: int) -> int:
 
 
 def _expansion(x: Floats, y: Floats, degree: int) -> Any:
+    from SALib.analyze import enhanced_hdmr
+
     names = [str(i) for i in range(x.shape[1])]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that there is no bootstrap

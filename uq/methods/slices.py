@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm, rankdata
 
-from uq.indices.targets import RefusedError
-from uq.rows.elements import Floats
+from uq.methods.indices import RefusedError
+from uq.methods.sample import Floats
 
 LEAST_ROWS = 10
 """A value of an input that fewer rows have makes no slice of its own."""

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from uq.indices.slices import MOST_CATEGORIES
-from uq.indices.targets import RefusedError
-from uq.rows.elements import Floats
+from uq.methods.indices import RefusedError
+from uq.methods.sample import Floats
+from uq.methods.slices import MOST_CATEGORIES
 
 MIN_SIDE = 10
 """Fewer rows than this with the event, or without it, have no distribution to speak of."""
