@@ -62,6 +62,7 @@ STOREYS = {
         {"start"},
         {"response"},
         {"wear"},
+        {"units"},
         {"batch", "trajectory"},
         {"branches"},
         {"explore"},
