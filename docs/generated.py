@@ -16,8 +16,9 @@ from pydantic import BaseModel
 
 from uq.cli.app import app
 from uq.contract import Status
+from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
-from uq.methods.registry import METHODS, fed_by
+from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.plots import FIGURES
 from uq.study.file import (
     LAWS,
@@ -269,6 +270,33 @@ def designs() -> str:
         can = "yes" if design.append_only else "no"
         lines.append((f'`"{name}"`', design.meaning, can, feeds))
     return table(("`method`", "rows", "extend", "sensitivity methods, the default first"), lines)
+
+
+def methods() -> str:
+    """Tabulate the sensitivity methods: what they give, and how."""
+    lines = []
+    for name, method in METHODS.items():
+        gives = method.gives or ", ".join(kind.words for kind in method.kinds)
+        null = "; a null beside it" if method.has_null else ""
+        most = "" if method.most_rows is None else f"{method.most_rows:,}"
+        how = method.intervals or f"none{null}"
+        lines.append((f"`{name}`", gives.replace("*", "\\*"), method.source, how, most))
+    return table(("method", "index", "estimator", "interval", "rows at most"), lines)
+
+
+def questions() -> str:
+    """Tabulate what each sensitivity method answers, and what it needs."""
+    lines = []
+    for name, method in METHODS.items():
+        able = " or ".join(f"`{design}`" for design in designs_for(name))
+        needs = "a plain sample" if method.layout is PLAIN else f"design {able}"
+        lines.append((method.question, f"`{name}`", needs))
+    plain = [f"`{name}`" for name, one in DESIGNS.items() if one.layout is PLAIN]
+    dependent = [f"`{name}`" for name in for_dependent_inputs()]
+    return table(("question", "method", "needs"), lines) + (
+        f"\n\nA plain sample is of design {', '.join(plain)}. {', '.join(dependent)} also take"
+        " dependent inputs, and imported rows that are not stated to be independent."
+    )
 
 
 def figures() -> str:
