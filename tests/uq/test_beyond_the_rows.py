@@ -10,6 +10,7 @@ from scipy import stats
 import uq as api
 from uq import order_statistics
 from uq.analysis.comparison import comparison
+from uq.analysis.life_fit import fitted_laws
 from uq.analysis.overview import summary
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
@@ -66,7 +67,7 @@ def test_every_reader_says_how_many_rows_it_takes(uq, folder):
     cells = dict(zip(*(lambda t: (t.header, t.rows[0]))(life_table(found(ds))), strict=True))
     assert cells["B1"].text == "needs 99 rows"
     assert comparison(ds, ds)["outputs"]["life"]["b_lives"]["B1"]["difference"]["value"] is None
-    assert expected_widths(ds)["life"]["quantiles"]["0.001"] is None
+    assert expected_widths(ds)["life"].quantiles[0.001] is None
 
 
 def found(ds):
@@ -74,13 +75,13 @@ def found(ds):
 
 
 def test_a_fitted_life_beyond_the_rows_is_called_extrapolated():
-    fits = api.life_fits(lives(60), "life")["life"]
+    fits = fitted_laws(lives(60), "life")["life"]
     for law in ("weibull", "lognormal"):
         assert "refused" not in fits[law]
         assert fits[law]["B1"]["extrapolated"] is True
         assert not fits[law]["B10"]["extrapolated"]
         assert "no proof" in fits[law]["assumes"]
-    more = api.life_fits(lives(120), "life")["life"]["weibull"]
+    more = fitted_laws(lives(120), "life")["life"]["weibull"]
     assert more["B1"]["extrapolated"] is False
 
 

@@ -5,10 +5,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from uq.analysis.statistics import summarise
 from uq.drawing.elements_plot import label, rows_in_words, told_in
 from uq.drawing.figure import WIDTH, Drawing, sentence, styled
+from uq.drawing.panel import figure_of
 from uq.rows.elements import independent_rows, named_elements
 from uq.wording import interval, known
 
@@ -16,7 +19,13 @@ _LINE = 0.15  # inch
 
 
 @styled
-def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Any]) -> Figure:
+def quantile_table(
+    ds: xr.Dataset,
+    output: str,
+    *,
+    summary: Mapping[str, Any] | None = None,
+    axes: Axes | None = None,
+) -> Figure:
     """Draw a table of the quantiles of an output, each with its 95 % interval below.
 
     Parameters
@@ -25,22 +34,25 @@ def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Any]) -> F
         A result.
     output : str
         An output that is no category.
-    entries : dict
-        ``outputs`` of what `uq.analysis.statistics.summarise` returns.
+    summary : dict, optional
+        What `uq.analysis.statistics.summarise` returns, if that is known already.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
     chosen = named_elements(independent_rows(ds), output)
+    entries = (summary or summarise(ds))["outputs"]
     found = [entries[element.name]["quantiles"] for element in chosen]
     values = [one["value"] for entry in found for one in entry.values()]
     unit, per = told_in(chosen[0].units, np.array(values, dtype=float))
     words = [label(ds, element) for element in chosen]
     lines = 3 if any(words) else 2
     height = _LINE * (4.2 + (lines + 0.4) * len(chosen))
-    figure = Drawing(figsize=(WIDTH, height))
-    axes = figure.add_axes((0.02, 0.0, 0.96, 1.0))
+    if axes is None:
+        axes = Drawing(figsize=(WIDTH, height)).add_axes((0.02, 0.0, 0.96, 1.0))
     axes.set_axis_off()
     axes.set(xlim=(0, 1), ylim=(height / _LINE, 0))
     axes.text(0, 0.3, sentence(chosen[0].meaning, unit, 60), va="top")
@@ -58,4 +70,4 @@ def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Any]) -> F
         for place, one in zip(places, entry.values(), strict=True):
             axes.text(place, y, known(one, per=per), ha="right")
             axes.text(place, y + 0.95, interval(one, per), ha="right", size=6)
-    return figure
+    return figure_of(axes)

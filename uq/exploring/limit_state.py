@@ -7,11 +7,11 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from uq.columns import censored_name
 from uq.contract import Status
 from uq.errors import InputError, nearest
 from uq.exploring.evaluator import Evaluator
 from uq.inputs.values import unknown_name
+from uq.rows.columns import censored_name
 from uq.rows.evaluate import Chunk
 from uq.rows.results import elements
 from uq.rows.sampling import physical, row_seeds
@@ -66,6 +66,11 @@ class LimitState:
     def physical(self, u: Floats) -> Floats:
         """Map points of standard normal space, (n, dimension), to the model's parameters."""
         return physical(self.study, np.clip(ndtr(u), 2.0**-54, 1.0 - 2.0**-53))
+
+    def uncertain(self, u: Floats) -> Floats:
+        """Map points of standard normal space to the uncertain parameters alone."""
+        names = self.study.model.parameter_names
+        return self.physical(u)[:, [names.index(name) for name in self.study.uncertain]]
 
     def __call__(self, u: Floats) -> Floats:
         """Compute the rows of some points.
