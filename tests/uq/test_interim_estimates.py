@@ -39,12 +39,12 @@ def test_a_share_is_of_the_rows_that_did_not_fail():
     of = study(0.1, above=4.0, samples=200, settings={"fail_above": 0.5})
     ds = computed(of)
     sound = ds["y"].values[~np.isnan(ds["y"].values)]
-    value, interval, _ = stopping.look(of.design, ds)
-    assert len(sound) < 150 and value == (sound > 4.0).mean()
-    assert interval.low < value < interval.high
+    seen = stopping.look(of.design, ds).estimate
+    assert len(sound) < 150 and seen.value == (sound > 4.0).mean()
+    assert seen.low < seen.value < seen.high
     whole = computed(study(0.1, above=4.0, samples=200))
     narrower = stopping.look(of.design, whole).estimate
-    assert interval.high - interval.low > 1.2 * (narrower.high - narrower.low)
+    assert seen.high - seen.low > 1.2 * (narrower.high - narrower.low)
 
 
 def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
