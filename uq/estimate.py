@@ -13,13 +13,20 @@ class Estimate:
     value, low, high : float
         NaN where it is not known; infinite where it is known to be.
     reason : str
-        Why the value or its interval is missing, or what both assume; "" if neither.
+        Why the value or its interval is missing, "" if neither is.
+    assumes : str
+        What all three rest on, beyond the rows; "" if nothing.
+    beyond : tuple of str
+        Which of the three are infinite only because rows are censored: they lie somewhere beyond
+        the horizon.
     """
 
     value: float = nan
     low: float = nan
     high: float = nan
     reason: str = ""
+    assumes: str = ""
+    beyond: tuple[str, ...] = ()
 
     @property
     def numbers(self) -> tuple[float, float, float]:

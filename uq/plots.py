@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from uq.analysis.convergence import running_estimates
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import summarise
 from uq.drawing.convergence_plot import convergence, index_convergence
 from uq.drawing.elements_plot import occurring_regimes
 from uq.drawing.figure import file_name, write
@@ -83,7 +83,7 @@ def _figures(ds: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     rows = independent_rows(ds)
     drawn = numbers if rows.sizes["sample"] else []
     several = len(occurring_regimes(rows)) > 1
-    entries = summarise(ds)["outputs"] if drawn else {}
+    entries = summarise(ds).outputs if drawn else {}
     running = running_or_none(ds) if drawn else None
     for output in drawn:
         if declared[output].is_lifetime:

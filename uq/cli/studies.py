@@ -164,7 +164,7 @@ def end(
     if not mixed and (line := runner.made_elsewhere(study, target, ds)):
         print(plain_line(line), file=sys.stderr)
     if not quiet:
-        from uq.analysis.statistics import summarise
+        from uq.analysis.summary import summarise
 
         tables.show_summary(ds, summarise(ds))
         console.print()

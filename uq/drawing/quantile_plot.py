@@ -1,22 +1,23 @@
 """The table of quantiles, drawn as a figure for a paper."""
 
 from collections.abc import Mapping
-from typing import Any
+from math import isfinite, nan
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from uq.analysis.summary import Described
 from uq.drawing.elements_plot import label, rows_in_words, told_in
 from uq.drawing.figure import WIDTH, Drawing, sentence, styled
 from uq.rows.elements import independent_rows, named_elements
-from uq.wording import interval, known
+from uq.wording import interval
 
 _LINE = 0.15  # inch
 
 
 @styled
-def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Any]) -> Figure:
+def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Described]) -> Figure:
     """Draw a table of the quantiles of an output, each with its 95 % interval below.
 
     Parameters
@@ -26,16 +27,17 @@ def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Any]) -> F
     output : str
         An output that is no category.
     entries : dict
-        ``outputs`` of what `uq.analysis.statistics.summarise` returns.
+        ``outputs`` of what `uq.analysis.summary.summarise` returns.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
     chosen = named_elements(independent_rows(ds), output)
-    found = [entries[element.name]["quantiles"] for element in chosen]
-    values = [one["value"] for entry in found for one in entry.values()]
-    unit, per = told_in(chosen[0].units, np.array(values, dtype=float))
+    found = [entries[element.name].parts["quantiles"] for element in chosen]
+    values = [one.estimate.value for quantiles in found for one in quantiles]
+    known = np.array([value if isfinite(value) else nan for value in values])
+    unit, per = told_in(chosen[0].units, known)
     words = [label(ds, element) for element in chosen]
     lines = 3 if any(words) else 2
     height = _LINE * (4.2 + (lines + 0.4) * len(chosen))
@@ -46,16 +48,16 @@ def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Any]) -> F
     axes.text(0, 0.3, sentence(chosen[0].meaning, unit, 60), va="top")
     axes.text(0, 1.5, f"{rows_in_words(chosen)}; 95 % intervals", va="top", color="0.35", size=7)
     places = [(k + 1) / len(found[0]) for k in range(len(found[0]))]
-    for place, probability in zip(places, found[0], strict=True):
-        axes.text(place, 3.6, f"{100 * float(probability):g} %", ha="right")
+    for place, one in zip(places, found[0], strict=True):
+        axes.text(place, 3.6, f"{100 * float(one.key[-1]):g} %", ha="right")
     for y in (2.6, 3.9, height / _LINE - 0.1):
         axes.axhline(y, color="black", lw=0.6)
-    for i, (name, entry) in enumerate(zip(words, found, strict=True)):
+    for i, (name, quantiles) in enumerate(zip(words, found, strict=True)):
         y = 5.0 + (lines + 0.4) * i
         if lines == 3:
             axes.text(0, y, name)
             y += 1
-        for place, one in zip(places, entry.values(), strict=True):
-            axes.text(place, y, known(one, per=per), ha="right")
-            axes.text(place, y + 0.95, interval(one, per), ha="right", size=6)
+        for place, one in zip(places, quantiles, strict=True):
+            axes.text(place, y, one.words(per), ha="right")
+            axes.text(place, y + 0.95, interval(one.estimate, per), ha="right", size=6)
     return figure

@@ -8,7 +8,7 @@ from typing import Any
 import xarray as xr
 from markupsafe import Markup, escape
 
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import Summary, summarise
 from uq.designs.table import DESIGNS
 from uq.drawing.elements_plot import occurring_regimes
 from uq.drawing.input_plot import inputs
@@ -23,7 +23,6 @@ from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
 from uq.report.outcomes import (
     Outcome,
-    life_table,
     outcomes,
     regime_table,
     result_tables,
@@ -104,7 +103,7 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
     summary = summarise(ds)
     found = outcomes(ds, summary)
     methods = sensitivity_of(ds)
-    lives = [one for one in found if one.entry["b_lives"]]
+    lives = [one for one in found if one.declared.is_lifetime]
     others = [one for one in found if one not in lives]
     rows = independent_rows(ds)
     several = len(occurring_regimes(rows)) > 1
@@ -114,20 +113,20 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
         "title": str(ds.attrs["title"]),
         "study": study.study,
         "facts": _facts(ds, summary),
-        "headlines": headlines(summary, lost, found, methods, study.analysis.tolerance),
+        "headlines": headlines(summary, lost, found, methods),
         "inputs": list(input_tables(ds)),
         "input_picture": _inputs_picture(ds),
         "status": status_table(ds, summary),
         "failed": lost,
         "max_failed": study.analysis.max_failed,
-        "regimes": regime_table(summary) if summary["regime"] else None,
+        "regimes": regime_table(summary) if summary.regimes else None,
         "pairs": _pairs(ds) if several and len(independent_inputs(rows)) > 1 else None,
         "convergence": convergence_of(ds, found),
-        "results": list(result_tables(found, study.analysis.tolerance)),
+        "results": list(result_tables(found)),
         "histograms": _pictures(ds, others, spread, scatter),
-        "lives": life_table(found),
+        "lives": list(result_tables(found, of_lives=True)),
         "survival": _pictures(ds, lives, lifetime, *[spread] * several, scatter),
-        "notes": summary["notes"],
+        "notes": summary.notes,
         "methods": methods,
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
         "text_is_cut": len(ds.attrs["study"]) > _SHOWN_TEXT,
@@ -139,11 +138,11 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
     }
 
 
-def _facts(ds: xr.Dataset, summary: dict[str, Any]) -> list[tuple[str, str]]:
+def _facts(ds: xr.Dataset, summary: Summary) -> list[tuple[str, str]]:
     design = ds.attrs["design"]
-    rows = f"{summary['samples']}"
-    if summary["rows_used"] < summary["samples"]:
-        some = summary["rows_used"]
+    rows = f"{summary.samples}"
+    if summary.rows_used < summary.samples:
+        some = summary.rows_used
         rows += f", statistics from {some} independent ones" if some else ", none independent"
     replicates = f", {ds.attrs['replicates']} replicates" if ds.attrs["replicates"] > 1 else ""
     return [
