@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from computed import asking, kinds, linear, with_output
+from computed import asking, kinds, linear, summarised, with_output
 
 from uq import plots
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import summarise
 from uq.drawing.figure import COLOURS, thinned
 from uq.drawing.index_plot import index_bars
 from uq.indices.sensitivities import sensitivities
@@ -27,7 +27,7 @@ def lives(ds):
 
 def median(ds):
     """Return the median of the lives, and the ends of its interval [days]."""
-    found = summarise(ds)["outputs"]["day_long"]["quantiles"]["0.5"]
+    found = summarised(ds)["outputs"]["day_long"]["quantiles"]["0.5"]
     return [found[end] / DAY for end in ("value", "low", "high")]
 
 
@@ -57,7 +57,7 @@ def test_what_an_input_without_effect_has_is_a_line_across_the_bars():
 
 def test_a_table_has_one_unit():
     ds = lives(linear(samples=64))
-    told = words(plots.quantile_table(ds, "day_long", summarise(ds)["outputs"]))
+    told = words(plots.quantile_table(ds, "day_long", summarise(ds).outputs))
     value, low, high = median(ds)
     assert "[days]" in told and f" {value:.5g} " in told and f"{low:.5g} to {high:.5g}" in told
 

@@ -4,14 +4,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from computed import asking, kinds, linear, with_output
+from computed import asking, kinds, linear, summarised, with_output
 from IPython.core.formatters import DisplayFormatter
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from uq import plots
 from uq.analysis.convergence import running_estimates
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import summarise
 from uq.drawing.convergence_plot import index_convergence
 from uq.drawing.figure import file_name, lay_out, powers, roomy, sentence
 from uq.drawing.index_plot import index_bars
@@ -65,7 +65,7 @@ def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
 def test_a_notebook_shows_figures_without_pyplot():
     ds = kinds(samples=40)
     drawn = [plots.lifetime(ds, "life"), plots.scatter(ds, "angle"), plots.pairs(ds)]
-    drawn += [plots.inputs(ds), plots.quantile_table(ds, "work", summarise(ds)["outputs"])]
+    drawn += [plots.inputs(ds), plots.quantile_table(ds, "work", summarise(ds).outputs)]
     for figure in drawn:
         shown, _ = DisplayFormatter().format(figure)
         assert imread(io.BytesIO(shown["image/png"])).std() > 0.05
@@ -174,7 +174,7 @@ def test_degenerate_results_are_drawn_all_the_same(value, kind):
     ds = asking(with_output(linear(samples=64), "odd", np.full(64, value), kind), outputs=["odd"])
     drawn = [plots.lifetime if kind == "lifetime" else plots.histogram, plots.scatter]
     figures = [draw(ds, "odd") for draw in drawn] + [plots.convergence(ds, "odd")]
-    figures.append(plots.quantile_table(ds, "odd", summarise(ds)["outputs"]))
+    figures.append(plots.quantile_table(ds, "odd", summarise(ds).outputs))
     for figure in figures:
         if figure is not None:
             figure.draw_without_rendering()
@@ -287,7 +287,7 @@ def test_total_indices_converge_in_a_figure():
 
 def test_quantiles_are_a_table_to_print():
     ds = kinds(samples=200)
-    entries = summarise(ds)["outputs"]
+    entries = summarised(ds)["outputs"]
     told = words(plots.quantile_table(ds, "work", entries))
     assert "Work rate [W]" in told and "left" in told and "95 % intervals" in told
     assert f"{entries['work[side=left]']['quantiles']['0.5']['value']:.5g}" in told
