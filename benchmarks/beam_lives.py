@@ -13,11 +13,11 @@ from types import SimpleNamespace
 import numpy as np
 
 from models.beam import MODEL, lanes
-from models.beam.batch import initial_gaps
 from models.beam.parameters import REGIMES, Params, Settings
 from models.beam.response.settling import settle
+from models.beam.start import initial_gaps
 from models.beam.structure.modal import beams
-from models.beam.wear.accelerated_life import run
+from models.beam.wear.accelerated_life import run_life
 from models.beam.wear.regimes import changes_of, confirmed_regimes
 from models.numerics.blocks import LANES
 from uq.rows.sampling import row_block
@@ -89,7 +89,7 @@ def regimes(name, periods=16_384):
         share = np.stack([np.ones_like(x0), q.wear_coefficient_ratio], axis=1)
         growths = np.asarray(DEPTHS) / x0[:, None]
         spy = SimpleNamespace(advance=advance)
-        life = run(spy, system, state, gaps, work, share, growths, periods).history
+        life = run_life(spy, system, state, gaps, work, share, growths, periods).history
         truth = np.full_like(life.regime, -1)
         for look, (at, regime) in enumerate(told):
             here = np.abs(life.gaps[:, look, None] - at).max(axis=2)

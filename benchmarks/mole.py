@@ -15,15 +15,13 @@ import numpy as np
 from benchmarks.compare import Rival, clock, compare
 from benchmarks.mole_modes import ELECTRIC, IMPACT, JOULE, PROGRESS
 from benchmarks.mole_rivals import by_runge_kutta, by_scipy
-from models.mole import MODEL
-from models.mole.exact import propagation as exact
+from models.mole import MODEL, exact
 from models.mole.lanes import rows as row_at
 from models.mole.lanes.modes import mole_of
 from models.mole.lanes.rows import SCALES
-from models.mole.parameters import Params
-from models.mole.response.settling import Machines
+from models.mole.parameters import Params, Settings
+from models.mole.response.machines import Machines
 from models.mole.theory.equations import ELECTRICAL_WORK, IMPACT_WORK, MOLE_DISPLACEMENT, SIZE
-from models.mole.theory.system import mole
 from uq.rows.sampling import row_block
 from uq.study.definition import load_study
 
@@ -49,20 +47,9 @@ def settled(frequency):
     for name in SCATTERED:
         fields[name] *= 1 + 0.01 * rng.uniform(-1, 1, ROWS)
     p = Params(**fields | {"control_frequency": np.full(ROWS, frequency)})
-    machines = Machines.started(
-        row_at.table_of(mole(p, "physical"), ROWS),
-        p.control_frequency,
-        np.zeros(ROWS, np.int64),
-        p.initial_displacement,
-        p.initial_velocity,
-    )
-    _run(machines, ROWS, round(SETTLING * frequency), 1e-9)
+    machines = Machines.started(p, Settings(tolerance=1e-9))
+    machines.run(np.arange(ROWS), np.full(ROWS, round(SETTLING * frequency)))
     return machines
-
-
-def _run(machines, rows, periods, tolerance):
-    plain = np.empty((rows, 0))
-    machines.run(np.arange(rows), np.full(rows, periods), tolerance, False, plain)
 
 
 class Stretch:
@@ -78,15 +65,15 @@ class Stretch:
 
     def by_lanes(self, rows, tolerance):
         """Run in lanes."""
-        *fields, budget = self.machines
-        machines = Machines(*(field[:rows].copy() for field in fields), budget)
-        _run(machines, rows, machines.periods([0])[0] + self.halves // 2, tolerance)
+        system = self.machines.system.take(np.arange(rows))._replace(tolerance=tolerance)
+        machines = Machines(system, self.machines.record[:rows].copy())
+        machines.run(np.arange(rows), machines.periods(np.arange(rows)) + self.halves // 2)
         first, last = row_at.PROGRESS, row_at.ELECTRIC + 1
         return np.hstack([machines.record[:, first:last] / DURATION, machines.record[:, :3]])
 
     def by_exact(self, rows, tolerance):
         """Run from event to event by the exact propagator."""
-        table, record = self.machines.table, self.machines.record
+        table, record = self.machines.system.table, self.machines.record
         means = [MOLE_DISPLACEMENT, IMPACT_WORK, ELECTRICAL_WORK]
         results = []
         for row in range(rows):
@@ -121,7 +108,7 @@ class Stretch:
         return np.hstack([end[5:].T / DURATION, end[:3].T])
 
     def _some(self, rows):
-        return self.machines.table[:rows], self.machines.record[:rows]
+        return self.machines.system.table[:rows], self.machines.record[:rows]
 
 
 def _results(end):

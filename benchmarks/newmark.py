@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-from models.beam.structure.modal import Beams, Record
+from models.beam.structure.modal import Beams
+from models.beam.structure.propagation import Record
 
 
 class System(NamedTuple):

@@ -7,7 +7,7 @@ import numpy as np
 
 from models.numerics.jit import kernel
 from models.vibrator.equations.rigid_motion import DEGREES, acceleration
-from models.vibrator.lanes.fixed_steps import machine
+from models.vibrator.lanes.packed import machine
 
 STATE = 2 * DEGREES
 ANCHOR = 3  # psi_1
@@ -52,7 +52,7 @@ def shoot(c, guess, period, scales, steps):
     Parameters
     ----------
     c : ndarray
-        Constants, as `models.vibrator.lanes.fixed_steps.machine` asks, in the first lane.
+        Constants, as `models.vibrator.lanes.packed.machine` asks, in the first lane.
     guess : ndarray, shape (10,)
         At psi_1 = 0.
     period : float

@@ -33,13 +33,14 @@ from uq import store
 from uq.running import runner
 from uq.cli import main
 from uq.rows.results import open_result
+from uq.rows.workload import workload_of
 
-def run(study, output, workers, scheduler, chunk_rows, row_limit, progress, **more):
-    ds = runner.compute(study, workers, scheduler, chunk_rows, progress, row_limit)
+def run(study, output, options):
+    ds = runner.carry_out(workload_of(study), options)
     store.write_result(ds, output)
     return open_result(output)
 
-runner.run = run
+runner.run_study = run
 main()
 """
 

@@ -15,14 +15,16 @@ from scipy.integrate import solve_ivp
 
 from benchmarks.compare import Rival, clock, compare
 from benchmarks.shooting import rates, shoot
-from models.vibrator import MODEL
+from models.numerics.blocks import LANES
+from models.vibrator import MODEL, lanes
 from models.vibrator.equations import rigid_motion
 from models.vibrator.equations.system import systems
 from models.vibrator.exact import orbit, propagator
 from models.vibrator.exact.budgeted import prepare
-from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.machines import prepared
+from models.vibrator.lanes.packed import pack
 from models.vibrator.parameters import Params
-from models.vibrator.start.synchronous import Machines, propose
+from models.vibrator.start.synchronous import propose
 from models.vibrator.theory import averaged
 from uq.rows.sampling import row_block
 from uq.study.definition import load_study
@@ -52,9 +54,7 @@ def scattered(n):
 P = scattered(ROWS)
 SYSTEM = systems(P)
 START = rigid_motion.initial_state(P)
-CONSTANTS = np.repeat(
-    fixed_steps.pack(SYSTEM), fixed_steps.LANES, axis=1
-)  # of each row, in all lanes
+CONSTANTS = np.repeat(pack(SYSTEM.rigid), LANES, axis=1)  # of each row, in all lanes
 
 
 def angle_of(states):
@@ -87,11 +87,9 @@ def by_exact(rows, tolerance):
 def by_lanes(rows, steps):
     """Return the states at the end, with all that has to be set up."""
     p = Params._make(field[:rows] for field in P)
-    state, constants = rigid_motion.initial_state(p), fixed_steps.pack(systems(p))
-    nowhere = np.full(rows, np.nan)
-    fixed_steps.advance(
-        constants, np.full(rows, DURATION / steps), state, nowhere, steps, 0.0, True
-    )
+    machines, nowhere = prepared(p), np.full(rows, np.nan)
+    state = lanes.start(machines)
+    lanes.advance(machines, state, np.full(rows, DURATION / steps), nowhere, steps, 0.0, True)
     return state
 
 
@@ -130,7 +128,7 @@ def run_ups():
 
         def by_taylor(n, tolerance):
             if tolerance not in made:
-                made[tolerance] = Taylor(SYSTEM, tolerance)
+                made[tolerance] = Taylor(SYSTEM.rigid, tolerance)
             return angle_of(made[tolerance].advance(START[:n], DURATION))
 
         rivals["heyoka, batches of 8, tolerance"] = Rival(by_taylor, tolerances, ROWS)
@@ -158,7 +156,7 @@ def steady_states():
 
     def by_theory_and_newton(n, steps):
         p = Params._make(field[:n] for field in P)
-        return propose(Machines.prepared(p), steps).disphasing
+        return propose(prepared(p), steps).disphasing
 
     rivals = {
         "lanes, steps a turn": Rival(by_theory_and_newton, (24, 36, 48, 72, 96), ROWS),

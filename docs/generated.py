@@ -16,7 +16,8 @@ from pydantic import BaseModel
 
 from uq.cli.app import app
 from uq.contract import Status
-from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS
+from uq.designs.registry import DESIGNS
+from uq.methods.registry import METHODS, fed_by
 from uq.study.file import (
     LAWS,
     AnalysisTable,
@@ -261,7 +262,8 @@ def designs() -> str:
     lines = []
     for name, design in DESIGNS.items():
         feeds = ", ".join(
-            f"{method}\\*" if method in FOR_DEPENDENT_INPUTS else method for method in design.feeds
+            method if METHODS[method].assumes_independence else f"{method}\\*"
+            for method in fed_by(design)
         )
         can = "yes" if design.append_only else "no"
         lines.append((f'`"{name}"`', design.meaning, can, feeds))

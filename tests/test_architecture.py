@@ -1,6 +1,7 @@
 """Which module may import which: every import of the house, read from the source."""
 
 import ast
+import re
 import subprocess
 import sys
 from graphlib import TopologicalSorter
@@ -34,6 +35,7 @@ LAYERS = (
     {"contract"},
     GROUND,
     {"designs"},
+    {"methods"},
     {"inputs"},
     {"study"},
     {"rows", "store"},
@@ -55,6 +57,18 @@ STRANGERS = {
 """What may not use the other although it stands above."""
 
 STOREYS = {
+    "beam": (
+        {"parameters"},
+        {"structure"},
+        {"exact", "lanes"},
+        {"start"},
+        {"response"},
+        {"wear"},
+        {"batch", "trajectory"},
+        {"branches"},
+        {"explore"},
+        {"paper"},
+    ),
     "vibrator": (
         {"parameters"},
         {"theory"},
@@ -184,6 +198,18 @@ def test_few_files_stand_side_by_side(machine):
     folder = HOUSE / "models" / machine
     files = [path.parent for path in folder.rglob("*.py") if path.name != "__init__.py"]
     assert {place for place in files if files.count(place) > SIDE_BY_SIDE} == set()
+
+
+@pytest.mark.parametrize("machine", STOREYS)
+def test_each_package_says_what_to_read(machine):
+    silent = set()
+    for path in (HOUSE / "models" / machine).rglob("*.py"):
+        package = path.parent if path.name != "__init__.py" else path.parent.parent
+        name = path.stem if path.name != "__init__.py" else path.parent.name
+        if package != HOUSE / "models":
+            said = ast.get_docstring(ast.parse((package / "__init__.py").read_text()))
+            silent |= set() if re.search(rf"\b{name}\b", said) else {path}
+    assert silent == set()
 
 
 def test_the_platform_depends_one_way():

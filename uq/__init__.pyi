@@ -20,7 +20,7 @@ from .errors import RunError as RunError
 from .exploring.basins import basins as basins
 from .exploring.rare_events import rare_event as rare_event
 from .exploring.simulation import simulate as simulate
-from .indices.sensitivities import sensitivity as sensitivity
+from .indices.dataset import sensitivity as sensitivity
 from .provenance import __version__ as __version__
 from .rows.elements import labels as labels
 from .rows.results import open_result as open_result

@@ -34,6 +34,12 @@ class Estimate:
         return self.value, self.low, self.high
 
     @property
+    def finite(self) -> "Estimate":
+        """The same, with every number unknown that is not finite."""
+        value, low, high = (one if isfinite(one) else nan for one in self.numbers)
+        return Estimate(value, low, high, self.reason, self.assumes)
+
+    @property
     def has_interval(self) -> bool:
         """Whether both ends are finite."""
         return isfinite(self.low) and isfinite(self.high)

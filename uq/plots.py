@@ -99,9 +99,9 @@ def _figures(ds: xr.Dataset) -> Iterator[tuple[str, Figure]]:
     if several and len(independent_inputs(rows)) > 1:
         yield "pairs", pairs(ds)
     for method in methods(ds):
-        for name, entry in sensitivities(ds, method)["outputs"].items():
-            if "refused" not in entry:
-                yield file_name(method, name), bars(ds, name, entry)
+        for name, found in sensitivities(ds, method).targets.items():
+            if not found.refused:
+                yield file_name(method, name), bars(ds, found)
     if running is not None:
         for name in running["output"].unique():
             figure = index_convergence(ds, name, running, subject(ds, name))

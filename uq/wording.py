@@ -134,24 +134,6 @@ def percent_interval(low: float, high: float) -> str:
     return f"{percent(low).removesuffix(' %')} to {percent(high)}"
 
 
-def index(entry: Entry, key: str, kind: str) -> str:
-    """Return a sensitivity index to three decimals.
-
-    Morris' measures have the unit of the output.
-    """
-    if entry[key] is None:
-        return "-"
-    if kind in ("mu", "sigma", "mu_star"):
-        return f"{entry[key]:.3g}"
-    return f"{round(entry[key], 3) + 0.0:.3f}"  # no minus sign before what is zero
-
-
-def index_interval(entry: Entry, kind: str) -> str:
-    """Return the ends of the interval of an index; nothing where it has none."""
-    ends = [index(entry, end, kind) for end in ("low", "high")]
-    return "" if ends == ["-", "-"] else " to ".join(ends)
-
-
 def law(stated: Any) -> str:
     """Return the law of an input as one would say it: ``normal(mean = 1.0, sd = 0.1)``."""
     given = stated.model_dump(exclude={"distribution", "source", "times"}, exclude_none=True)

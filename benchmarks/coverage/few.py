@@ -1,5 +1,7 @@
 """Few hits and failed rows: shares, indices and twins of what is rarely seen, or not at all."""
 
+from dataclasses import replace
+
 import numpy as np
 from scipy import stats
 
@@ -8,10 +10,13 @@ from benchmarks.coverage.tally import Tally
 from uq.analysis.as_json import summary_json
 from uq.analysis.summary import summarise
 from uq.analysis.twin import with_twin
-from uq.indices.few_rows import few_hits
-from uq.indices.sobol import crossed, sobol_indices
-from uq.indices.targets import RefusedError, Target
+from uq.estimate import NOTHING
+from uq.indices.few_hits import few_hits
+from uq.indices.samples import sample_of
+from uq.indices.targets import Target
 from uq.intervals import share_interval
+from uq.methods.indices import RefusedError
+from uq.methods.registry import METHODS
 
 UNIFORMS = {
     name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")
@@ -87,19 +92,20 @@ def indices(repetitions):
     }
     known = {name: truths(of) for name, (of, _) in OUTPUTS.items()}
     for ds in repeated(study, repetitions):
-        design = crossed(ds)
+        sample = sample_of(ds)
         for name, (of, is_event) in OUTPUTS.items():
             values = of(*(ds[x].values for x in UNIFORMS)).astype(float)
             try:
                 few_hits(ds, Target(name, None, values, event=is_event))
-                found = sobol_indices(design, values).values
+                found = METHODS["sobol"].indices(replace(sample, values=values)).values
             except RefusedError:
-                found = None
+                found = {}
+            by_key = {kind.key: of_inputs for kind, of_inputs in found.items()}
             for kind, of_inputs in known[name].items():
                 for x, truth in of_inputs.items():
                     if truth > 1e-6:
-                        ends = found[kind][x][1:] if found else (None, None)
-                        tallies[name].add(f"{kind} {x}", truth, *ends)
+                        one = by_key[kind][x] if found else NOTHING
+                        tallies[name].add(f"{kind} {x}", truth, one.low, one.high)
     return [line for tally in tallies.values() for line in tally.lines()]
 
 

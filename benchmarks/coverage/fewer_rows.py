@@ -68,8 +68,8 @@ def stopped(repetitions):
         for seed in range(repetitions):
             one = with_seed(study, seed)
             ds = computed(one)
-            for size in stopping.looks(one.design):
-                seen = stopping.look(one.design, ds.isel(sample=slice(None, size)))
+            for size in stopping.interim_sizes(one.design):
+                seen = stopping.interim_estimate(one.design, ds.isel(sample=slice(None, size)))
                 if seen.reached:
                     break
             tally.add(f"{what} when stopped", truth(), seen.estimate.low, seen.estimate.high)

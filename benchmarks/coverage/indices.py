@@ -14,10 +14,16 @@ from SALib.sample import morris as salib_trajectories
 from SALib.sample import sobol as salib_design
 from scipy import stats
 
-from benchmarks.coverage.problems import ISHIGAMI, ISHIGAMI_LAW, jump, repeated, study_of
+from benchmarks.coverage.problems import (
+    ISHIGAMI,
+    ISHIGAMI_LAW,
+    indices_of,
+    jump,
+    repeated,
+    study_of,
+)
 from benchmarks.coverage.tally import Tally
 from uq.designs.trajectories import LEVELS, STEP, TAIL
-from uq.indices.sensitivities import sensitivities
 
 NAMES = ("x1", "x2", "x3")
 LAWS = dict.fromkeys(NAMES, ISHIGAMI_LAW)
@@ -35,7 +41,7 @@ def sobol(repetitions):
     study = study_of("saltelli", 128, 8, "ishigami", LAWS, second_order=True)
     tally = Tally("Ishigami, saltelli, 8 replicates of 128 groups of 8 rows", REASONS)
     for ds in repeated(study, repetitions):
-        entry = sensitivities(ds)["outputs"]["y"]
+        entry = indices_of(ds)["y"]
         _indices(tally, entry, ISHIGAMI)
     return tally.lines()
 
@@ -47,8 +53,8 @@ def sobol_of_jump(repetitions):
     tally = Tally("two regimes, saltelli, 8 replicates of 128 groups of 5 rows", REASONS)
     truth = {kind: jump()[kind] for kind in ("S1", "ST")}
     for ds in repeated(study, repetitions):
-        _indices(tally, sensitivities(ds, output="jump")["outputs"]["jump"], truth)
-        event = sensitivities(ds, output="P(regime=upper)")["outputs"]["P(regime=upper)"]
+        _indices(tally, indices_of(ds, output="jump")["jump"], truth)
+        event = indices_of(ds, output="P(regime=upper)")["P(regime=upper)"]
         _indices(tally, event, jump()["event"], "regime: ", skip="x3")
     return tally.lines()
 
@@ -146,7 +152,7 @@ def morris(repetitions):
     truth = exact_effects(TAIL + (1 - 2 * TAIL) * grid, STEP)
     theirs = exact_effects(grid, LEVELS / (2 * (LEVELS - 1)))
     for seed, ds in enumerate(repeated(study, repetitions)):
-        entry = sensitivities(ds)["outputs"]["y"]
+        entry = indices_of(ds)["y"]
         for name, kinds in truth.items():
             for kind, value in kinds.items():
                 if name != "x2" or kind == "sigma":  # its steps are all as large: no interval
@@ -198,7 +204,7 @@ def nulls(method, repetitions):
         ds = ds.assign(x2=("sample", idle, ds["x2"].attrs))
         if method == "hdmr":  # which takes no jumps
             ds["jump"].values[:] = (ds["x1"] + ds["x3"] ** 2 + 0.3 * ds["x1"] * ds["x3"]).values
-        entry = sensitivities(ds, method, output)["outputs"][output]
+        entry = indices_of(ds, method, output)[output]
         kind, null = next(iter(entry["dummy"].items()))
         value = entry[kind]["x2"]["value"]
         tally.add(f"{method}: below the dummy of {kind}", value, -np.inf, null)

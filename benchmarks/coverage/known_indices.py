@@ -7,9 +7,8 @@ from scipy import stats
 from scipy.integrate import quad
 
 from benchmarks.coverage.indices import LAWS
-from benchmarks.coverage.problems import ISHIGAMI, SLOWEST, repeated, study_of
+from benchmarks.coverage.problems import ISHIGAMI, SLOWEST, indices_of, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.indices.sensitivities import sensitivities
 
 WEIGHTS = (0.0, 1.0, 4.5, 9.0, 99.0)
 """Of the g-function's first five inputs; the last three are as the fifth."""
@@ -22,7 +21,7 @@ def g_function(repetitions):
     tally = Tally("g-function, saltelli, 8 replicates of 64 groups of 10 rows", REASONS)
     truth = _of_g_function()
     for ds in repeated(study, repetitions):
-        entry = sensitivities(ds)["outputs"]["y"]
+        entry = indices_of(ds)["y"]
         for kind, values in truth.items():
             for name, value in values.items():
                 tally.entry(f"{kind} {name}", value, entry[kind][name])
@@ -47,7 +46,7 @@ def shapley(repetitions):
     tally = Tally("Ishigami, shapley, 512 paths of 4 rows", REASONS)
     truth = {name: (ISHIGAMI["S1"][name] + ISHIGAMI["ST"][name]) / 2 for name in LAWS}
     for ds in repeated(study, repetitions):
-        entry = sensitivities(ds)["outputs"]["y"]
+        entry = indices_of(ds)["y"]
         for name, value in truth.items():
             tally.entry(f"shapley {name}", value, entry["shapley"][name])
     return tally.lines()
@@ -71,7 +70,7 @@ def of_a_life(repetitions):
         "life that may never end, saltelli, 8 replicates of 128 groups of 5 rows", REASONS
     )
     for ds in repeated(study, repetitions):
-        outputs = sensitivities(ds, output=list(life_truths()))["outputs"]
+        outputs = indices_of(ds, output=list(life_truths()))
         for name, truth in life_truths().items():
             for kind, value in truth.items():
                 for rate in rates:

@@ -7,10 +7,9 @@ known. What e and x2 do together has 1/3.
 
 import numpy as np
 
-from benchmarks.coverage.problems import Inputs, Settings, repeated, study_of
+from benchmarks.coverage.problems import Inputs, Settings, indices_of, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.contract import Model, Output
-from uq.indices.sensitivities import sensitivities
 
 LAWS = dict.fromkeys(("x1", "x2"), {"distribution": "uniform", "lower": 0.0, "upper": 1.0})
 NAME = "benchmarks.coverage.noise:NOISY"
@@ -48,7 +47,7 @@ def noise(repetitions):
     study = study_of("saltelli", 128, 8, NAME, LAWS, second_order=True)
     tally = Tally("random model, saltelli, 8 replicates of 128 groups of 7 rows", {})
     for ds in repeated(study, repetitions):
-        entry = sensitivities(ds)["outputs"]["y"]
+        entry = indices_of(ds)["y"]
         for kind, values in TRUTH.items():
             for label, truth in values.items():
                 tally.entry(f"{kind} {label}", truth, entry[kind][label])
@@ -56,7 +55,7 @@ def noise(repetitions):
     study = study_of("shapley", 512, model=NAME, laws=LAWS)
     paths = Tally("random model, shapley, 512 paths of 3 rows", {})
     for ds in repeated(study, repetitions):
-        entry = sensitivities(ds)["outputs"]["y"]
+        entry = indices_of(ds)["y"]
         for name, truth in AT_ONE_SEED.items():
             paths.entry(f"shapley {name}", truth, entry["shapley"][name])
     return tally.lines() + paths.lines()

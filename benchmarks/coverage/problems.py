@@ -8,7 +8,9 @@ import numpy as np
 from scipy import stats
 from scipy.optimize import brentq
 
+from uq.cli.sensitivity import plain
 from uq.contract import Model, Output, Parameter
+from uq.indices.sensitivities import sensitivities
 from uq.literals import toml
 from uq.rows import results, sampling
 from uq.rows.evaluate import evaluate
@@ -269,6 +271,11 @@ def computed(study):
     rows = sampling.row_block(study, 0, sampling.rows(study))
     chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
     return results.build(study, rows, chunk.columns, chunk.status, {})
+
+
+def indices_of(ds, method=None, output=None):
+    """Return the sensitivity indices of each output, as ``uq sensitivity --json`` has them."""
+    return plain(sensitivities(ds, method, output))["outputs"]
 
 
 def repeated(study, repetitions):

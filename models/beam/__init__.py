@@ -2,6 +2,21 @@
 
 After J. Knudsen and A. R. Massih, "Impact work-rate and wear of a loosely supported beam subject
 to harmonic excitation", ASME IMECE 2002, and J. Sound Vib. 278 (2004) 1025.
+
+Reading order; a storey imports only those above it:
+
+    parameters    what a user sets and gets
+    structure     the rod as one oscillator per mode, and the load on it
+    exact         one propagator: from event to event, the yardstick
+    lanes         the other: many beams abreast in fixed steps, twenty times as fast
+    start         the propagator, the gaps and the state to begin with
+    response      the settled response at constant gaps
+    wear          lives of beams whose gaps grow with the impact work
+    batch         from rows of parameters to outputs
+    trajectory    one labelled time history
+    branches      periodic orbits followed over frequency, gap and wear
+    explore       labelled data for notebooks
+    paper         the published facts and ours
 """
 
 from typing import Any

@@ -1,23 +1,22 @@
 """From rows of parameters to work-rates, regimes and lifetimes."""
 
-from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam import exact, lanes
 from models.beam.parameters import Params, Rows, Settings
-from models.beam.response.neighbouring_starts import add_second_looks
-from models.beam.response.settling import NINE_IN_TEN, Response, settle
+from models.beam.response.neighbouring_starts import add_neighbour_error
+from models.beam.response.response import Response
+from models.beam.response.settling import NINE_IN_TEN, settle
 from models.beam.response.step_error import add_step_error
+from models.beam.start import PROPAGATORS, initial_gaps, initial_state
 from models.beam.structure.modal import Array, beams
+from models.beam.structure.propagation import Propagator, System
 from models.beam.structure.random_load import has_band
 from models.beam.wear.lives import Lives, find_lives
 from models.beam.wear.random_lives import find_random_lives
 from uq.contract import Status
-
-PROPAGATORS: dict[str, ModuleType] = {"fast": lanes, "exact": exact}
 
 # They scale lifetimes and nothing else (eq 12): rows that differ only here share a simulation.
 _SCALES = [Params._fields.index(name) for name in ("wear_coefficient", "contact_area")]
@@ -48,7 +47,7 @@ def batch(
     Returns
     -------
     outputs : dict of str to ndarray, shape (n, ...)
-        As `models.beam.parameters.OUTPUTS` says, with ``*_censored`` beside each lifetime.
+        Those of `models.beam.parameters.OUTPUTS`, with ``*_censored`` beside each lifetime.
     status : ndarray of int8, shape (n,)
         Non-finite, as are all outputs, where the band of a random force has no width.
     """
@@ -56,9 +55,9 @@ def batch(
     seed = np.where(p.random_force_level > 0, seed, np.uint64(0))
     # The halves of a seed are floats without rounding.
     halves = np.stack([seed >> np.uint64(32), seed & np.uint64(0xFFFFFFFF)], axis=1)
-    told = x.copy()
-    told[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load is none
-    dynamic = np.hstack([np.delete(told, _SCALES, axis=1), halves.astype(float)])
+    given = x.copy()
+    given[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load is none
+    dynamic = np.hstack([np.delete(given, _SCALES, axis=1), halves.astype(float)])
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
     some: Rows = Params._make(np.ascontiguousarray(x[first].T))
     simulated = simulate_rows(some, settings, seed[first])
@@ -97,28 +96,21 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     return whole
 
 
-def initial_gaps(p: Rows) -> Array:
-    """Return the right and the left gap when new, in initial gaps, shape (n, 2)."""
-    return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
-
-
 def _simulate_group(
-    propagator: ModuleType, system: Any, p: Rows, settings: Settings
+    propagator: Propagator, system: System, p: Rows, settings: Settings
 ) -> tuple[Response, Lives]:
-    gaps = initial_gaps(p)
-    x0 = p.initial_gap
-    state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
+    gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     begin = state.copy()
     settled = settle(propagator, system, state, gaps)
     work, error = settled.work.copy(), settled.error.copy()
     add_step_error(propagator, system, state, gaps, settled)
-    add_second_looks(propagator, system, begin, gaps, settled)
-    share = np.stack([np.ones_like(x0), p.wear_coefficient_ratio], axis=1)
-    growths = np.asarray(settings.depths) / x0[:, None]
+    add_neighbour_error(propagator, system, begin, gaps, settled)
+    share = np.stack([np.ones_like(p.initial_gap), p.wear_coefficient_ratio], axis=1)
+    growths = np.asarray(settings.depths) / p.initial_gap[:, None]
     lives = Lives.nothing(*growths.shape)
     known = np.isfinite(settled.work).all(axis=1)
     for is_random in (False, True):
-        rows = np.flatnonzero(known & (system.is_random == is_random))
+        rows = np.flatnonzero(known & (system.beams.is_random == is_random))
         if not len(rows):
             continue
         start = (propagator, system.take(rows), state[rows], gaps[rows], work[rows])

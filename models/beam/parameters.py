@@ -12,192 +12,73 @@ from typing import Annotated, Any, Literal, NamedTuple
 from uq.contract import Output, Parameter, Setting
 
 PAPER = "Knudsen & Massih 2002, Table 1"
+GIVEN, INFERRED = f"{PAPER}: given", f"{PAPER}: inferred"
 SITES = ("right", "left")
 REGIMES = ("no-impact", "period-1-symmetric", "period-1-asymmetric", "period-k", "aperiodic")
 
 
+# fmt: off
 class Params(NamedTuple):
     """Physical inputs of the beam."""
 
-    length: Annotated[
-        float, Parameter("L", "m", "length of the beam", (0.02, 20.0), f"{PAPER}: given")
-    ] = 0.64
-    flexural_rigidity: Annotated[
-        float,
-        Parameter(
-            "EI",
-            "N m2",
-            "flexural rigidity of the rod",
-            (0.4, 450.0),
-            f"{PAPER}: given, its leading digit restored",
-        ),
-    ] = 14.90
-    mass_per_length: Annotated[
-        float,
-        Parameter(
-            "rho A",
-            "kg m-1",
-            "mass per length, pellets included",
-            (0.02, 22.0),
-            "assumed: area 7.1e-5 m2 given, density 1e4 kg m-3 assumed",
-        ),
-    ] = 0.71
-    lateral_support_stiffness: Annotated[
-        float,
-        Parameter(
-            "k_tra",
-            "N m-1",
-            "lateral stiffness of the support",
-            (6e3, 6e6),
-            "fitted to the published frequencies of period-one branches; rivals 1.2e5, 2.1e5",
-        ),
-    ] = 1.84e5
-    rotational_support_stiffness: Annotated[
-        float,
-        Parameter(
-            "k_rot",
-            "N m rad-1",
-            "rotational stiffness of the support",
-            (15.0, 1.7e4),
-            f"{PAPER}: given, its exponent inferred",
-        ),
-    ] = 535.0
-    contact_stiffness: Annotated[
-        float,
-        Parameter(
-            "k_c",
-            "N m-1",
-            "stiffness of each elastic stop",
-            (1e2, 1e7),
-            f"{PAPER}: inferred, printed without its leading digit",
-        ),
-    ] = 13750.0
-    force_amplitude: Annotated[
-        float,
-        Parameter(
-            "F", "N", "amplitude of the harmonic force at the tip", (0.0, 200.0), PAPER + ": given"
-        ),
-    ] = 6.0
-    forcing_frequency: Annotated[
-        float,
-        Parameter(
-            "Omega/(2 pi)",
-            "Hz",
-            "frequency of the force",
-            (1.0, 1800.0),
-            "the paper's second case, omega = 9.900; its first, omega = 5.61, is 32.3591 Hz",
-        ),
-    ] = 57.1042
-    initial_gap: Annotated[
-        float,
-        Parameter(
-            "X0", "m", "mean gap between rod and stop when new", (8e-6, 8e-3), f"{PAPER}: inferred"
-        ),
-    ] = 2.5e-4
-    gap_asymmetry: Annotated[
-        float,
-        Parameter(
-            "a",
-            "1",
-            "right gap X0 (1 + a/2), left gap X0 (1 - a/2)",
-            (-1.9, 1.9),
-            "assumed: the paper's stops are placed symmetrically",
-        ),
-    ] = 0.0
-    mass_damping: Annotated[
-        float,
-        Parameter(
-            "c_m",
-            "s-1",
-            "mass-proportional damping",
-            (0.05, 60.0),
-            "inferred: 1 to 6 reproduce the paper alike",
-        ),
-    ] = 2.0
-    stiffness_damping: Annotated[
-        float,
-        Parameter(
-            "c_k",
-            "s",
-            "stiffness-proportional damping",
-            (4e-7, 3.6e-4),
-            "inferred: 1e-5 to 2.5e-5 reproduce the paper alike",
-        ),
-    ] = 1.2e-5
-    wear_coefficient: Annotated[
-        float,
-        Parameter(
-            "k",
-            "m2 N-1",
-            "worn volume per impact work at the right site",
-            (1e-18, 1e-10),
-            "assumed: the paper keeps k symbolic",
-        ),
-    ] = 1e-14
-    wear_coefficient_ratio: Annotated[
-        float,
-        Parameter(
-            "k_2/k_1",
-            "1",
-            "wear coefficient of the left site over that of the right",
-            (1 / 30, 30.0),
-            "assumed: both sites of one material",
-        ),
-    ] = 1.0
-    contact_area: Annotated[
-        float,
-        Parameter("S", "m2", "worn area of each site", (1e-8, 1e-2), "assumed"),
-    ] = 4e-6
-    initial_displacement: Annotated[
-        float,
-        Parameter(
-            "X_c(0)",
-            "m",
-            "tip displacement at the start, in the shape of the first mode",
-            (-0.1, 0.1),
-            "at rest, assumed",
-        ),
-    ] = 0.0
-    initial_velocity: Annotated[
-        float,
-        Parameter(
-            "dX_c/dt(0)",
-            "m s-1",
-            "tip velocity at the start, in the shape of the first mode",
-            (-10.0, 10.0),
-            "at rest, assumed",
-        ),
-    ] = 0.0
-    random_force_level: Annotated[
-        float,
-        Parameter(
-            "S_F",
-            "N2 Hz-1",
-            "one-sided spectral level of the random force at the tip",
-            (0.0, 1e3),
-            "no random force, assumed: the paper names it as the next step",
-        ),
-    ] = 0.0
-    random_force_low: Annotated[
-        float,
-        Parameter(
-            "f_low",
-            "Hz",
-            "lower end of the random force's band",
-            (0.0, 1e3),
-            "assumed: well below the first natural frequency, 5.8 Hz",
-        ),
-    ] = 2.0
-    random_force_high: Annotated[
-        float,
-        Parameter(
-            "f_high",
-            "Hz",
-            "upper end of the random force's band; it must be above the lower one",
-            (1.0, 6e3),
-            "assumed: the first four natural frequencies, up to 189 Hz, are within the band",
-        ),
-    ] = 200.0
+    length: Annotated[float, Parameter(
+        "L", "m", "length of the beam", (0.02, 20.0), GIVEN)] = 0.64
+    flexural_rigidity: Annotated[float, Parameter(
+        "EI", "N m2", "flexural rigidity of the rod", (0.4, 450.0),
+        f"{GIVEN}, its leading digit restored")] = 14.90
+    mass_per_length: Annotated[float, Parameter(
+        "rho A", "kg m-1", "mass per length, pellets included", (0.02, 22.0),
+        "assumed: area 7.1e-5 m2 given, density 1e4 kg m-3 assumed")] = 0.71
+    lateral_support_stiffness: Annotated[float, Parameter(
+        "k_tra", "N m-1", "lateral stiffness of the support", (6e3, 6e6),
+        "fitted to the published frequencies of period-one branches; rivals 1.2e5, 2.1e5")] = 1.84e5
+    rotational_support_stiffness: Annotated[float, Parameter(
+        "k_rot", "N m rad-1", "rotational stiffness of the support", (15.0, 1.7e4),
+        f"{GIVEN}, its exponent inferred")] = 535.0
+    contact_stiffness: Annotated[float, Parameter(
+        "k_c", "N m-1", "stiffness of each elastic stop", (1e2, 1e7),
+        f"{INFERRED}, printed without its leading digit")] = 13750.0
+    force_amplitude: Annotated[float, Parameter(
+        "F", "N", "amplitude of the harmonic force at the tip", (0.0, 200.0), GIVEN)] = 6.0
+    forcing_frequency: Annotated[float, Parameter(
+        "Omega/(2 pi)", "Hz", "frequency of the force", (1.0, 1800.0),
+        "the paper's second case, omega = 9.900; its first, omega = 5.61, is 32.3591 Hz")] = 57.1042
+    initial_gap: Annotated[float, Parameter(
+        "X0", "m", "mean gap between rod and stop when new", (8e-6, 8e-3), INFERRED)] = 2.5e-4
+    gap_asymmetry: Annotated[float, Parameter(
+        "a", "1", "right gap X0 (1 + a/2), left gap X0 (1 - a/2)", (-1.9, 1.9),
+        "assumed: the paper's stops are placed symmetrically")] = 0.0
+    mass_damping: Annotated[float, Parameter(
+        "c_m", "s-1", "mass-proportional damping", (0.05, 60.0),
+        "inferred: 1 to 6 reproduce the paper alike")] = 2.0
+    stiffness_damping: Annotated[float, Parameter(
+        "c_k", "s", "stiffness-proportional damping", (4e-7, 3.6e-4),
+        "inferred: 1e-5 to 2.5e-5 reproduce the paper alike")] = 1.2e-5
+    wear_coefficient: Annotated[float, Parameter(
+        "k", "m2 N-1", "worn volume per impact work at the right site", (1e-18, 1e-10),
+        "assumed: the paper keeps k symbolic")] = 1e-14
+    wear_coefficient_ratio: Annotated[float, Parameter(
+        "k_2/k_1", "1", "wear coefficient of the left site over that of the right", (1 / 30, 30.0),
+        "assumed: both sites of one material")] = 1.0
+    contact_area: Annotated[float, Parameter(
+        "S", "m2", "worn area of each site", (1e-8, 1e-2), "assumed")] = 4e-6
+    initial_displacement: Annotated[float, Parameter(
+        "X_c(0)", "m", "tip displacement at the start, in the shape of the first mode", (-0.1, 0.1),
+        "at rest, assumed")] = 0.0
+    initial_velocity: Annotated[float, Parameter(
+        "dX_c/dt(0)", "m s-1", "tip velocity at the start, in the shape of the first mode",
+        (-10.0, 10.0), "at rest, assumed")] = 0.0
+    random_force_level: Annotated[float, Parameter(
+        "S_F", "N2 Hz-1", "one-sided spectral level of the random force at the tip", (0.0, 1e3),
+        "no random force, assumed: the paper names it as the next step")] = 0.0
+    random_force_low: Annotated[float, Parameter(
+        "f_low", "Hz", "lower end of the random force's band", (0.0, 1e3),
+        "assumed: well below the first natural frequency, 5.8 Hz")] = 2.0
+    random_force_high: Annotated[float, Parameter(
+        "f_high", "Hz", "upper end of the random force's band; it must be above the lower one",
+        (1.0, 6e3),
+        "assumed: the first four natural frequencies, up to 189 Hz, are within the band")] = 200.0
+# fmt: on
 
 
 Rows = Any

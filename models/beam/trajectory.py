@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from models.beam import exact
-from models.beam.batch import PROPAGATORS, initial_gaps
 from models.beam.parameters import Params, Rows, Settings
+from models.beam.start import initial_gaps, initial_state, one_system
 from models.beam.structure.modal import beams
-from models.beam.structure.random_load import force as random_force
+from models.beam.structure.random_lines import force as random_force
 from models.beam.structure.random_load import has_band
 from uq.contract import Trajectory
 
@@ -30,17 +29,10 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     """
     p: Rows = Params._make(np.array([value], float) for value in params)
     b = beams(p, settings, np.array([seed], np.uint64))
-    propagator = PROPAGATORS[settings.propagator]
-    groups = list(propagator.groups(b, settings))
-    if not groups:  # contact too stiff, or a random force too fast, for fixed steps
-        propagator = exact
-        groups = list(exact.groups(b, settings))
-    ((_, system),) = groups
-    gaps = initial_gaps(p)
-    x0 = p.initial_gap
-    state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
+    propagator, system = one_system(b, settings)
+    gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     record = propagator.advance(system, state, gaps, np.zeros_like(gaps), PERIODS, trace=True)
-    x = np.concatenate([p.initial_displacement / x0, record.trace[0]])
+    x = np.concatenate([p.initial_displacement / p.initial_gap, record.trace[0]])
     time = np.arange(len(x)) / (params.forcing_frequency * (len(x) - 1) / PERIODS)
     contact = params.contact_stiffness * params.initial_gap
     force = params.force_amplitude * np.cos(2 * np.pi * params.forcing_frequency * time)

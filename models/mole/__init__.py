@@ -3,9 +3,17 @@
 After J.-H. Ho, V.-D. Nguyen and K.-C. Woo, "Nonlinear dynamics of a new electro-vibro-impact
 system", Nonlinear Dyn. 63 (2011) 35.
 
-Read `parameters` first, then the storeys, each of which imports those before it alone: `theory`
-(equations), `exact` (one mole, the yardstick) and `lanes` (sixteen abreast), `response` (settled
-motion), `batch` and `trajectory` (what a `Model` must offer), `explore` (for notebooks), `paper`.
+Reading order; a storey imports only those above it:
+
+    parameters    inputs, settings and outputs
+    theory        the equations
+    exact         one mole at a time: the yardstick
+    lanes         sixteen moles abreast: what studies run on
+    response      settled motion, its averages and its regime
+    batch         from rows of a study to outputs
+    trajectory    one time history
+    explore       histories, sections and diagrams for notebooks
+    paper         the paper's claims beside ours
 """
 
 from typing import Any

@@ -5,24 +5,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.mole.lanes.rows import OUT_OF_BUDGET, OUTCOME, table_of
-from models.mole.parameters import (
-    NO_IMPACT,
-    PERIODIC,
-    Params,
-    Settings,
-)
-from models.mole.response.settling import (
-    BATCHES,
-    Machines,
-    Response,
-    follow_other,
-    follow_repeating,
-    settle,
-    settle_late,
-)
-from models.mole.theory.periods import common_periods
-from models.mole.theory.system import mole
+from models.mole.lanes.rows import OUT_OF_BUDGET, OUTCOME
+from models.mole.parameters import NO_IMPACT, PERIODIC, Params, Rows, Settings
+from models.mole.response.following import follow_other, follow_repeating
+from models.mole.response.machines import Machines
+from models.mole.response.measured import BATCHES, Response
+from models.mole.response.settling import settle, settle_late
+from models.mole.response.verdict import verdicts
 from models.numerics.batch_means import mean_and_error
 from uq.contract import Status
 
@@ -46,25 +35,17 @@ def batch(
         As `models.mole.parameters.OUTPUTS` says.
     status : ndarray of int8, shape (n,)
     """
-    p: Any = Params._make(np.ascontiguousarray(x.T))
-    machines = Machines.started(
-        table_of(mole(p, settings.formulation), len(x)),
-        p.control_frequency,
-        common_periods(p.control_frequency, p.supply_frequency),
-        p.initial_displacement,
-        p.initial_velocity,
-        settings.transient + settings.duration,
-    )
+    p: Rows = Params._make(np.ascontiguousarray(x.T))
+    machines = Machines.started(p, settings, settings.transient + settings.duration)
     response = Response.nothing(len(x))
-    repeating, other = settle(machines, settings.transient, settings.tolerance)
-    duration, tolerance = settings.duration, settings.tolerance
-    unstable = follow_repeating(machines, repeating, duration, tolerance, response)
+    repeating, other = settle(machines, settings.transient)
+    unstable = follow_repeating(machines, repeating, settings.duration, response)
     other = np.concatenate([other, unstable])
-    follow_other(machines, other, duration, tolerance, response)
+    follow_other(machines, other, settings.duration, response)
     if not settings.transient:
-        late = settle_late(machines, other, tolerance, response)
-        unstable = follow_repeating(machines, late, duration, tolerance, response)
-        follow_other(machines, unstable, duration, tolerance, response)
+        late = settle_late(machines, other, response)
+        unstable = follow_repeating(machines, late, settings.duration, response)
+        follow_other(machines, unstable, settings.duration, response)
     outputs = _outputs(p, machines, response)
     lost = np.isnan(response.time)
     over = machines.record[:, OUTCOME] == OUT_OF_BUDGET
@@ -72,14 +53,16 @@ def batch(
     return outputs, status.astype(np.int8)
 
 
-def _outputs(p: Any, machines: Machines, response: Response) -> dict[str, NDArray[Any]]:
+def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArray[Any]]:
     known = np.isfinite(response.time)
     repeats = response.period > 0
     progression, progression_error = _mean(response.progress, response.time, repeats)
     impact, impact_error = _mean(response.impact, response.time, repeats)
     electrical, _ = _mean(response.electric, response.time, repeats)
     exponent, exponent_error = _mean(response.growth, response.time, repeats)
-    regime = np.where(repeats, PERIODIC, machines.verdicts(np.arange(len(repeats)), response))
+    periods = response.time * p.control_frequency
+    other = verdicts(response.growth, periods, machines.system.common == 0)
+    regime = np.where(repeats, PERIODIC, other)
     regime[(response.contacts == 0) & ~response.touching] = NO_IMPACT
     regime[~known] = -1
     force = p.contact_stiffness * np.maximum(response.high - p.stop_gap, 0.0)

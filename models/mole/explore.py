@@ -11,11 +11,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from models.mole import exact
 from models.mole.batch import batch
-from models.mole.exact import propagation as exact
-from models.mole.lanes.rows import CONTACTS, CURRENT, HIGH, PROGRESS, P, U, V, X, table_of
-from models.mole.parameters import REGIMES, Params, Settings
-from models.mole.response.settling import Machines
+from models.mole.lanes.rows import CONTACTS, CURRENT, HIGH, PROGRESS, P, U, V, X
+from models.mole.parameters import REGIMES, Params, Rows, Settings
+from models.mole.response.machines import Machines
 from models.mole.theory import equations
 from models.mole.theory.periods import common_periods
 from models.mole.theory.system import mole
@@ -214,30 +214,22 @@ def _check_counts(dropped: int = 0, **positive: int) -> None:
             raise ValueError(f"{name} must be positive: {count!r}")
 
 
-def _rows(params: Params, n: int, **varied: Array) -> Any:
+def _rows(params: Params, n: int, **varied: Array) -> Rows:
     """Return the parameters of n moles, each field of shape (n,)."""
     values: dict[str, Any] = params._asdict() | varied
     return Params._make(np.broadcast_to(x, n).astype(float) for x in values.values())
 
 
 def _strobed(
-    dim: str, p: Any, settings: Settings, dropped: int, points: int, stride: int
+    dim: str, p: Rows, settings: Settings, dropped: int, points: int, stride: int
 ) -> xr.Dataset:
     """Look at n moles every `stride` control periods."""
     n = len(p.control_frequency)
-    machines = Machines.started(
-        table_of(mole(p, settings.formulation), n),
-        p.control_frequency,
-        common_periods(p.control_frequency, p.supply_frequency),
-        p.initial_displacement,
-        p.initial_velocity,
-        dropped + points * stride,
-    )
+    machines = Machines.started(p, settings, dropped + points * stride)
     rows = np.arange(n)
 
     def run_to(period: int) -> NDArray[np.int64]:
-        limit, plain = np.full(len(rows), period), np.empty((len(rows), 0))
-        return rows[machines.run(rows, limit, settings.tolerance, False, plain)]
+        return rows[machines.run(rows, np.full(len(rows), period))]
 
     if dropped:
         rows = run_to(dropped)

@@ -70,6 +70,10 @@ class Params(NamedTuple):
 # fmt: on
 
 
+Rows = Any
+"""`Params` of n moles, each field an ndarray of shape (n,)."""
+
+
 @dataclass(frozen=True)
 class Settings:
     """Numerical choices of the mole."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from models.mole.exact import propagation as exact
+from models.mole import exact
 from models.mole.parameters import AS_PRINTED, PHYSICAL, Params, Settings
 from models.mole.theory.system import Mole, mole
 from uq.contract import Trajectory

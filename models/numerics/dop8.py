@@ -8,40 +8,40 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from scipy.integrate._ivp import dop853_coefficients as tableau
-
 from models.numerics.blocks import LANES
 from models.numerics.fma import fma
 from models.numerics.jit import lean
+from models.numerics.tableaux import DORMAND_PRINCE_8, ERROR_3, ERROR_5
 from models.numerics.tsit5 import Layout
 
 STAGES = 12
 
 
-def _row(values, *places):
-    """Return the coefficients at some places, as numbers that the compiler knows."""
-    return tuple(float(values[i]) for i in places)
+def _at(values, *places):
+    """Return the coefficients at some places; the others are zero."""
+    return tuple(values[i] for i in places)
 
 
+_A = DORMAND_PRINCE_8.a
 _LATE = (0, 5, 6, 7, 8, 9, 10, 11)
-(_A2,) = _row(tableau.A[1], 0)
-_A3_1, _A3_2 = _row(tableau.A[2], 0, 1)
-_A4_1, _A4_3 = _row(tableau.A[3], 0, 2)
-_A5_1, _A5_3, _A5_4 = _row(tableau.A[4], 0, 2, 3)
-_A6_1, _A6_4, _A6_5 = _row(tableau.A[5], 0, 3, 4)
-_A7_1, _A7_4, _A7_5, _A7_6 = _row(tableau.A[6], 0, 3, 4, 5)
-_A8_1, _A8_4, _A8_5, _A8_6, _A8_7 = _row(tableau.A[7], 0, 3, 4, 5, 6)
-_A9_1, _A9_4, _A9_5, _A9_6, _A9_7, _A9_8 = _row(tableau.A[8], 0, 3, 4, 5, 6, 7)
-_A10_1, _A10_4, _A10_5, _A10_6, _A10_7, _A10_8, _A10_9 = _row(tableau.A[9], 0, 3, 4, 5, 6, 7, 8)
-_A11_1, _A11_4, _A11_5, _A11_6 = _row(tableau.A[10], 0, 3, 4, 5)
-_A11_7, _A11_8, _A11_9, _A11_10 = _row(tableau.A[10], 6, 7, 8, 9)
-_A12_1, _A12_4, _A12_5, _A12_6 = _row(tableau.A[11], 0, 3, 4, 5)
-_A12_7, _A12_8, _A12_9, _A12_10, _A12_11 = _row(tableau.A[11], 6, 7, 8, 9, 10)
-_B1, _B6, _B7, _B8, _B9, _B10, _B11, _B12 = _row(tableau.B, *_LATE)
-_T1, _T6, _T7, _T8, _T9, _T10, _T11, _T12 = _row(tableau.E3, *_LATE)
-_F1, _F6, _F7, _F8, _F9, _F10, _F11, _F12 = _row(tableau.E5, *_LATE)
+(_A2,) = _at(_A[1], 0)
+_A3_1, _A3_2 = _at(_A[2], 0, 1)
+_A4_1, _A4_3 = _at(_A[3], 0, 2)
+_A5_1, _A5_3, _A5_4 = _at(_A[4], 0, 2, 3)
+_A6_1, _A6_4, _A6_5 = _at(_A[5], 0, 3, 4)
+_A7_1, _A7_4, _A7_5, _A7_6 = _at(_A[6], 0, 3, 4, 5)
+_A8_1, _A8_4, _A8_5, _A8_6, _A8_7 = _at(_A[7], 0, 3, 4, 5, 6)
+_A9_1, _A9_4, _A9_5, _A9_6, _A9_7, _A9_8 = _at(_A[8], 0, 3, 4, 5, 6, 7)
+_A10_1, _A10_4, _A10_5, _A10_6, _A10_7, _A10_8, _A10_9 = _at(_A[9], 0, 3, 4, 5, 6, 7, 8)
+_A11_1, _A11_4, _A11_5, _A11_6 = _at(_A[10], 0, 3, 4, 5)
+_A11_7, _A11_8, _A11_9, _A11_10 = _at(_A[10], 6, 7, 8, 9)
+_A12_1, _A12_4, _A12_5, _A12_6 = _at(_A[11], 0, 3, 4, 5)
+_A12_7, _A12_8, _A12_9, _A12_10, _A12_11 = _at(_A[11], 6, 7, 8, 9, 10)
+_B1, _B6, _B7, _B8, _B9, _B10, _B11, _B12 = _at(DORMAND_PRINCE_8.b, *_LATE)
+_T1, _T6, _T7, _T8, _T9, _T10, _T11, _T12 = _at(ERROR_3, *_LATE)
+_F1, _F6, _F7, _F8, _F9, _F10, _F11, _F12 = _at(ERROR_5, *_LATE)
 
-WEIGHTS = tuple(float(b) for b in tableau.B)
+WEIGHTS = DORMAND_PRINCE_8.b
 """Of the stages in the new state."""
 
 

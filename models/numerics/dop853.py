@@ -8,8 +8,8 @@ output, and hands back to the machine, which changes the mode and goes on.
 What is compiled here caches on disk only as part of a kernel that calls it and is itself defined
 at the level of a module: call it from one, never from Python.
 
-Coefficients, error estimate and step control are those of E. Hairer, S. P. Norsett, G. Wanner,
-"Solving Ordinary Differential Equations I", Sec. II.5 and II.10, as in scipy's ``DOP853``.
+The step control is that of E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential
+Equations I", Sec. II.4, as in scipy's ``DOP853``; see `models.numerics.dop853_step`.
 """
 
 import math
@@ -17,17 +17,13 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate._ivp import dop853_coefficients as tableau
 
-from models.numerics.fma import fma
+from models.numerics.dop853_step import ALL_STAGES, POWER, STAGES, interpolate, stepper
 from models.numerics.jit import kernel
 
 REACHED_END, GUARDED, OUT_OF_BUDGET, STUCK = 0, 1, 2, 3
 """Why an integration stopped. Stuck: the error asks for steps below the resolution of time."""
 
-_A, _B, _C = tableau.A, tableau.B, tableau.C
-_E3, _E5, _D = tableau.E3, tableau.E5, tableau.D
-_STAGES, _ALL_STAGES, _POWER = 12, 16, 7
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 10.0
 _RESOLUTION = 4e-16  # of an event, relative to the time since the step began
 _HALVINGS = 60
@@ -104,88 +100,7 @@ def integrator(
         not before t, as far as the integration gets; a state at a mode's end is the one before
         the change.
     """
-
-    @kernel
-    def guess(t, end, y, p, relative, absolute, k, trial):
-        """Return a first step (Sec. II.4); k[0] holds the derivative at t."""
-        d0 = d1 = d2 = 0.0
-        for i in range(len(y)):
-            scale = absolute[i] + relative * abs(y[i])
-            d0 += (y[i] / scale) ** 2
-            d1 += (k[0, i] / scale) ** 2
-        d0, d1 = math.sqrt(d0 / len(y)), math.sqrt(d1 / len(y))
-        h = 1e-6 if min(d0, d1) < 1e-5 else 0.01 * d0 / d1
-        h = min(h, end - t)
-        for i in range(len(y)):
-            trial[i] = y[i] + h * k[0, i]
-        rhs(t + h, trial, p, k[1])
-        for i in range(len(y)):
-            scale = absolute[i] + relative * abs(y[i])
-            d2 += ((k[1, i] - k[0, i]) / scale) ** 2
-        d2 = math.sqrt(d2 / len(y)) / h
-        steepest = max(d1, d2)
-        second = max(1e-6, 1e-3 * h) if steepest <= 1e-15 else (0.01 / steepest) ** 0.125
-        return min(100 * h, second)
-
-    @kernel
-    def stages(first, last, t, h, y, p, k, trial):
-        """Evaluate the stages first <= s < last."""
-        for s in range(first, last):
-            for i in range(len(y)):
-                trial[i] = 0.0
-            for j in range(s):
-                a = _A[s, j]
-                if a != 0.0:
-                    for i in range(len(y)):
-                        trial[i] = fma(a, k[j, i], trial[i])
-            for i in range(len(y)):
-                trial[i] = fma(h, trial[i], y[i])
-            rhs(t + _C[s] * h, trial, p, k[s])
-
-    @kernel
-    def attempt(t, h, y, p, relative, absolute, k, new):
-        """Try a step: set `new`, and return its error in units of the one allowed."""
-        stages(1, _STAGES, t, h, y, p, k, new)
-        e3 = e5 = 0.0
-        for i in range(len(y)):
-            rise = third = fifth = 0.0
-            for j in range(_STAGES):
-                rise = fma(_B[j], k[j, i], rise)
-                third = fma(_E3[j], k[j, i], third)
-                fifth = fma(_E5[j], k[j, i], fifth)
-            new[i] = fma(h, rise, y[i])
-            scale = fma(relative, max(abs(y[i]), abs(new[i])), absolute[i])
-            e3 += (third / scale) ** 2
-            e5 += (fifth / scale) ** 2
-        return 0.0 if e5 == 0 else h * e5 / math.sqrt(fma(0.01, e3, e5) * len(y))
-
-    @kernel
-    def densify(t, h, y, p, k, new, dense, trial):
-        """Set dense (7, n), the coefficients of the dense output over an accepted step."""
-        stages(_STAGES + 1, _ALL_STAGES, t, h, y, p, k, trial)
-        for i in range(len(y)):
-            rise = new[i] - y[i]
-            dense[0, i] = rise
-            dense[1, i] = fma(h, k[0, i], -rise)
-            dense[2, i] = fma(2.0, rise, -h * (k[_STAGES, i] + k[0, i]))
-            for q in range(3, _POWER):
-                total = 0.0
-                for j in range(_ALL_STAGES):
-                    total = fma(_D[q - 3, j], k[j, i], total)
-                dense[q, i] = h * total
-
-    @kernel
-    def interpolate(theta, y, dense, out):
-        """Set out to the state at the fraction theta of a step."""
-        rest = 1 - theta
-        for i in range(len(y)):
-            value = fma(dense[6, i], theta, dense[5, i])
-            value = fma(value, rest, dense[4, i])
-            value = fma(value, theta, dense[3, i])
-            value = fma(value, rest, dense[2, i])
-            value = fma(value, theta, dense[1, i])
-            value = fma(value, rest, dense[0, i])
-            out[i] = fma(value, theta, y[i])
+    guess, attempt, densify = stepper(rhs)
 
     @kernel
     def leaving(which, low, high, f_low, f_high, t, h, y, p, dense, trial, guard):
@@ -231,8 +146,8 @@ def integrator(
 
     @kernel
     def integrate(t, end, y, step, p, relative, absolute, budget, times, samples):
-        k = np.empty((_ALL_STAGES, len(y)))
-        dense = np.empty((_POWER, len(y)))
+        k = np.empty((ALL_STAGES, len(y)))
+        dense = np.empty((POWER, len(y)))
         new, trial = np.empty((2, len(y)))
         before, after, guard = np.empty((3, max(guard_count, 1)))
         sampled = steps = 0
@@ -269,7 +184,7 @@ def integrator(
             held = False
             # A step cut short by the end says little of the next one.
             step = max(step, h * factor) if last else h * factor
-            rhs(t + h, new, p, k[_STAGES])
+            rhs(t + h, new, p, k[STAGES])
 
             dense_wanted = guard_count > 0 and looks > 1
             if not dense_wanted:
@@ -311,7 +226,7 @@ def integrator(
                 break
             t = reached
             y[:] = new
-            k[0] = k[_STAGES]
+            k[0] = k[STAGES]
         if status == OUT_OF_BUDGET and t >= end:
             status = REACHED_END
         return Outcome(status, t, which, step, steps, sampled)

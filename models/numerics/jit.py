@@ -1,31 +1,24 @@
 """How kernels are compiled: cached on disk by source, without the GIL, vectorised to full width.
 
-numba keys its cache on the file of the function alone, so an edit to a file that a kernel calls
-into would leave stale code. Here the cache folder is named by a hash of every source file under
-``models`` and, for a kernel defined elsewhere, of its own package: any edit takes effect at once,
-and an unedited package never compiles twice.
+Compiled code is kept by `models.numerics.cache`: an edit takes effect at once, and an unedited
+machine never compiles twice.
 
 What is compiled gives bits that are a function of source and inputs: they depend neither on what
 was compiled before, nor on the width of the vectors, nor on who calls.
 """
 
-import hashlib
 import inspect
 import itertools
 import os
 import secrets
 import sys
-import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from shutil import rmtree
-from tempfile import gettempdir
 from typing import Any, Literal, TypeVar
 
-from platformdirs import user_cache_path
-
-_KEEP_SECONDS = 30 * 86400
+from models.numerics.cache import folder_of
 
 
 def _ask_for_full_width_vectors() -> None:
@@ -66,67 +59,14 @@ def _name_functions_apart() -> None:
 _name_functions_apart()
 
 
-_MODELS = Path(__file__).resolve().parent.parent
-
-
-def _source_hash(roots: Iterable[Path]) -> str:
-    """Return a hash of some source files, and of all that lie in some folders."""
-    digest = hashlib.sha256()
-    for root in roots:
-        for path in sorted(root.rglob("*.py")) if root.is_dir() else [root]:
-            digest.update(os.fsencode(path.relative_to(root.parent)))
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
-
-
-def _cache_folder(*roots: Path) -> Path:
-    """Return the cache folder of some sources, made if need be; remove those of old sources."""
-    base = user_cache_path("vibrolife", appauthor=False) / "numba"
-    try:
-        folder = base / _source_hash(roots)
-        folder.mkdir(parents=True, exist_ok=True)
-        os.utime(folder)
-    except OSError:
-        base = Path(gettempdir()) / f"vibrolife-numba-{os.getuid()}"
-        folder = base / _source_hash(roots)
-        folder.mkdir(parents=True, exist_ok=True)
-    oldest = time.time() - _KEEP_SECONDS
-    for other in base.iterdir():
-        with suppress(FileNotFoundError):  # another process may be removing it too
-            if other.stat().st_mtime < oldest:
-                rmtree(other, ignore_errors=True)
-    return folder
-
-
-CACHE_FOLDER = _cache_folder(_MODELS)
-
-
-def _folder_of(function: Callable[..., Any]) -> Path:
-    """Return the cache folder of a function, wherever it is defined."""
-    file = Path(inspect.getfile(function)).resolve()
-    if file.is_relative_to(_MODELS) or not file.is_file():
-        return CACHE_FOLDER
-    return _cache_folder(_MODELS, *_importable_sources(file))
-
-
-def _importable_sources(file: Path) -> list[Path]:
-    """Return the package of a source file; if it has none, what it can import beside it."""
-    package, folder = file, file.parent
-    while (folder / "__init__.py").is_file():
-        package, folder = folder, folder.parent
-    if package != file or folder.name in ("site-packages", "dist-packages"):
-        return [package]
-    return sorted({*folder.glob("*.py"), *(one.parent for one in folder.glob("*/__init__.py"))})
-
-
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 @contextmanager
-def _our_cache_folder(function: Callable[..., Any]) -> Iterator[None]:
+def _cache_folder(folder: Path) -> Iterator[None]:
     """Point numba at our folder while a function is decorated, and leave the user's be."""
     config: Any = numba.config
-    before, config.CACHE_DIR = config.CACHE_DIR, str(_folder_of(function))
+    before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
     try:
         yield
     finally:
@@ -159,13 +99,8 @@ def inlined(function: Function) -> Function:
 
 
 def _compiled(function: Function, inline: Literal["never", "always"], **more: bool) -> Function:
-    njit: Any = numba.njit
-    with _our_cache_folder(function):
-        compiled: Any = njit(
-            cache=True,
-            nogil=True,
-            error_model="numpy",
-            inline=inline,
-            **more,
-        )(function)
-    return compiled
+    decorate: Any = partial(numba.njit, nogil=True, error_model="numpy", inline=inline, **more)
+    if not Path(inspect.getfile(function)).is_file():  # typed in, so that nothing shows an edit
+        return decorate()(function)
+    with _cache_folder(folder_of(function)):
+        return decorate(cache=True)(function)

@@ -11,17 +11,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
-from scipy.integrate._ivp import dop853_coefficients
 
-from models.numerics import tsit5
 from models.numerics.blocks import LANES
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
-
-ORDER_5 = tsit5.TABLEAU
-ORDER_8 = dop853_coefficients.A[:12, :12], dop853_coefficients.B
-"""Methods of Tsitouras, and of Dormand and Prince: coefficients and weights."""
+from models.numerics.tableaux import Tableau
 
 STAGES = 12  # at most
 _ZERO = 1e-15  # what rounding leaves of products of coefficients
@@ -121,7 +115,7 @@ def _combiner(
 
 
 def stepper(
-    quantities: int, slopes: int, a: ArrayLike, b: ArrayLike, accelerate: Callable[[Any], None]
+    quantities: int, slopes: int, method: Tableau, accelerate: Callable[[Any], None]
 ) -> Callable[[Any], None]:
     """Compile the steps of one method for one system.
 
@@ -131,10 +125,8 @@ def stepper(
         In a position.
     slopes : int
         Where in the block there is room for the slopes of all stages.
-    a : array_like, shape (s, s)
-        Coefficients of an explicit method of s <= 12 stages.
-    b : array_like, shape (s,)
-        Its weights.
+    method : Tableau
+        Of s <= 12 stages.
     accelerate : kernel
         ``accelerate(block)`` sets the accelerations, times the step, at `Layout.rise`.
 
@@ -146,8 +138,9 @@ def stepper(
     """
     at, whole = layout(quantities), 2 * quantities * LANES
     position, arguments = at.position, at.at
-    rows = np.vstack([np.asarray(a), np.asarray(b)])
-    squares = rows @ np.asarray(a)
+    a = method.matrix()
+    rows = np.vstack([a, method.b])
+    squares = rows @ a
     stages = len(rows) - 1
     combiners = [
         _combiner(

@@ -2,6 +2,10 @@
 
 After J. Michalczyk and G. Cieplok, "Disturbances in self-synchronisation of vibrators in vibratory
 machines", Arch. Min. Sci. 59 (2014).
+
+Read `parameters`, then `batch`, from rows to outputs. Below it, from the ground up: `theory` of
+synchronous running, `equations` of motion, the propagators `lanes` and `exact`, and `start` from
+standstill. `trajectory` is one labelled run; `paper` reproduces the paper.
 """
 
 from typing import Any

@@ -16,318 +16,117 @@ from typing import Annotated, Any, Literal, NamedTuple
 from uq.contract import Output, Parameter, Setting
 
 PAPER = "Michalczyk & Cieplok 2014"
+GIVEN, INFERRED = f"{PAPER}: given", f"{PAPER}: inferred"
+SYMBOLIC, HANGING = "assumed: the paper keeps it symbolic", "assumed: hanging down"
+BOLTED, IN_BODY = (
+    "assumed: bolted to the body; the paper keeps it symbolic",
+    "assumed: part of the body",
+)
+BEARING = "assumed: friction coefficient times half the bore, 0 to 3e-4 likely"
 REGIMES = ("locked-0", "locked-pi", "asynchronous", "captured", "one-stalled")
 
 
+# fmt: off
 class Params(NamedTuple):
     """Physical inputs of the vibrator."""
 
-    body_mass: Annotated[
-        float,
-        Parameter(
-            "M_k", "kg", "mass of the body without motor set", (60.0, 6e4), f"{PAPER}: given"
-        ),
-    ] = 2000.0
-    body_inertia: Annotated[
-        float,
-        Parameter(
-            "J_Ck",
-            "kg m2",
-            "moment of inertia of the body about its mass centre C",
-            (80.0, 8.1e4),
-            f"{PAPER}: inferred, printed 667, which cannot give the published angles",
-        ),
-    ] = 2667.0
-    unbalance_1: Annotated[
-        float,
-        Parameter(
-            "m e_1", "kg m", "static unbalance of vibrator 1", (0.1, 150.0), PAPER + ": given"
-        ),
-    ] = 5.0
-    unbalance_2: Annotated[
-        float,
-        Parameter(
-            "m e_2", "kg m", "static unbalance of vibrator 2", (0.1, 150.0), PAPER + ": given"
-        ),
-    ] = 5.0
-    unbalanced_mass: Annotated[
-        float,
-        Parameter(
-            "m",
-            "kg",
-            "unbalanced mass of each vibrator",
-            (3.0, 3000.0),
-            "assumed: 50 to 200 likely",
-        ),
-    ] = 100.0
-    rotor_inertia: Annotated[
-        float,
-        Parameter(
-            "J_zr",
-            "kg m2",
-            "moment of inertia of each rotor about its own mass centre",
-            (0.015, 15.0),
-            f"{PAPER}: given",
-        ),
-    ] = 0.5
-    support_half_spacing: Annotated[
-        float,
-        Parameter(
-            "l", "m", "half the distance between the supports", (0.03, 30.0), PAPER + ": given"
-        ),
-    ] = 1.0
-    working_angle: Annotated[
-        float,
-        Parameter("beta", "rad", "angle from x to the working axis", (-pi, pi), f"{PAPER}: given"),
-    ] = pi / 6
-    shaft_half_angle: Annotated[
-        float,
-        Parameter(
-            "gamma",
-            "rad",
-            "half the angle between the shafts seen from C",
-            (0.0, pi),
-            f"{PAPER}: given, 14 degrees",
-        ),
-    ] = 14 * pi / 180
-    shaft_distance: Annotated[
-        float,
-        Parameter("D", "m", "distance from C to each shaft", (0.02, 24.0), f"{PAPER}: given"),
-    ] = 0.8
-    axis_offset: Annotated[
-        float,
-        Parameter(
-            "w_C",
-            "m",
-            "distance of the midpoint of the shafts from xi, along eta",
-            (-24.0, 24.0),
-            f"{PAPER}: given, its symmetric case",
-        ),
-    ] = 0.0
-    rated_torque_1: Annotated[
-        float,
-        Parameter(
-            "M_zn1",
-            "N m",
-            "rated torque of motor 1",
-            (8.0, 7200.0),
-            f"{PAPER}: inferred, printed 40",
-        ),
-    ] = 240.0
-    rated_torque_2: Annotated[
-        float,
-        Parameter(
-            "M_zn2",
-            "N m",
-            "rated torque of motor 2",
-            (8.0, 7200.0),
-            f"{PAPER}: inferred, printed 40",
-        ),
-    ] = 240.0
-    overload_capacity: Annotated[
-        float,
-        Parameter("p", "1", "breakdown torque over rated torque", (0.08, 75.0), f"{PAPER}: given"),
-    ] = 2.5
-    synchronous_speed_1: Annotated[
-        float,
-        Parameter(
-            "omega_s1",
-            "rad s-1",
-            "synchronous speed of motor 1",
-            (5.0, 4710.0),
-            f"{PAPER}: inferred",
-        ),
-    ] = 157.0
-    synchronous_speed_2: Annotated[
-        float,
-        Parameter(
-            "omega_s2",
-            "rad s-1",
-            "synchronous speed of motor 2",
-            (5.0, 4710.0),
-            f"{PAPER}: inferred",
-        ),
-    ] = 157.0
-    breakdown_speed_1: Annotated[
-        float,
-        Parameter(
-            "omega_u1",
-            "rad s-1",
-            "speed of motor 1 at its breakdown torque",
-            (4.0, 3780.0),
-            f"{PAPER}: inferred",
-        ),
-    ] = 126.0
-    breakdown_speed_2: Annotated[
-        float,
-        Parameter(
-            "omega_u2",
-            "rad s-1",
-            "speed of motor 2 at its breakdown torque",
-            (4.0, 3780.0),
-            f"{PAPER}: inferred",
-        ),
-    ] = 126.0
-    bearing_constant_1: Annotated[
-        float,
-        Parameter(
-            "rho_1",
-            "m",
-            "bearing torque of vibrator 1 over its centrifugal force",
-            (0.0, 3e-3),
-            "assumed: friction coefficient times half the bore, 0 to 3e-4 likely",
-        ),
-    ] = 1e-4
-    bearing_constant_2: Annotated[
-        float,
-        Parameter(
-            "rho_2",
-            "m",
-            "bearing torque of vibrator 2 over its centrifugal force",
-            (0.0, 3e-3),
-            "assumed: friction coefficient times half the bore, 0 to 3e-4 likely",
-        ),
-    ] = 1e-4
-    stiffness_x: Annotated[
-        float,
-        Parameter(
-            "k_x",
-            "N m-1",
-            "horizontal stiffness of all supports",
-            (2e4, 6.3e7),
-            f"{PAPER}: inferred; 2.07e6 in its symmetric case",
-        ),
-    ] = 6.21e5
-    stiffness_y: Annotated[
-        float,
-        Parameter(
-            "k_y",
-            "N m-1",
-            "vertical stiffness of all supports",
-            (6.9e4, 6.3e7),
-            f"{PAPER}: inferred",
-        ),
-    ] = 2.07e6
-    damping_ratio: Annotated[
-        float,
-        Parameter(
-            "xi",
-            "1",
-            "damping of the supports, b = 2 xi sqrt((M_k + 2m) k)",
-            (0.0, 1.0),
-            f"{PAPER}: given, 0.01 on steel springs, 0.07 on rubber",
-        ),
-    ] = 0.01
-    support_offset: Annotated[
-        float,
-        Parameter(
-            "h",
-            "m",
-            "depth of the supports below C",
-            (-12.0, 12.0),
-            f"{PAPER}: inferred; 0 in its symmetric case",
-        ),
-    ] = -0.4
-    mount_stiffness: Annotated[
-        float,
-        Parameter(
-            "k_psi",
-            "N m-1",
-            "stiffness between motor set and body along the mount's direction",
-            (1e4, inf),
-            "assumed: bolted to the body; the paper keeps it symbolic",
-        ),
-    ] = inf
-    mount_angle: Annotated[
-        float,
-        Parameter(
-            "psi",
-            "rad",
-            "angle from xi to the mount's direction",
-            (-pi, pi),
-            "assumed: the paper keeps it symbolic",
-        ),
-    ] = 0.0
-    mount_mass: Annotated[
-        float,
-        Parameter(
-            "m_0",
-            "kg",
-            "mass of the motor set without unbalanced masses, at the midpoint of the shafts",
-            (0.0, 6e3),
-            "assumed: part of the body",
-        ),
-    ] = 0.0
-    mount_damping_ratio: Annotated[
-        float,
-        Parameter(
-            "zeta",
-            "1",
-            "damping of the mounts, with the whole set as the mass in 2 zeta sqrt(mass stiffness)",
-            (0.0, 1.0),
-            "assumed: none",
-        ),
-    ] = 0.0
-    mount_rotational_stiffness: Annotated[
-        float,
-        Parameter(
-            "k_o",
-            "N m rad-1",
-            "stiffness against rotation of the motor set about the midpoint of the shafts",
-            (1e3, inf),
-            "assumed: bolted to the body; the paper keeps it symbolic",
-        ),
-    ] = inf
-    mount_inertia: Annotated[
-        float,
-        Parameter(
-            "J_0",
-            "kg m2",
-            "moment of inertia of the motor set without unbalanced masses about that midpoint",
-            (0.0, 6e3),
-            "assumed: part of the body",
-        ),
-    ] = 0.0
-    feed_mass: Annotated[
-        float,
-        Parameter("m_n", "kg", "mass of the feed thrown by the deck", (0.0, 6e3), "assumed: empty"),
-    ] = 0.0
-    throw_coefficient: Annotated[
-        float,
-        Parameter(
-            "k_p",
-            "1",
-            "vertical acceleration amplitude of the deck over gravity, which it sets",
-            (0.05, 60.0),
-            f"assumed: within single-stroke motion, as studied in {PAPER}",
-        ),
-    ] = 2.0
-    feed_position: Annotated[
-        float,
-        Parameter(
-            "x_n", "m", "position of the feed from C along x", (-30.0, 30.0), "assumed: at C"
-        ),
-    ] = 0.0
-    initial_phase_1: Annotated[
-        float,
-        Parameter(
-            "psi_1(0)",
-            "rad",
-            "phase of vibrator 1 at the start, from hanging down",
-            (-pi, pi),
-            "assumed: hanging down",
-        ),
-    ] = 0.0
-    initial_phase_2: Annotated[
-        float,
-        Parameter(
-            "psi_2(0)",
-            "rad",
-            "phase of vibrator 2 at the start, from hanging down",
-            (-pi, pi),
-            "assumed: hanging down",
-        ),
-    ] = 0.0
+    body_mass: Annotated[float, Parameter(
+        "M_k", "kg", "mass of the body without motor set", (60.0, 6e4), GIVEN)] = 2000.0
+    body_inertia: Annotated[float, Parameter(
+        "J_Ck", "kg m2", "moment of inertia of the body about its mass centre C", (80.0, 8.1e4),
+        f"{INFERRED}, printed 667, which cannot give the published angles")] = 2667.0
+    unbalance_1: Annotated[float, Parameter(
+        "m e_1", "kg m", "static unbalance of vibrator 1", (0.1, 150.0), GIVEN)] = 5.0
+    unbalance_2: Annotated[float, Parameter(
+        "m e_2", "kg m", "static unbalance of vibrator 2", (0.1, 150.0), GIVEN)] = 5.0
+    unbalanced_mass: Annotated[float, Parameter(
+        "m", "kg", "unbalanced mass of each vibrator", (3.0, 3000.0),
+        "assumed: 50 to 200 likely")] = 100.0
+    rotor_inertia: Annotated[float, Parameter(
+        "J_zr", "kg m2", "moment of inertia of each rotor about its own mass centre", (0.015, 15.0),
+        GIVEN)] = 0.5
+    support_half_spacing: Annotated[float, Parameter(
+        "l", "m", "half the distance between the supports", (0.03, 30.0), GIVEN)] = 1.0
+    working_angle: Annotated[float, Parameter(
+        "beta", "rad", "angle from x to the working axis", (-pi, pi), GIVEN)] = pi / 6
+    shaft_half_angle: Annotated[float, Parameter(
+        "gamma", "rad", "half the angle between the shafts seen from C", (0.0, pi),
+        f"{GIVEN}, 14 degrees")] = 14 * pi / 180
+    shaft_distance: Annotated[float, Parameter(
+        "D", "m", "distance from C to each shaft", (0.02, 24.0), GIVEN)] = 0.8
+    axis_offset: Annotated[float, Parameter(
+        "w_C", "m", "distance of the midpoint of the shafts from xi, along eta", (-24.0, 24.0),
+        f"{GIVEN}, its symmetric case")] = 0.0
+    rated_torque_1: Annotated[float, Parameter(
+        "M_zn1", "N m", "rated torque of motor 1", (8.0, 7200.0),
+        f"{INFERRED}, printed 40")] = 240.0
+    rated_torque_2: Annotated[float, Parameter(
+        "M_zn2", "N m", "rated torque of motor 2", (8.0, 7200.0),
+        f"{INFERRED}, printed 40")] = 240.0
+    overload_capacity: Annotated[float, Parameter(
+        "p", "1", "breakdown torque over rated torque", (0.08, 75.0), GIVEN)] = 2.5
+    synchronous_speed_1: Annotated[float, Parameter(
+        "omega_s1", "rad s-1", "synchronous speed of motor 1", (5.0, 4710.0), INFERRED)] = 157.0
+    synchronous_speed_2: Annotated[float, Parameter(
+        "omega_s2", "rad s-1", "synchronous speed of motor 2", (5.0, 4710.0), INFERRED)] = 157.0
+    breakdown_speed_1: Annotated[float, Parameter(
+        "omega_u1", "rad s-1", "speed of motor 1 at its breakdown torque", (4.0, 3780.0),
+        INFERRED)] = 126.0
+    breakdown_speed_2: Annotated[float, Parameter(
+        "omega_u2", "rad s-1", "speed of motor 2 at its breakdown torque", (4.0, 3780.0),
+        INFERRED)] = 126.0
+    bearing_constant_1: Annotated[float, Parameter(
+        "rho_1", "m", "bearing torque of vibrator 1 over its centrifugal force", (0.0, 3e-3),
+        BEARING)] = 1e-4
+    bearing_constant_2: Annotated[float, Parameter(
+        "rho_2", "m", "bearing torque of vibrator 2 over its centrifugal force", (0.0, 3e-3),
+        BEARING)] = 1e-4
+    stiffness_x: Annotated[float, Parameter(
+        "k_x", "N m-1", "horizontal stiffness of all supports", (2e4, 6.3e7),
+        f"{INFERRED}; 2.07e6 in its symmetric case")] = 6.21e5
+    stiffness_y: Annotated[float, Parameter(
+        "k_y", "N m-1", "vertical stiffness of all supports", (6.9e4, 6.3e7), INFERRED)] = 2.07e6
+    damping_ratio: Annotated[float, Parameter(
+        "xi", "1", "damping of the supports, b = 2 xi sqrt((M_k + 2m) k)", (0.0, 1.0),
+        f"{GIVEN}, 0.01 on steel springs, 0.07 on rubber")] = 0.01
+    support_offset: Annotated[float, Parameter(
+        "h", "m", "depth of the supports below C", (-12.0, 12.0),
+        f"{INFERRED}; 0 in its symmetric case")] = -0.4
+    mount_stiffness: Annotated[float, Parameter(
+        "k_psi", "N m-1", "stiffness between motor set and body along the mount's direction",
+        (1e4, inf), BOLTED)] = inf
+    mount_angle: Annotated[float, Parameter(
+        "psi", "rad", "angle from xi to the mount's direction", (-pi, pi), SYMBOLIC)] = 0.0
+    mount_mass: Annotated[float, Parameter(
+        "m_0", "kg",
+        "mass of the motor set without unbalanced masses, at the midpoint of the shafts",
+        (0.0, 6e3), IN_BODY)] = 0.0
+    mount_damping_ratio: Annotated[float, Parameter(
+        "zeta", "1",
+        "damping of the mounts, with the whole set as the mass in 2 zeta sqrt(mass stiffness)",
+        (0.0, 1.0), "assumed: none")] = 0.0
+    mount_rotational_stiffness: Annotated[float, Parameter(
+        "k_o", "N m rad-1",
+        "stiffness against rotation of the motor set about the midpoint of the shafts",
+        (1e3, inf), BOLTED)] = inf
+    mount_inertia: Annotated[float, Parameter(
+        "J_0", "kg m2",
+        "moment of inertia of the motor set without unbalanced masses about that midpoint",
+        (0.0, 6e3), IN_BODY)] = 0.0
+    feed_mass: Annotated[float, Parameter(
+        "m_n", "kg", "mass of the feed thrown by the deck", (0.0, 6e3), "assumed: empty")] = 0.0
+    throw_coefficient: Annotated[float, Parameter(
+        "k_p", "1", "vertical acceleration amplitude of the deck over gravity, which it sets",
+        (0.05, 60.0), f"assumed: within single-stroke motion, as studied in {PAPER}")] = 2.0
+    feed_position: Annotated[float, Parameter(
+        "x_n", "m", "position of the feed from C along x", (-30.0, 30.0), "assumed: at C")] = 0.0
+    initial_phase_1: Annotated[float, Parameter(
+        "psi_1(0)", "rad", "phase of vibrator 1 at the start, from hanging down", (-pi, pi),
+        HANGING)] = 0.0
+    initial_phase_2: Annotated[float, Parameter(
+        "psi_2(0)", "rad", "phase of vibrator 2 at the start, from hanging down", (-pi, pi),
+        HANGING)] = 0.0
+# fmt: on
 
 
 Rows = Any

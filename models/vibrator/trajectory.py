@@ -36,7 +36,8 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     """
     m = system(params, settings.kinematics)
     duration = min(LONGEST, settings.run_up)
-    speed = max(m.synchronous_speed_1, m.synchronous_speed_2)
+    rigid = m.rigid
+    speed = max(rigid.synchronous_speed_1, rigid.synchronous_speed_2)
     count = math.ceil(duration * speed / (2 * np.pi) * SAMPLES_PER_TURN)
     time = np.linspace(0.0, duration, count + 1)
     motion = propagator.propagate(
@@ -53,8 +54,10 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         lift, shrink = np.sin(alpha), np.cos(alpha) - 1
         return x + along * shrink - above * lift, y + along * lift + above * shrink
 
-    axis = np.array([math.cos(m.working_angle), math.sin(m.working_angle)])
-    left, right = (axis @ displacement(end, 0.0) for end in (-m.half_spacing, m.half_spacing))
+    axis = np.array([math.cos(rigid.working_angle), math.sin(rigid.working_angle)])
+    left, right = (
+        axis @ displacement(end, 0.0) for end in (-rigid.half_spacing, rigid.half_spacing)
+    )
     quantities = {
         "x": ("m", "horizontal displacement of C", x),
         "y": ("m", "vertical displacement of C", y),

@@ -2,10 +2,10 @@
 
 from math import sqrt
 
-from numba import njit
+from models.numerics.jit import kernel
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def drop(height, restitution, gravity, smallest_rise, most_bounces):
     """Drop one ball and follow it from impact to impact.
 

@@ -26,7 +26,7 @@ MODULES = (
 for module in MODULES:
     import_module(module)
 "".encode("utf-8-sig")
-for module in ("app", "keeping", "studies"):
+for module in ("app", "run", "upkeep"):
     import_module(f"uq.cli.{module}")
 
 

@@ -29,10 +29,10 @@ def test_kills_after_some_rows_were_kept(study, under_way, call, injected, kills
         run.kill()
         injected("SIGKILL of a run")
         assert not OUT.exists()
-        standing = json.loads(call("status", OUT, "--json")[1])
-        assert standing["state"] == "interrupted"
-        assert done + more <= standing["done"] == kept().rows < samples  # nothing is lost
-        done = standing["done"]
+        run_status = json.loads(call("status", OUT, "--json")[1])
+        assert run_status["state"] == "interrupted"
+        assert done + more <= run_status["done"] == kept().rows < samples  # nothing is lost
+        done = run_status["done"]
     assert call("run", study, *MODEL) == (0, "")
     assert OUT.read_bytes() == (OUT.parents[1] / "undisturbed.nc").read_bytes()
     assert [path.name for path in OUT.parent.iterdir()] == [OUT.name]
@@ -140,17 +140,17 @@ def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
 
 def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_way, call, injected):
     run = under_way(study)
-    standing = json.loads(call("status", OUT, "--json")[1])
-    assert standing["state"] == "running"
-    assert standing["process"]["pid"] == run.process.pid
-    assert 0 < standing["done"] < standing["rows"] == 1500
-    assert standing["done"] + standing["left"] == 1500
-    assert sum(standing["status"].values()) == standing["done"]
-    assert standing["rate"] > 0
+    run_status = json.loads(call("status", OUT, "--json")[1])
+    assert run_status["state"] == "running"
+    assert run_status["process"]["pid"] == run.process.pid
+    assert 0 < run_status["done"] < run_status["rows"] == 1500
+    assert run_status["done"] + run_status["left"] == 1500
+    assert sum(run_status["status"].values()) == run_status["done"]
+    assert run_status["rate"] > 0
     code, said = call("run", study, *MODEL)
     assert code == 2
     injected("lock of a living process")
-    host = standing["process"]["host"]
+    host = run_status["process"]["host"]
     assert said == f"{ROWS}: in use by process {run.process.pid} on {host}\n"
     run.kill()
     assert (ROWS / "lock").exists()  # stale, and recognised as such

@@ -18,8 +18,8 @@ from uq.contract import Status
 from uq.errors import InputError
 from uq.rows.evaluate import KernelError
 from uq.rows.results import open_result
-from uq.rows.workload import work_of
-from uq.running import cluster, isolation, runner, sent_chunks
+from uq.rows.workload import workload_of
+from uq.running import isolation, local_cluster, runner, sent_chunks
 from uq.study.definition import load_study
 
 COMMAND = Path(sys.executable).with_name("uq")
@@ -116,9 +116,9 @@ def test_killed_processes_leave_no_trace(
 def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monkeypatch, injected):
     study = study_of(seconds=0.1, samples=60)
     failed = []
-    real = sent_chunks.Flight._failed
+    real = sent_chunks.SentChunks._failed
     monkeypatch.setattr(
-        sent_chunks.Flight,
+        sent_chunks.SentChunks,
         "_failed",
         lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
     )
@@ -157,8 +157,8 @@ class Unlucky(isolation.Isolated):
 
 def test_a_row_is_not_guilty_because_its_process_was_killed_twice(study_of, undisturbed, injected):
     study = study_of(seconds=0.2, samples=2)
-    work = work_of(study)
-    process = Unlucky(isolation.task_of(work))
+    work = workload_of(study)
+    process = Unlucky(isolation.spec_of(work))
     rows = work.block(0, 2)
     try:
         chunk = process.evaluate(rows.x, rows.seed)
@@ -343,7 +343,7 @@ def test_everything_listens_on_this_computer_alone(study_of):
 
 
 def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
-    monkeypatch.setattr(cluster, "_DEATHS_AT_MOST", 3)
+    monkeypatch.setattr(local_cluster, "_DEATHS_AT_MOST", 3)
     stop = threading.Event()
 
     def kill_on():
@@ -355,7 +355,7 @@ def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
     thread = threading.Thread(target=kill_on)
     thread.start()
     try:
-        with pytest.raises(cluster.RunError, match="worker process"):
+        with pytest.raises(local_cluster.RunError, match="worker process"):
             runner.compute(study_of(seconds=0.5, samples=600), workers=1, chunk_rows=1)
     finally:
         stop.set()
@@ -367,5 +367,5 @@ def test_workers_that_can_start_no_process_end_the_run(study_of, monkeypatch, in
     monkeypatch.setenv("UQ_TEST_WORKERS_CHILDREN_END", "1")
     said = "no worker could compute rows .*: a process for the rows could not start: exit code 3"
     injected("workers that can start no process")
-    with pytest.raises(cluster.RunError, match=said):
+    with pytest.raises(local_cluster.RunError, match=said):
         runner.compute(study_of(seconds=0.01), workers=1, chunk_rows=20)

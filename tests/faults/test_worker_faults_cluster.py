@@ -12,7 +12,7 @@ import psutil
 import pytest
 
 from uq.errors import InputError, RunError
-from uq.running import cluster, runner
+from uq.running import remote_cluster, runner
 from uq.study.definition import load_study
 
 PATIENCE = 60.0
@@ -130,7 +130,7 @@ def test_workers_come_and_go(start, study, injected):
 
 
 def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, injected):
-    monkeypatch.setattr(cluster, "_REMOTE_SECONDS", 2)
+    monkeypatch.setattr(remote_cluster, "_REMOTE_SECONDS", 2)
     there = start()
 
     def kill(progress):
@@ -147,7 +147,7 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, i
 
 
 def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch, injected):
-    monkeypatch.setattr(cluster, "_WORKERLESS_SECONDS", 2.0)
+    monkeypatch.setattr(remote_cluster, "_WORKERLESS_SECONDS", 2.0)
     there = start()
 
     def kill(progress):

@@ -5,7 +5,10 @@ import json
 import numpy as np
 from computed import computed, study_of
 
-from uq.indices.sensitivities import sensitivities
+from uq.cli.sensitivity import plain
+from uq.indices import sensitivities as found
+from uq.methods.registry import METHODS
+from uq.methods.sample import Sample
 
 INPUTS = ("x1", "x2", "x3")
 
@@ -24,6 +27,11 @@ def ishigami(method="saltelli", samples=128, replicates=8, seed=1, **more_design
     )
 
 
+def sensitivities(*asked, **more):
+    """Return the indices of a result as ``uq sensitivity --json`` has them."""
+    return plain(found.sensitivities(*asked, **more))
+
+
 def indices(ds, method=None, output=None):
     """Return what is said of each output; JSON without any number that is not finite."""
     return json.loads(json.dumps(sensitivities(ds, method, output), allow_nan=False))
@@ -31,3 +39,8 @@ def indices(ds, method=None, output=None):
 
 def values(entry, kind):
     return [index["value"] for index in entry[kind].values()]
+
+
+def of_plain_sample(method, x, y, quantiles=None):
+    """Return the indices by one method of an output of a plain sample."""
+    return METHODS[method].indices(Sample.plain(y, x, quantiles))

@@ -17,8 +17,8 @@ import sample_models
 import uq
 from uq import provenance
 from uq.errors import InputError
-from uq.running import cluster, dispatch, runner
-from uq.running.child import Task
+from uq.running import dispatch, local_cluster, remote_cluster, runner
+from uq.running.child import ModelSpec
 from uq.running.dask_task import evaluate_rows
 from uq.study.definition import load_study
 
@@ -84,14 +84,14 @@ def test_workers_are_started_for_longer_studies_only(
 ):
     monkeypatch.setattr(dispatch, "CHUNK_SECONDS", 0.05)
     monkeypatch.setattr("uq.running.executor.SHORT_SECONDS", seconds)
-    monkeypatch.setattr(cluster, "CORES", 2)
+    monkeypatch.setattr(local_cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = runner.compute(load_study(path, "sample_models:PROCESS"))
     assert len(set(ds["y"].values)) == processes
 
 
 def test_a_worker_that_died_is_replaced(tidy):
-    with cluster.local(1) as crew:
+    with local_cluster.local_workers(1) as crew:
         crew.client.wait_for_workers(1)
         (first,) = workers()
         first.kill()
@@ -104,7 +104,7 @@ def test_a_worker_that_died_is_replaced(tidy):
 
 def test_an_existing_cluster_is_used(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=100), "sample_models:PROCESS")
-    with cluster.local(1) as crew:
+    with local_cluster.local_workers(1) as crew:
         crew.client.wait_for_workers(1)
         address = crew.client.scheduler.address
         ds = runner.compute(study, scheduler=address, chunk_rows=5)
@@ -116,11 +116,11 @@ def test_an_existing_cluster_is_used(write_study, tidy):
 def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
     study = load_study(write_study())
     with monkeypatch.context() as hasty:
-        hasty.setattr(cluster, "_REMOTE_SECONDS", 1)
+        hasty.setattr(remote_cluster, "_REMOTE_SECONDS", 1)
         for address in ("tcp://127.0.0.1:9", "nonsense://x"):
             with pytest.raises(InputError, match=rf"^--scheduler {address}: cannot connect: .+$"):
                 runner.compute(study, scheduler=address)
-    with cluster.LocalCluster(n_workers=0, dashboard_address=None) as empty:
+    with local_cluster.LocalCluster(n_workers=0, dashboard_address=None) as empty:
         address = empty.scheduler_address
         with pytest.raises(InputError, match=rf"^--scheduler {address}: .* no workers; "):
             runner.compute(study, scheduler=address)
@@ -129,8 +129,8 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
 def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monkeypatch):
     study = load_study(write_study())
     other = provenance.versions() | {"numpy": "1.0", "Python": "2.7"}
-    monkeypatch.setattr(cluster, "versions", lambda: other)
-    with cluster.local(1) as crew:
+    monkeypatch.setattr(remote_cluster, "versions", lambda: other)
+    with local_cluster.local_workers(1) as crew:
         crew.client.wait_for_workers(1)
         address = crew.client.scheduler.address
         with pytest.raises(InputError) as refused:
@@ -147,12 +147,14 @@ def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monk
 def test_a_worker_that_differs_is_refused_with_its_first_rows():
     x, seed = np.full((2, 3), 0.5), np.zeros(2, np.uint64)
     with pytest.raises(InputError, match="a worker has version 1 of model 'ishigami'.* has 2"):
-        evaluate_rows(Task("ishigami", "2", ()), provenance.versions(), None, x, seed, 0)
+        evaluate_rows(ModelSpec("ishigami", "2", ()), provenance.versions(), None, x, seed, 0)
     with pytest.raises(InputError, match="a worker has other code of model 'ishigami' than this"):
-        evaluate_rows(Task("ishigami", "1", (), code="x"), provenance.versions(), None, x, seed, 0)
+        evaluate_rows(
+            ModelSpec("ishigami", "1", (), code="x"), provenance.versions(), None, x, seed, 0
+        )
     later = provenance.versions() | {"vibrolife": "99"}
     with pytest.raises(InputError, match=r"^a worker has vibrolife \S+; this process has .* 99"):
-        evaluate_rows(Task("ishigami", "1", ()), later, None, x, seed, 0)
+        evaluate_rows(ModelSpec("ishigami", "1", ()), later, None, x, seed, 0)
 
 
 def test_a_script_needs_no_main_guard(write_study, folder):
@@ -195,8 +197,8 @@ def test_a_notebook_with_a_running_event_loop_can_use_workers(write_study, tidy)
 def test_a_worker_ends_with_its_parent(folder):
     program = (
         "import os, time\n"
-        "from uq.running import cluster\n"
-        "context = cluster.local(1)\n"
+        "from uq.running import local_cluster\n"
+        "context = local_cluster.local_workers(1)\n"
         "crew = context.__enter__()\n"
         "crew.client.wait_for_workers(1)\n"
         "print(*crew.client.run(os.getpid).values(), flush=True)\n"

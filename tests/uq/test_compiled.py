@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
+import models
 from uq.study import compiled
+from uq.study.sources import signature
 
 COMMAND = Path(sys.executable).with_name("uq")
 
@@ -102,11 +104,22 @@ def test_an_edited_helper_has_another_folder(kern, plant, monkeypatch, base):
 
 
 def test_our_own_kernels_stay_where_they_are(kern):
-    from models.numerics import jit
+    from models.numerics import cache
     from models.numerics.multipliers import _square
 
-    assert Path(_square._cache.cache_path).is_relative_to(jit.CACHE_FOLDER)
-    assert compiled.SourcesLocator.from_function(_square.py_func, jit.__file__) is None
+    assert cache.folder_of(_square).name in Path(_square._cache.cache_path).parts
+    assert compiled.SourcesLocator.from_function(_square.py_func, cache.__file__) is None
+
+
+def test_of_our_machines_those_count_that_a_package_imports():
+    def machines(*imported):
+        files = (Path(name) for name, _, _ in signature("models", set(imported)))
+        found = (file.relative_to(Path(models.__file__).parent).parts[0] for file in files)
+        return set(found) - {"__init__.py"}
+
+    assert machines("models.numerics.jit.kernel") == {"numerics"}
+    assert machines("models.beam.batch") == {"numerics", "beam"}
+    assert machines("models.analytic") == {"numerics", "analytic.py"}
 
 
 @pytest.mark.slow

@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from asked_indices import sensitivities
 from computed import kinds, linear, summarised, with_output
 
 from uq import store
 from uq.analysis.convergence import enough, running_estimates
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities
 
 
 @pytest.mark.parametrize(

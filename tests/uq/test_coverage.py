@@ -8,6 +8,7 @@ from math import prod
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import UNIFORM, asking, computed, study_of, summarised, with_output, with_seed
 from scipy import stats
 from scipy.optimize import brentq
@@ -15,7 +16,6 @@ from scipy.optimize import brentq
 from uq.analysis.life_fit import life_fits
 from uq.analysis.lifetime import survival
 from uq.analysis.regime_split import between_share
-from uq.indices.sensitivities import sensitivities
 
 REPETITIONS = 200
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import computed, study_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -10,7 +11,6 @@ from scipy import stats
 
 from uq.analysis.sampled_inputs import realised_inputs, realised_ranks
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities
 from uq.inputs.dependence import correlated, matrix_problem
 from uq.rows.sampling import row_block
 

@@ -8,8 +8,8 @@ from SALib.sample import fast_sampler
 from SALib.sample import sobol as salib_sobol
 from scipy.stats import kstest, qmc
 
+from uq.designs.registry import DESIGNS
 from uq.designs.streams import replicate_seed
-from uq.designs.table import DESIGNS, block_names
 from uq.designs.trajectories import STEP
 
 SIZE = 64
@@ -59,14 +59,9 @@ def test_more_samples_append_where_the_design_says_so(method):
         assert np.array_equal(first, again) == DESIGNS[method].append_only
 
 
-def test_designs_that_cannot_be_extended_say_which_can():
+def test_designs_that_can_be_extended():
     able = {name for name, design in DESIGNS.items() if design.append_only}
     assert able == {"monte-carlo", "sobol", "halton", "saltelli", "shapley"}
-    for name, design in DESIGNS.items():
-        assert (design.extension_problem is None) == (name in able)
-    assert DESIGNS["morris"].extension_problem == (
-        "cannot be extended; designs that can: monte-carlo, sobol, halton, saltelli, shapley"
-    )
 
 
 @pytest.mark.parametrize("method", [name for name in DRAWN if name not in REPEATING])
@@ -119,7 +114,7 @@ def test_saltelli_rows_are_those_of_salib(second_order):
 
 
 def test_blocks_are_named_in_row_order():
-    names = block_names(DESIGNS["saltelli"], ("p", "q"), second_order=True)
+    names = DESIGNS["saltelli"].layout.labels(("p", "q"), True, False)
     assert names == ("A", "AB_p", "AB_q", "BA_p", "BA_q", "B")
     a, ab_p, ab_q, ba_p, ba_q, b = points("saltelli", d=2, second_order=True)[0, 0]
     assert (ab_p[0], ab_p[1]) == (b[0], a[1])
@@ -129,7 +124,7 @@ def test_blocks_are_named_in_row_order():
 
 
 def test_blocks_of_a_plain_design_are_samples():
-    assert block_names(DESIGNS["halton"], ("p", "q"), second_order=False) == ("sample",)
+    assert DESIGNS["halton"].layout.labels(("p", "q"), False, False) == ("sample",)
 
 
 @pytest.mark.parametrize("method", ["latin-hypercube", "sobol"])

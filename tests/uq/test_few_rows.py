@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import linear, with_output
 
-from uq.indices.few_rows import effective_rows
-from uq.indices.sensitivities import sensitivities
+from uq.methods.few_rows import effective_rows
 
 ATTRS = {
     "role": "output",

@@ -3,12 +3,13 @@
 import numpy as np
 import openturns as ot
 import pytest
+from asked_indices import sensitivities
 from computed import UNIFORM, asking, computed, linear, study_of, with_output
 from scipy import stats
 
 from uq.errors import InputError
 from uq.indices import sensitivities as module
-from uq.indices.sensitivities import sensitivities, sensitivity
+from uq.indices.dataset import sensitivity
 
 ISHIGAMI = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 CASES = {

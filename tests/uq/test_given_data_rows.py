@@ -4,14 +4,14 @@ import warnings
 
 import numpy as np
 import pytest
-from asked_indices import INPUTS, indices, ishigami, values
+from asked_indices import INPUTS, indices, ishigami, of_plain_sample, sensitivities, values
 from computed import asking, linear, with_output
 from SALib.analyze import pawn, rbd_fast
 from SALib.analyze.delta import calc_delta
 from scipy import stats
 
-from uq.indices.given_data import DUMMIES, given_data_indices
-from uq.indices.sensitivities import sensitivities
+from uq.methods.given_data import DUMMIES
+from uq.methods.registry import METHODS
 
 
 @pytest.mark.parametrize("design", ["monte-carlo", "latin-hypercube", "sobol", "halton"])
@@ -52,16 +52,16 @@ def test_dummy_is_passed_by_one_input_in_twenty_that_plays_no_part(method, index
 @pytest.mark.parametrize("method", ["rbd-fast", "pawn"])
 def test_the_null_of_the_largest_is_passed_in_one_study_of_twenty_at_most(method):
     rng, alarms, single, repetitions = np.random.default_rng(5), 0, 0, 40
-    kind = {"rbd-fast": "S1", "pawn": "pawn"}[method]
+    (kind,) = METHODS[method].kinds
     for _ in range(repetitions):
         x = {f"x{i}": column for i, column in enumerate(rng.random((60, 100)))}
-        found = given_data_indices(method, x, rng.random(100), {})
+        found = of_plain_sample(method, x, rng.random(100), {})
         largest = max(index.value for index in found.values[kind].values())
-        alarms += largest > found.dummy[f"{kind}_any"]
-        single += largest > found.dummy[kind]
+        alarms += largest > found.nulls[kind].largest
+        single += largest > found.nulls[kind].one
     assert alarms <= 5 and single > 20  # of sixty inputs some three pass that for one
-    alone = given_data_indices(method, {"x0": x["x0"]}, rng.random(100), {})
-    assert list(alone.dummy) == [kind]
+    alone = of_plain_sample(method, {"x0": x["x0"]}, rng.random(100), {})
+    assert list(alone.nulls) == [kind] and np.isnan(alone.nulls[kind].largest)
 
 
 def test_given_data_values_are_those_of_salib():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from asked_indices import sensitivities
 from computed import as_text, compared, computed, summarised, with_output
 from input_studies import UNIFORM, refusal, tables
 
@@ -11,7 +12,6 @@ from uq.analysis.life_fit import life_fits
 from uq.analysis.lifetime import survival
 from uq.analysis.pairing import Kinship, kinship
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities
 from uq.rows.sampling import row_block
 from uq.study.definition import study_from_text
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from asked_indices import INPUTS, indices, ishigami
+from asked_indices import INPUTS, indices, ishigami, sensitivities
 from computed import kinds, linear, with_output
 
 import uq
 from uq.contract import Status
 from uq.errors import InputError
-from uq.indices.sensitivities import methods, sensitivities
+from uq.indices.sensitivities import methods
 
 
 def test_method_is_the_studys_or_the_designs_own():

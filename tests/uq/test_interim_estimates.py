@@ -11,15 +11,15 @@ from uq.running import runner
 
 
 def test_looks_are_fixed_before_the_run_and_double_up_to_the_budget():
-    assert stopping.looks(study(0.1, samples=1000).design) == (32, 63, 125, 250, 500, 1000)
-    assert stopping.looks(study(0.1, samples=20).design) == (20,)
+    assert stopping.interim_sizes(study(0.1, samples=1000).design) == (32, 63, 125, 250, 500, 1000)
+    assert stopping.interim_sizes(study(0.1, samples=20).design) == (20,)
     assert stopping.confidence(study(0.1, samples=1000).design) == pytest.approx(1 - 0.05 / 6)
 
 
 def look_at(ds, **until):
     """Look at a result of the model with one output of every kind."""
     given = tables(until, samples=256) | {"uncertain": {"x1": UNIFORM, "x2": UNIFORM}}
-    return stopping.look(study_of(given, "sample_models:KINDS").design, ds)
+    return stopping.interim_estimate(study_of(given, "sample_models:KINDS").design, ds)
 
 
 def test_the_element_that_is_known_worst_decides():
@@ -38,12 +38,12 @@ def test_a_share_is_of_the_rows_that_did_not_fail():
     of = study(0.1, above=4.0, samples=200, settings={"fail_above": 0.5})
     ds = computed(of)
     sound = ds["y"].values[~np.isnan(ds["y"].values)]
-    seen = stopping.look(of.design, ds).estimate
-    assert len(sound) < 150 and seen.value == (sound > 4.0).mean()
-    assert seen.low < seen.value < seen.high
+    found = stopping.interim_estimate(of.design, ds).estimate
+    assert len(sound) < 150 and found.value == (sound > 4.0).mean()
+    assert found.low < found.value < found.high
     whole = computed(study(0.1, above=4.0, samples=200))
-    narrower = stopping.look(of.design, whole).estimate
-    assert seen.high - seen.low > 1.2 * (narrower.high - narrower.low)
+    narrower = stopping.interim_estimate(of.design, whole).estimate
+    assert found.high - found.low > 1.2 * (narrower.high - narrower.low)
 
 
 def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():

@@ -15,7 +15,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from uq.running import cluster
+from uq.running.workers import quiet
 
 PATIENCE = 30.0
 """How long a busy machine may take for what should take a moment [s]."""
@@ -214,7 +214,7 @@ def test_what_a_cluster_leaves_unawaited_says_nothing(caplog):
         future.set_exception(TimeoutError("Timeout"))
         future.itself = [future]  # collected late
 
-    with cluster._quiet():
+    with quiet():
         leave()
     assert caplog.records == []
     leave()

@@ -5,7 +5,7 @@ from computed import asking, linear, summarised, with_output
 from scipy import stats
 
 import uq
-from uq.analysis import b_lives
+from uq.analysis import life_quantiles
 from uq.analysis.location_scale import FAMILIES, anderson_darling, fit
 from uq.analysis.summary import summarise
 from uq.errors import InputError
@@ -62,7 +62,7 @@ def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
     found = uq.life_fits(lives(sample(law)), "life")["life"]
     assert found[right]["p_value"] > 0.05 > found[wrong]["p_value"]
     assert "does not fit" in found[wrong]["refused"] and "parameters" not in found[wrong]
-    for name, p in b_lives.B_LIVES.items():
+    for name, p in life_quantiles.B_LIVES.items():
         b_life = found[right][name]
         assert b_life["low"] < law.ppf(p) < b_life["high"]
         assert b_life["value"] == pytest.approx(law.ppf(p), rel=0.25)

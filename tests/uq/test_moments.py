@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import asking, compared, linear, summarised, with_output
 from scipy import stats
 
@@ -13,7 +14,6 @@ from uq.analysis.regime_split import between_share
 from uq.analysis.summary import summarise
 from uq.analysis.widths import expected_widths
 from uq.cli.tables import show_summary
-from uq.indices.sensitivities import sensitivities
 from uq.moments import moments, sd_interval, standard_deviation
 from uq.report.outcomes import outcomes, result_tables
 from uq.store import write

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
 
 from uq import plots
 from uq.analysis.summary import summarise
 from uq.drawing.figure import COLOURS, thinned
 from uq.drawing.index_plot import index_bars
-from uq.indices.sensitivities import sensitivities
 
 DAY = 86400.0
 

@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
 from IPython.core.formatters import DisplayFormatter
 from matplotlib.figure import Figure
@@ -16,7 +17,6 @@ from uq.drawing.convergence_plot import index_convergence
 from uq.drawing.figure import file_name, lay_out, powers, roomy, sentence
 from uq.drawing.index_plot import index_bars
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities
 
 
 def words(figure):

@@ -5,9 +5,9 @@ import pytest
 from computed import UNIFORM, as_text
 
 from uq.rows.evaluate import evaluate
-from uq.rows.preview import Glimpse
+from uq.rows.preview import Preview
 from uq.rows.sampling import row_block
-from uq.rows.workload import work_of
+from uq.rows.workload import workload_of
 from uq.study.definition import study_from_text
 
 
@@ -22,19 +22,19 @@ def test_of_many_lives_an_even_part_is_kept(sizes):
             }
         )
     )
-    glimpse, rows = Glimpse(work_of(study)), row_block(study, 0, 1)
+    preview, rows = Preview(workload_of(study)), row_block(study, 0, 1)
     chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
     total = 30_000 if max(sizes) < 30_000 else max(sizes)
     start = i = 0
     while start < total:
         stop = min(start + sizes[i % len(sizes)], total)
         lives = {"life": np.arange(start, stop, dtype=float)}
-        glimpse.see(chunk._replace(columns=chunk.columns | lives))
+        preview.add(chunk._replace(columns=chunk.columns | lives))
         start, i = stop, i + 1
-    kept = glimpse._sample._values
+    kept = preview._sample._values
     assert 2000 < len(kept) <= 4096 and len(np.unique(np.diff(kept))) == 1
-    assert glimpse.median == ("life", pytest.approx(total / 2, rel=1e-3))
-    assert glimpse.shares == {}
+    assert preview.median == ("life", pytest.approx(total / 2, rel=1e-3))
+    assert preview.shares == {}
 
 
 def test_what_is_still_going_on_has_not_ended_and_what_is_frequent_comes_first():
@@ -45,10 +45,10 @@ def test_what_is_still_going_on_has_not_ended_and_what_is_frequent_comes_first()
         "uncertain": {"x1": inside},
     }
     study = study_from_text(as_text(given), model="sample_models:KINDS")
-    glimpse, rows = Glimpse(work_of(study)), row_block(study, 0, 100)
+    preview, rows = Preview(workload_of(study)), row_block(study, 0, 100)
     chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
     chunk.columns["life_censored"][:60] = True
-    glimpse.see(chunk)
-    assert glimpse.median == ("life[side=left,depth=0.5]", np.inf)
-    assert list(glimpse.shares) == ["fast", "slow"]
-    assert glimpse.shares["slow"] == (chunk.columns["regime"] == 0).mean() < 0.5
+    preview.add(chunk)
+    assert preview.median == ("life[side=left,depth=0.5]", np.inf)
+    assert list(preview.shares) == ["fast", "slow"]
+    assert preview.shares["slow"] == (chunk.columns["regime"] == 0).mean() < 0.5

@@ -6,12 +6,11 @@ from math import factorial, pi
 import numpy as np
 import openturns as ot
 import pytest
+from asked_indices import sensitivities
 from computed import computed, linear, study_of, summarised, with_output, with_status
 from published import PORTFOLIO_LAWS, portfolio_indices
 from SALib.analyze import shapley as salib_shapley
 from test_given_data import CASES, FIRST, TOTAL
-
-from uq.indices.sensitivities import sensitivities
 
 PORTFOLIO = {
     "sobol": ("saltelli", 1024, 8),

@@ -2,14 +2,15 @@
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import UNIFORM, computed, study_of, summarised, with_seed, with_status
 
 from uq.analysis.comparison import compare
 from uq.analysis.convergence import running_estimates
 from uq.analysis.widths import expected_widths
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities, sensitivity
+from uq.indices.dataset import sensitivity
 from uq.rows.sampling import group_size, row_block, rows
 
 DRAWN = [name for name, design in DESIGNS.items() if design.draw is not None]

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output, with_status
 from scipy import stats
 
@@ -7,8 +8,7 @@ import uq
 from uq.analysis.regime_split import between_share
 from uq.contract import Status
 from uq.errors import InputError
-from uq.indices.given_data import DUMMIES
-from uq.indices.sensitivities import sensitivities
+from uq.methods.given_data import DUMMIES
 
 
 def test_inputs_of_a_regime_are_told_from_those_of_the_rest():

@@ -14,9 +14,11 @@ from computed import (
     with_status,
 )
 
+from uq.analysis.statistics.statistic import Statistic
 from uq.analysis.summary import summarise
 from uq.contract import Status
-from uq.report.cells import Cell, Table, estimate, without_empty_columns
+from uq.estimate import Estimate
+from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.report.convergence import convergence_of
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
@@ -202,7 +204,7 @@ def test_rows_less_exact_than_their_number_are_warned_of():
 
 
 def test_what_never_ends_sorts_last_and_what_says_nothing_is_left_out():
-    never = estimate({"value": None, "low": 1.0, "high": None, "never": True, "high_never": True})
+    never = cell(Statistic(("life",), "life", Estimate(np.inf, 1.0, np.inf)))
     assert (never.text, never.more, never.key) == ("never", "1 to\u00a0never", np.inf)
     table = Table("", ("name", "empty", "full"), [(Cell("a"), Cell("-"), Cell("1"))])
     assert without_empty_columns(table).header == ("name", "full")

@@ -16,7 +16,7 @@ from uq.errors import InputError
 from uq.rows import results
 from uq.rows.evaluate import KernelError, evaluate
 from uq.rows.sampling import row_block
-from uq.rows.workload import work_of
+from uq.rows.workload import workload_of
 from uq.running import dispatch, runner
 from uq.store import MemoryStore
 from uq.study.definition import load_study
@@ -42,7 +42,7 @@ def test_every_design_gives_the_same_bits_for_any_chunk_size(write_study, design
 
 @pytest.mark.parametrize(("seconds", "rows"), [(1e-3, 1024), (0.004, 1024), (0.1, 50), (20.0, 1)])
 def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_study, seconds, rows):
-    assert dispatch.chunk_rows(work_of(load_study(write_study())), seconds) == rows
+    assert dispatch.chunk_rows(workload_of(load_study(write_study())), seconds) == rows
 
 
 @settings(
@@ -56,7 +56,8 @@ def test_failures_do_not_depend_on_chunks(write_study, chunk_rows):
         more='[settings]\nfail_above = 0.7\nfail_how = "raise"',
     )
     study = load_study(path)
-    assert runner.compute(study, 0, chunk_rows=chunk_rows).identical(runner.compute(study, 0))
+    whole = runner.compute(study, workers=0)
+    assert runner.compute(study, workers=0, chunk_rows=chunk_rows).identical(whole)
 
 
 def test_chunks_may_arrive_in_any_order(write_study):
@@ -67,7 +68,7 @@ def test_chunks_may_arrive_in_any_order(write_study):
         more='[settings]\nfail_above = 0.7\nfail_how = "raise"',
     )
     study = load_study(path)
-    store = MemoryStore(work_of(study))
+    store = MemoryStore(workload_of(study))
     for start in (60, 0, 80, 20, 40):
         some = row_block(study, start, start + 20)
         chunk = evaluate(study.model, study.settings, some.x, some.seed, start)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import stats
 from study_text import study_text
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.rows.sampling import _splitmix64, group_size, row_block, rows
 from uq.study.definition import study_from_text
 

@@ -5,6 +5,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import (
     as_text,
     asking,
@@ -20,10 +21,11 @@ from SALib.analyze import fast as salib_fast
 from SALib.analyze import morris as salib_morris
 
 from uq.analysis.overview import summary
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.designs.trajectories import LEVELS, STEP, TAIL
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities, sensitivity
+from uq.indices.dataset import sensitivity
+from uq.methods.registry import fed_by
 
 LEVELS_OF_ONE = TAIL + (1 - 2 * TAIL) * np.arange(LEVELS) / (LEVELS - 1)
 A = np.array([0, 1, 4.5, 9, 99, 99, 99, 99.0])
@@ -252,7 +254,7 @@ def test_a_random_balance_design_feeds_rbd_fast(study):
 # The border to SALib: what is lacking never reaches it, and no seed is taken for none.
 
 # One design for each method, the last that feeds it; 'regional' takes regimes, not numbers.
-_LAST = {method: name for name, one in DESIGNS.items() if one.draw for method in one.feeds}
+_LAST = {method: name for name, one in DESIGNS.items() if one.draw for method in fed_by(one)}
 FED = [(design, method) for method, design in _LAST.items() if method != "regional"]
 
 

@@ -4,13 +4,12 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from asked_indices import INPUTS, indices, ishigami, values
+from asked_indices import INPUTS, indices, ishigami, sensitivities, values
 from computed import linear, with_output
 from SALib.analyze import sobol as salib
 from scipy import stats
 
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities
 
 
 def test_indices_of_ishigami_lie_near_the_published_ones_and_within_their_intervals():

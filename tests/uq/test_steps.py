@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import computed, study_of
 
 from uq.analysis.sampled_inputs import compare, stated_and_realised
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
-from uq.indices.sensitivities import sensitivities
 
 A = {"distribution": "normal", "mean": 10.0, "sd": 1.0}
 C = {"distribution": "normal", "mean": 0.0, "sd": 1.0}

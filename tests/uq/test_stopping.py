@@ -11,11 +11,12 @@ from uq import store
 from uq.errors import InputError
 from uq.rows import stopping
 from uq.rows.results import open_result
-from uq.rows.workload import work_of
-from uq.running import cluster, runner
+from uq.rows.workload import workload_of
+from uq.running import local_cluster, runner
+from uq.running.options import RunOptions
 from uq.study.definition import study_from_text
 from uq.upkeep import extending
-from uq.upkeep.status import standing
+from uq.upkeep.status import run_status
 
 
 @pytest.mark.parametrize(
@@ -28,17 +29,18 @@ def test_a_run_stops_at_the_first_look_that_knows_enough(method, replicates, est
     half_width = 0.3 if "quantile" in estimate else 0.1
     of = study(half_width, samples=samples, method=method, replicates=replicates, **estimate)
     ds = runner.compute(of, workers=0)
-    sizes, stopped = stopping.looks(of.design), ds.attrs["samples"]
-    assert stopping.look(of.design, ds).reached
+    sizes, stopped = stopping.interim_sizes(of.design), ds.attrs["samples"]
+    assert stopping.interim_estimate(of.design, ds).reached
     assert stopped < samples
     earlier = [computed(of.with_samples(size)) for size in sizes if size < stopped]
-    assert not any(stopping.look(of.design, one).reached for one in earlier)
+    assert not any(stopping.interim_estimate(of.design, one).reached for one in earlier)
 
 
 def test_a_stopped_run_is_that_of_fewer_samples_to_the_bit(tmp_path):
     of = study(0.1, samples=500, settings={"fail_above": 0.995, "fail_how": "raise"})
     ds = runner.compute(of, workers=0)
-    assert ds.identical(runner.carry_out(work_of(of.with_samples(ds.attrs["samples"])), 0))
+    fewer = workload_of(of.with_samples(ds.attrs["samples"]))
+    assert ds.identical(runner.carry_out(fewer, RunOptions(workers=0)))
     example = ds["status"].attrs["example_raised"]
     assert int(example.removeprefix("row ").partition(":")[0]) >= 32  # after the first look
     store.write(ds, tmp_path / "out.nc")
@@ -88,18 +90,18 @@ def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, des
         path = folder / f"{place}.nc"
         with monkeypatch.context() as patch, pytest.raises(Killed):
             if place == "look":  # the rows of a look are all there, and nobody has looked
-                patch.setattr(runner.stopping, "look", raising)
+                patch.setattr(runner.stopping, "interim_estimate", raising)
             if place == "cut":  # enough is known and the file is not written
                 patch.setattr(runner.store.DiskStore, "dataset", raising)
             runner.run(of, path, progress=killed_at(total // 2) if place == "chunk" else None)
-        found = standing(path)
-        assert found["state"] == "interrupted" or place == "cut"
+        found = run_status(path)
+        assert found.state == "interrupted" or place == "cut"
         told = []
         runner.run(of, path, progress=told.append)
-        assert told[0].done == told[0].found == found["done"] > 0
+        assert told[0].done == told[0].found == found.done > 0
         assert told[-1].done == told[-1].total == total
         assert whole(path) == whole(folder / "once.nc")
-        assert standing(path)["state"] == "complete"
+        assert run_status(path).state == "complete"
         assert not store.folder_of(path).exists()
 
 
@@ -148,8 +150,10 @@ def test_the_budget_is_that_of_the_file(folder):
 
 def test_workers_stay_from_look_to_look(folder, monkeypatch):
     started = []
-    local = cluster.local
-    monkeypatch.setattr(cluster, "local", lambda count: started.append(count) or local(count))
+    local = local_cluster.local_workers
+    monkeypatch.setattr(
+        local_cluster, "local_workers", lambda count: started.append(count) or local(count)
+    )
     ds = runner.run(study(0.1), "out.nc", workers=2)
     assert started == [2]
     assert ds.attrs["samples"] > 32
@@ -162,7 +166,7 @@ def test_a_lifetime_that_never_ends_and_failed_rows_do_not_stop_a_run_early():
     wear = {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}
     table = tables({"output": "life", "half_width": 1e9}, samples=64)
     table |= {"uncertain": {"rate": wear}, "fixed": {"threshold": 2.5e-10}}
-    assert runner.compute(study_of(table, "exponential-wear"), 0).attrs["samples"] == 64
+    assert runner.compute(study_of(table, "exponential-wear"), workers=0).attrs["samples"] == 64
 
 
 @pytest.mark.parametrize(
@@ -196,7 +200,7 @@ def test_intervals_stay_honest_under_stopping(estimate, half_width, truth):
     for seed in range(300):
         one = with_seed(of, seed)
         ds = runner.compute(one, workers=0, chunk_rows=4096)
-        low, high = stopping.look(one.design, ds).estimate.numbers[1:]
+        low, high = stopping.interim_estimate(one.design, ds).estimate.numbers[1:]
         held.append(low <= truth <= high)
         stopped.append(ds.attrs["samples"])
     print(f"\n{estimate or 'mean'}: {np.mean(held):.1%}, {np.mean(stopped):.0f} samples")

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import computed, study_of
 from input_studies import UNIFORM, inputs_of, refusal, tables
 from scipy import stats
 
-from uq.indices.sensitivities import sensitivities
 from uq.rows.sampling import rows
 
 

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from asked_indices import indices
+from asked_indices import indices, of_plain_sample
 from computed import asking, linear, with_output
 
-from uq.indices.given_data import given_data_indices
-from uq.indices.slices import slice_of
-from uq.indices.targets import RefusedError
+from uq.methods.indices import RefusedError
+from uq.methods.slices import slice_of
 
 N = 3000
 QUANTILES = {"Q0.5": 0.5}
@@ -22,7 +21,7 @@ def rows(share=0.03, seed=1):
 
 
 def estimated(method, y, quantiles=QUANTILES, **x):
-    found = given_data_indices(method, x, y, quantiles)
+    found = of_plain_sample(method, x, y, quantiles)
     kind = next(iter(found.values))
     return {name: index.value for name, index in found.values[kind].items()}, found
 
@@ -73,9 +72,9 @@ def test_an_input_whose_rare_values_fill_no_slice_has_no_index(method):
     found, indices_ = estimated(method, x1 + 100 * rare, x1=x1, x2=rare)
     assert np.isnan(found["x2"]) and found["x1"] > 0.1
     kind = next(iter(indices_.values))
-    assert indices_.notes == (f"x2 has too few rows of any value but one: no {kind}",)
+    assert indices_.notes == (f"x2 has too few rows of any value but one: no {kind.key}",)
     with pytest.raises(RefusedError, match="x2 has too few rows of any value but one"):
-        given_data_indices(method, {"x2": rare}, x1, QUANTILES)
+        of_plain_sample(method, {"x2": rare}, x1, QUANTILES)
 
 
 def test_regional_distance_of_a_choice_is_the_same_whatever_its_values_are():
@@ -129,7 +128,7 @@ def test_rbd_fast_gives_no_index_of_an_input_with_equal_values():
         " delta, pawn or quantile",
     )
     with pytest.raises(RefusedError, match="it takes none with many equal values: x2"):
-        given_data_indices("rbd-fast", {"x2": binary}, y, QUANTILES)
+        of_plain_sample("rbd-fast", {"x2": binary}, y, QUANTILES)
 
 
 def test_an_index_that_is_not_given_stands_as_a_dash_and_in_no_bar(uq, folder):
@@ -181,9 +180,9 @@ def test_hdmr_of_a_choice_does_not_depend_on_what_its_values_are_called(labels):
 def test_hdmr_says_which_input_keeps_it_from_a_higher_degree():
     binary, x1, _ = rows(0.5)
     with pytest.raises(RefusedError, match="x2 has 2 values, which allow no higher degree than 1"):
-        given_data_indices("hdmr", {"x1": x1, "x2": binary}, np.cos(7 * x1) + 0.1 * binary, {})
+        of_plain_sample("hdmr", {"x1": x1, "x2": binary}, np.cos(7 * x1) + 0.1 * binary, {})
     with pytest.raises(RefusedError, match="x2 has the same value in all of 1024 rows"):
-        given_data_indices("hdmr", {"x1": x1, "x2": np.ones(N)}, x1, {})
+        of_plain_sample("hdmr", {"x1": x1, "x2": np.ones(N)}, x1, {})
 
 
 @pytest.mark.parametrize("method", ["pawn", "delta", "quantile", "regional"])
@@ -191,7 +190,7 @@ def test_an_input_of_one_value_has_no_effect(method):
     ds = linear(samples=1000)
     ds = with_output(ds, "z", ds["x1"].values > 0.5 if method == "regional" else ds["x1"].values)
     x = {"x1": ds["x1"].values, "x2": np.ones(1000)}
-    found = given_data_indices(method, x, ds["z"].values, QUANTILES)
+    found = of_plain_sample(method, x, ds["z"].values, QUANTILES)
     for one in found.values.values():
         assert one["x2"].value == pytest.approx(0, abs=1e-12)
 

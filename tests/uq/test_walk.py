@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from asked_indices import sensitivities
 from computed import (
     UNIFORM,
     asking,
@@ -19,18 +20,18 @@ from computed import (
 import uq
 from uq.analysis.convergence import enough, running_estimates
 from uq.analysis.twin import with_twin
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.exploring.rare_events import METHODS as RARE
 from uq.exploring.rare_events import rare_event
-from uq.indices.sensitivities import sensitivities
+from uq.methods.registry import fed_by
 from uq.rows import stopping
 from uq.rows.elements import study_file_of
 
 DRAWN = [name for name, design in DESIGNS.items() if getattr(design, "draw", None) is not None]
-FIRST = {method: name for name in reversed(DRAWN) for method in DESIGNS[name].feeds}
+FIRST = {method: name for name in reversed(DRAWN) for method in fed_by(DESIGNS[name])}
 FED = sorted({(design, method) for method, design in FIRST.items()}) + [
-    (name, DESIGNS[name].feeds[0]) for name in DRAWN if name not in FIRST.values()
+    (name, fed_by(DESIGNS[name])[0]) for name in DRAWN if name not in FIRST.values()
 ]
 """Each method with the first design that feeds it, and each other design with its own method."""
 
@@ -273,7 +274,7 @@ def test_rare_events(method, damage, settings):
 @pytest.mark.parametrize("estimate", [{}, {"quantile": 0.5}, {"above": 6.0}])
 def test_a_look_at_damaged_rows(damage, estimate):
     ds = damaged(linear(until={"output": "y", "half_width": 0.5} | estimate), damage, ("y",))
-    seen = stopping.look(study_file_of(ds).design, ds)
+    seen = stopping.interim_estimate(study_file_of(ds).design, ds)
     if damage == "all failed":
         assert not seen.reached and np.isnan(seen.estimate.numbers[:2]).all()
         return

@@ -5,12 +5,13 @@ from math import inf, nan
 import pytest
 
 from uq.estimate import Estimate
+from uq.methods.indices import S1, ST
+from uq.methods.morris import MU, MU_STAR
 from uq.study.file import LAW
 from uq.wording import (
     brief,
     duration,
     estimated,
-    index,
     interval,
     known,
     law,
@@ -36,8 +37,8 @@ def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, 
 
 
 def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
-    assert index({"value": -0.0002}, "value", "S1") == "0.000"
-    assert index({"value": -0.0002}, "value", "mu") == "-0.0002"
+    assert S1.text(-0.0002) == "0.000"
+    assert MU.text(-0.0002) == "-0.0002"
     assert [percent(share) for share in (0.0, 1 / 6000, 0.769, 0.9999, 0.999962, 1.0)] == [
         "0.0 %",
         "0.017 %",
@@ -88,8 +89,8 @@ def test_a_number_that_is_none_says_why():
 
 
 def test_effects_have_digits_whatever_their_unit():
-    assert index({"value": 1234.5}, "value", "mu_star") == "1.23e+03"
-    assert index({"value": 0.12345}, "value", "ST") == "0.123"
+    assert MU_STAR.text(1234.5) == "1.23e+03"
+    assert ST.text(0.12345) == "0.123"
 
 
 def test_a_law_is_told_by_its_arguments_alone():

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain
-from math import isfinite, isnan, nan
+from math import isnan
 
 import pandas as pd
 import xarray as xr
@@ -136,11 +136,10 @@ def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
     pairs = {("regime", label): one for label, one in found.regimes.items()}
     for name, output in found.outputs.items():
         pairs |= {(name, one.first.label): one for one in output.statistics}
-    numbers = [
-        [one.first.estimate.value, one.second.estimate.value, *one.difference.numbers]
+    lines = [
+        [*(side.estimate.finite.value for side in (one.first, one.second)), *one.difference.numbers]
         for one in pairs.values()
     ]
-    lines = [[x if isfinite(x) else nan for x in line] for line in numbers]
     columns = ["first", "second", "difference", "low", "high"]
     index = pd.MultiIndex.from_tuples(list(pairs), names=["output", "estimate"])
     return pd.DataFrame(lines, index, columns, dtype=float)
@@ -274,7 +273,7 @@ def _compared(
     """Compare two statistics; `rows` say whether the pairs are identical."""
     estimator = both[0].estimator
     is_scale = estimator is not None and estimator.is_scale
-    known = [_finite(one.estimate) for one in both]
+    known = [one.estimate.finite for one in both]
     if any(isnan(one.value) for one in known):
         return Compared(both[0], both[1], NOTHING, ratio=NOTHING if is_scale else None)
     if pair.identical(rows):
@@ -286,13 +285,7 @@ def _compared(
     times = pair.ratio(samples, known) if is_scale else None
     if any(one.reason for one in known):  # what has no interval has none for its difference
         apart, times = Estimate(apart.value), times and Estimate(times.value)
-    return Compared(both[0], both[1], _finite(apart), ratio=times and _finite(times))
-
-
-def _finite(one: Estimate) -> Estimate:
-    """Return an estimate with all that is not finite unknown."""
-    value, low, high = (x if isfinite(x) else nan for x in one.numbers)
-    return Estimate(value, low, high, one.reason)
+    return Compared(both[0], both[1], apart.finite, ratio=times and times.finite)
 
 
 def _notes(pair: Pair, found: list[Summary], elements: list[dict[str, Element]]) -> Iterator[str]:

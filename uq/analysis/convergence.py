@@ -1,21 +1,19 @@
 """Is it enough? Estimates as the rows came in, and the other errors beside that of sampling."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from uq import json_form
 from uq.analysis.stated_error import error_name, stated_error
 from uq.analysis.statistics.statistic import RUNNING
 from uq.analysis.summary import summarise
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
-from uq.indices.sobol import MIN_GROUPS
 from uq.indices.targets import split_name
+from uq.methods.registry import METHODS, piloted_by
 from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
 
 _FEWEST = 16  # samples
@@ -145,36 +143,29 @@ def _sizes(ds: xr.Dataset) -> list[int]:
     return sizes[::-1]
 
 
-Estimate = tuple[float, float, float]
+Numbers = tuple[float, float, float]
 
 
 def _targets(ds: xr.Dataset) -> list[str]:
     """Return what all rows have indices of: whether a life has a logarithm may change with rows."""
-    if not _has_indices(ds):
-        return []
-    return list(sensitivities(ds, method="sobol")["outputs"])
+    method = _method(ds)
+    return list(sensitivities(ds, method).targets) if method else []
 
 
-def _has_indices(ds: xr.Dataset) -> bool:
-    crossed = DESIGNS[ds.attrs["design"]].crossed
-    return crossed and len(np.unique(ds["group"])) * ds.attrs["replicates"] >= MIN_GROUPS
+def _method(ds: xr.Dataset) -> str | None:
+    """Return the method whose indices are estimated from the first rows, if these are enough."""
+    groups = len(np.unique(ds["group"])) * ds.attrs["replicates"]
+    name = piloted_by(DESIGNS[ds.attrs["design"]])
+    return name if name and groups >= METHODS[name].least else None
 
 
-def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[tuple[str, str, Estimate]]:
+def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[tuple[str, str, Numbers]]:
     for name, output in summarise(ds).outputs.items():
         for one in output.statistics:
             if one.is_read_by(RUNNING):
-                numbers = json_form.numbers(one.estimate)
-                yield name, one.label, _numbers(numbers)
-    if _has_indices(ds):
-        for name, kinds in sensitivities(ds, "sobol", targets)["outputs"].items():
-            for kind in ("S1", "ST"):
-                for parameter, index in kinds.get(kind, {}).items():
-                    yield name, f"{kind} {parameter}", _numbers(index)
-
-
-def _numbers(entry: dict[str, Any]) -> Estimate:
-    value, low, high = (
-        np.nan if entry.get(end) is None else float(entry[end]) for end in ("value", "low", "high")
-    )
-    return value, low, high
+                yield name, one.label, one.estimate.finite.numbers
+    if method := _method(ds):
+        for name, found in sensitivities(ds, method, targets).targets.items():
+            for kind, values in found.kinds().items():
+                for parameter, index in values.items():
+                    yield name, f"{kind.key} {parameter}", index.numbers

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from uq import intervals, two_samples
 from uq.analysis.estimators import MEAN, SD, Estimator, Sample
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
 from uq.rows.elements import (
     Floats,

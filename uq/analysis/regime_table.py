@@ -9,8 +9,10 @@ import xarray as xr
 from uq.analysis.regime_split import between_share
 from uq.analysis.summary import regime_shares
 from uq.errors import InputError
-from uq.indices.given_data import given_data_indices
-from uq.indices.targets import RefusedError, Target, category_targets, number_of
+from uq.indices.targets import Target, category_targets, number_of
+from uq.methods.indices import RefusedError
+from uq.methods.registry import KS, METHODS
+from uq.methods.sample import Sample
 from uq.moments import moments
 from uq.order_statistics import is_within
 from uq.rows.elements import (
@@ -103,10 +105,10 @@ def _numbers(rows: xr.Dataset) -> Iterator[Target]:
 def _distances(inputs: dict[str, Floats], target: Target) -> list[float]:
     """Return the distance of each input, and the largest of inputs that play no part."""
     try:
-        found = given_data_indices("regional", inputs, target.values, {})
+        found = METHODS["regional"].indices(Sample.plain(target.values, inputs))
     except RefusedError:
         return [np.nan] * (len(inputs) + 1)
-    return [*(index.value for index in found.values["KS"].values()), found.dummy["KS"]]
+    return [*(index.value for index in found.values[KS].values()), found.nulls[KS].one]
 
 
 def _quantiles(values: Floats) -> Floats:

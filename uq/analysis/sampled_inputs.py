@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.indices.independent_inputs import independent_inputs
 from uq.inputs.conditioning import cdf_within, factor_of, ppf_within
 from uq.inputs.distributions import Law

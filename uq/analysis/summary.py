@@ -14,7 +14,7 @@ from uq.analysis.statistics.statistic import Context, Kind, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.statistics.thresholds import share_of
 from uq.contract import Status
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,

@@ -11,8 +11,12 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy import stats
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.indices.targets import lightened, number_of
+from uq.methods.indices import Kind
+from uq.methods.method import Method
+from uq.methods.registry import METHODS, piloted_by
+from uq.methods.sample import Sample
 from uq.order_statistics import is_within
 from uq.rows.elements import (
     Element,
@@ -42,8 +46,9 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
     -------
     dict
         Element of an output -> ``units``, width of the ``mean``'s interval, of ``quantiles`` by
-        probability and of ``thresholds``' probabilities, and, where the design is made for Sobol'
-        indices, the widest of ``S1`` and ``ST``. None where the pilot cannot tell.
+        probability and of ``thresholds``' probabilities, and, where a pilot can forecast the
+        indices that the design feeds, the widest of each kind of them (``S1``, ``ST``). None where
+        the pilot cannot tell.
     """
     analysis = analysis_of(pilot)
     samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
@@ -68,8 +73,16 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
                 for t in analysis.thresholds.get(element.output, ())
             },
         }
-        if DESIGNS[pilot.attrs["design"]].crossed:
-            found[element.name] |= _indices(whole, groups, labels, samples * replicates, factor)
+        if method := piloted_by(DESIGNS[pilot.attrs["design"]]):
+            target = lightened(number_of(whole))
+            own = Sample(target.values, {}, groups[None], tuple(labels))
+            spreads = {} if target.refused else _spreads(METHODS[method], own)
+            n = samples * replicates
+            found[element.name] |= {
+                kind.key: _index(spreads.get(kind), n, factor)
+                for kind in METHODS[method].kinds
+                if not kind.of_pairs
+            }
     return found
 
 
@@ -118,20 +131,15 @@ def _groups(pilot: xr.Dataset, blocks: int) -> NDArray[np.intp]:
     return np.lexsort(keys).reshape(-1, blocks)
 
 
-def _indices(
-    element: Element, groups: NDArray[np.intp], labels: list[str], n: int, factor: float | None
-) -> dict[str, float | None]:
-    """Return the widest interval of first-order and of total indices, as of independent groups."""
-    target = lightened(number_of(element))
-    y = target.values[groups]
-    y = y[np.isfinite(y).all(axis=1)]
-    if target.refused or factor is None or len(y) < _ENOUGH_ROWS or not y.std() > 0:
-        return {"S1": None, "ST": None}
-    block = dict(zip(labels, ((y - y.mean()) / y.std()).T, strict=True))
-    mixed = [value for label, value in block.items() if label.startswith("AB_")]
-    first = max(np.std(block["B"] * (one - block["A"])) for one in mixed)
-    total = max(np.std(0.5 * (block["A"] - one) ** 2) for one in mixed)
-    return {
-        "S1": float(2 * factor * first / np.sqrt(n)),
-        "ST": float(2 * factor * total / np.sqrt(n)),
-    }
+def _spreads(method: Method, sample: Sample) -> dict[Kind, float]:
+    """Return what a few groups tell of each kind of index; nothing where they are too few."""
+    whole = sample.values[sample.groups][sample.whole]
+    enough = len(whole) >= _ENOUGH_ROWS and whole.std() > 0
+    return method.pilot(sample) if enough and method.pilot else {}
+
+
+def _index(spread: float | None, groups: int, factor: float | None) -> float | None:
+    """Return the widest interval of a kind of index, as of independent groups."""
+    if spread is None or factor is None:
+        return None
+    return float(2 * factor * spread / np.sqrt(groups))

@@ -7,12 +7,12 @@ from uq.analysis.widths import expected_widths
 from uq.cli.catalogue import finite
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.cli.progress import say_compiling
+from uq.methods.registry import METHODS
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
 from uq.study.definition import load_study
 
 _SURE = 1.2  # a forecast that may be further off is shown with its band
-_INDICES = ("S1", "ST")
 
 
 def plan(
@@ -56,6 +56,7 @@ def _show(path: str, description: str, cost: Cost, found: dict[str, Any]) -> Non
 
 
 def _show_widths(widths: dict[str, Any]) -> None:
+    kinds = {kind.key: None for method in METHODS.values() for kind in method.kinds}
     asked = [probability for entry in widths.values() for probability in entry["quantiles"]]
     heading("\nExpected width of the 95 % intervals of mean and quantiles")
     grid(_widths(widths), header=("", "mean", *dict.fromkeys(asked)))
@@ -67,7 +68,7 @@ def _show_widths(widths: dict[str, Any]) -> None:
                 (f"P({name} > {number(float(t))})", width)
                 for t, width in entry["thresholds"].items()
             ),
-            *((f"{kind} of {name}, the widest", entry[kind]) for kind in _INDICES if kind in entry),
+            *((f"{kind} of {name}, the widest", entry[kind]) for kind in kinds if kind in entry),
         )
     ]
     if others:

@@ -1,7 +1,6 @@
-"""The summary and the sensitivity indices of a result, as tables of 80 columns."""
+"""The summary of a result, as tables of 80 columns."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import xarray as xr
 
@@ -16,8 +15,6 @@ from uq.wording import (
     duration,
     estimated,
     failed_interval,
-    index,
-    index_interval,
     interval,
     number,
 )
@@ -138,51 +135,3 @@ def _estimate(one: Entry) -> Estimate:
 
 def _example(ds: xr.Dataset, status: str) -> str:
     return str(ds["status"].attrs.get(f"example_{status.replace('-', '_')}", ""))
-
-
-def show_sensitivity(found: Entry) -> None:
-    """Print what `uq.indices.sensitivities` found."""
-    dropped = found["groups_dropped"]
-    more = f"of {found['rows_used']} rows" + (f", {dropped} groups dropped" if dropped else "")
-    heading(f"Sensitivity by {found['method']}", more)
-    for name, output in found["outputs"].items():
-        heading(f"\n{name}")
-        if refusal := output.get("refused"):
-            paragraph(refusal, indent=2)
-            continue
-        kinds = {kind: value for kind, value in output.items() if _is_index(value)}
-        pairs = {"S2": kinds.pop("S2")} if "S2" in kinds else {}
-        for table in (kinds, pairs):
-            if table:
-                grid(_ranked(table, output.get("dummy", {})), header=_header(table))
-        if noise := output.get("noise"):
-            share = (index(noise, "value", "ST"), index_interval(noise, "ST"))
-            grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
-        for note in output["notes"]:
-            paragraph(note, indent=2)
-
-
-def _is_index(value: Any) -> bool:
-    return isinstance(value, dict) and all(isinstance(one, dict) for one in value.values())
-
-
-def _header(table: Entry) -> list[str]:
-    return ["", *(text for kind in table for text in (kind, "95 % interval"))]
-
-
-def _ranked(table: Mapping[str, Any], dummy: Mapping[str, float]) -> Iterator[list[str]]:
-    """Yield one line per parameter, the most important first."""
-    last = list(table.values())[-1]
-    for label in sorted(last, key=lambda label: -(last[label]["value"] or 0.0)):
-        cells = (
-            (index(one[label], "value", kind), index_interval(one[label], kind))
-            for kind, one in table.items()
-        )
-        yield [label, *(text for pair in cells for text in pair)]
-    if dummy:
-        cells = ((index(dummy, kind, kind), "") for kind in table)
-        yield ["(an input without effect)", *(text for pair in cells for text in pair)]
-    if many := {kind: dummy.get(f"{kind}_any") for kind in table if f"{kind}_any" in dummy}:
-        cells = ((index(many, kind, kind) if kind in many else "", "") for kind in table)
-        label = f"(largest of {len(last)} such inputs)"
-        yield [label, *(text for pair in cells for text in pair)]

@@ -1,48 +1,55 @@
 """What ``uq status``, ``uq extend``, ``uq rerun`` and ``uq verify`` do."""
 
-from collections.abc import Mapping, Sequence
-from functools import partial
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from uq.cli import progress
-from uq.cli.printing import console, duration, grid, heading
-from uq.cli.simulation import literal
-from uq.cli.studies import carried_out, end
+from uq.cli.printing import console, duration, grid, heading, print_json
+from uq.cli.run import carried_out, end
+from uq.cli.simulate import literal
 from uq.compilation import compilation
 from uq.errors import InputError
 from uq.rows import results
+from uq.running.options import RunOptions
 from uq.upkeep import extending, verification
+from uq.upkeep.rerunning import rerun_failed
+from uq.upkeep.status import RunStatus, run_status
+from uq.upkeep.stored_study import study_of
 
 
-def show_status(standing: Mapping[str, Any]) -> None:
+def status(path: Path, json: bool) -> None:
     """Print where a run stands."""
-    process = standing["process"]
-    by = f" (process {process['pid']} on {process['host']})" if process else ""
-    heading(f"{standing['output']}: {standing['state']}{by}")
-    rate, left = standing["rate"], standing["seconds_left"]
+    found = run_status(path)
+    print_json(asdict(found)) if json else _show_status(found)
+
+
+def _show_status(found: RunStatus) -> None:
+    writer = found.process
+    by = f" (process {writer.pid} on {writer.host})" if writer else ""
+    heading(f"{found.output}: {found.state}{by}")
+    rate, left = found.rate, found.seconds_left
     time_left = (duration(left) or f"{left:.0f} s") if left else ""
-    statuses = [f"{count} {label}" for label, count in standing["status"].items()]
+    statuses = [f"{count} {label}" for label, count in found.status.items()]
     grid(
         [
-            ("done", f"{standing['done']} of {standing['rows']} rows"),
-            ("failed", str(standing["failed"])),
-            ("left", ", ".join(filter(None, (str(standing["left"]), time_left)))),
+            ("done", f"{found.done} of {found.rows} rows"),
+            ("failed", str(found.failed)),
+            ("left", ", ".join(filter(None, (str(found.left), time_left)))),
             ("rate", f"{rate:.3g} rows/s" if rate else "-"),
             ("by status", ", ".join(statuses) or "-"),
         ]
     )
-    if standing["state"] != "complete" and standing["complete_rows"] is not None:
-        console.print(f"\nUntil then the result with {standing['complete_rows']} rows stays.")
+    if found.state != "complete" and found.complete_rows is not None:
+        console.print(f"\nUntil then the result with {found.complete_rows} rows stays.")
 
 
-def extend(
-    path: Path, samples: int, model: str | None, quiet: bool, options: Mapping[str, Any]
-) -> int:
+def extend(path: Path, samples: int, model: str | None, quiet: bool, options: RunOptions) -> int:
     """Give a result more samples and show it; return the exit code."""
-    action = partial(extending.extend, path, samples, model, **options)
-    ds, note = carried_out(path, quiet, action)
-    return end(extending.study_of(path, model), ds, path, quiet, note, options["mixed"])
+    ds, note = carried_out(
+        path, quiet, options, lambda chosen: extending.extend(path, samples, model, chosen)
+    )
+    return end(study_of(path, model), ds, path, quiet, note, options.mixed)
 
 
 def rerun(
@@ -51,15 +58,16 @@ def rerun(
     settings: Sequence[str],
     model: str | None,
     quiet: bool,
-    options: Mapping[str, Any],
+    options: RunOptions,
 ) -> int:
     """Compute failed rows again and show the result; return the exit code."""
     if not failed:
         raise InputError("uq rerun: say which rows: --failed")
     changes = dict(literal(text) for text in settings)
-    action = partial(extending.rerun_failed, path, changes, model, **options)
-    ds, note = carried_out(path, quiet, action)
-    return end(extending.study_of(path, model), ds, path, quiet, note, options["mixed"])
+    ds, note = carried_out(
+        path, quiet, options, lambda chosen: rerun_failed(path, changes, model, chosen)
+    )
+    return end(study_of(path, model), ds, path, quiet, note, options.mixed)
 
 
 def verify(path: Path, model: str | None) -> int:

@@ -1,8 +1,5 @@
 """The figure of sensitivity indices."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -18,27 +15,12 @@ from uq.drawing.figure import (
     with_symbol,
 )
 from uq.errors import InputError
-from uq.indices.sensitivities import sensitivities
+from uq.indices.ranked import size
+from uq.indices.sensitivities import TargetIndices, sensitivities
 from uq.indices.targets import FORMS, split_name
 from uq.rows.elements import named_elements
 from uq.rows.variables import is_category
 from uq.wording import time_unit
-
-MEANING = {
-    "S1": "alone (S1)",
-    "ST": "with all interactions (ST)",
-    "delta": "Borgonovo's delta",
-    "pawn": "PAWN, median",
-    "mu": "mean effect (mu)",
-    "sigma": "scatter of effects (sigma)",
-    "mu_star": "mean magnitude of effects (mu*)",
-    "shapley": "Shapley effect",
-    "KS": "Kolmogorov's distance of the rows where it happens",
-}
-
-
-def _is_bar(kind: str, value: Any) -> bool:
-    return isinstance(value, dict) and kind not in ("S2", "dummy", "noise")
 
 
 def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:
@@ -62,58 +44,60 @@ def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure
     InputError
         When there is no such output, it stands for several, or it has no indices.
     """
-    found = sensitivities(ds, method, output)["outputs"]
+    found = sensitivities(ds, method, output).targets
     if len(found) > 1:
         raise InputError(f"'{output}' stands for several; name one of: {', '.join(found)}")
-    ((name, entry),) = found.items()
-    if "refused" in entry:
-        raise InputError(f"{name}: {entry['refused']}")
-    return bars(ds, name, entry)
+    ((name, one),) = found.items()
+    if one.refused:
+        raise InputError(f"{name}: {one.refused}")
+    return bars(ds, one)
 
 
 @styled
-def bars(ds: xr.Dataset, name: str, entry: Mapping[str, Any]) -> Figure:
-    """Draw one entry of what `uq.indices.sensitivities` returns.
+def bars(ds: xr.Dataset, found: TargetIndices) -> Figure:
+    """Draw the indices of one target.
 
     Parameters
     ----------
     ds : xarray.Dataset
-    name : str
-    entry : dict
+    found : TargetIndices
         Not refused.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
-    kinds = [kind for kind, value in entry.items() if _is_bar(kind, value)]
-    parameters = sorted(entry[kinds[-1]], key=lambda p: entry[kinds[-1]][p]["value"] or 0.0)
+    kinds, name = found.kinds(), found.target.name
+    last = list(kinds.values())[-1]
+    parameters = sorted(last, key=lambda parameter: size(last[parameter]))
     labels = [_named(ds[parameter]) for parameter in parameters]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
     figure, (axes,) = new_figure(0.8 + 0.13 * lines.sum(), entries=2)
     middle = np.cumsum(lines) - lines / 2
     thickness = 0.8 * lines.min() / len(kinds)
-    for i, kind in enumerate(kinds):
+    for i, (kind, values) in enumerate(kinds.items()):
         y = middle + thickness * (len(kinds) / 2 - i - 0.5)
-        found = [entry[kind][parameter] for parameter in parameters]
-        table = np.array([(one["value"], one["low"], one["high"]) for one in found], dtype=float)
+        drawn = [values[parameter] for parameter in parameters]
+        table = np.array([(one.value, one.low, one.high) for one in drawn])
         value, ends = table[:, 0], table[:, 1:].T
-        axes.barh(y, value, thickness, color=COLOURS[i], label=MEANING.get(kind, kind))
+        axes.barh(y, value, thickness, color=COLOURS[i], label=kind.words)
         axes.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
-    for kind, limit in entry.get("dummy", {}).items():
-        of_all = kind.endswith("_any")
-        label = "the largest of as many" if of_all else "largest of inputs that play no part"
-        axes.axvline(limit, color="black", ls=":" if of_all else "--", lw=0.8, label=label)
+    for null in found.indices.nulls.values():
+        label = "largest of inputs that play no part"
+        axes.axvline(null.one, color="black", ls="--", lw=0.8, label=label)
+        if np.isfinite(null.largest):
+            label = "the largest of as many"
+            axes.axvline(null.largest, color="black", ls=":", lw=0.8, label=label)
     axes.axvline(0, color="black", lw=0.6)
     # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
-    shares = "mu_star" not in kinds
+    shares = all(kind.unit != "output" for kind in kinds)
     if shares:
         low, high = axes.get_xlim()
         axes.set_xlim(max(low, -0.25), min(high, 1.25))
     axes.set_yticks(middle, labels)
     axes.set_ylim(0, lines.sum())
     roomy(axes, ticks=3)  # the labels take most of the width
-    known = any(one["low"] is not None for kind in kinds for one in entry[kind].values())
+    known = any(np.isfinite(one.low) for values in kinds.values() for one in values.values())
     form, *_ = split_name(name)
     unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect, in the unit of the output"
     axis = "Sensitivity index [1]" if shares else unit

@@ -34,8 +34,8 @@ from uq.drawing.figure import (
 )
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
-from uq.indices.regional import ks_distances
-from uq.indices.targets import RefusedError
+from uq.methods.indices import RefusedError
+from uq.methods.regional import ks_distances
 from uq.rows.elements import Element, Floats, independent_rows, named_elements, replicates_of
 from uq.tails import lacks_variance
 

@@ -20,8 +20,9 @@ from uq.inputs.values import unknown_name
 from uq.rows import results
 from uq.rows.sampling import Rows
 from uq.rows.variables import outputs_of
-from uq.rows.workload import Work
+from uq.rows.workload import Workload
 from uq.running import runner
+from uq.running.options import RunOptions
 
 
 def basins(
@@ -90,15 +91,16 @@ def basins(
     choices = json.dumps([grid.choices, compared, float(tolerance)])
     identity = hashlib.sha256(choices.encode()).hexdigest()
     finish = partial(_finish, grid, compared, float(tolerance), identity)
-    work = Work(
+    workload = Workload(
         grid.model, grid.reference, grid.settings, grid.rows, 1, block=grid.block, finish=finish
     )
     path = None if output is None else Path(output)
     if path is not None:
         if path.is_file():
             return _found(path, identity)
-        store.check_target(path, store.row_bytes(work) * work.total)
-    ds = runner.carry_out(work, workers if grid.reference else 0, scheduler)
+        store.check_target(path, store.row_bytes(workload) * workload.total)
+    options = RunOptions(workers if grid.reference else 0, scheduler)
+    ds = runner.carry_out(workload, options)
     if path is not None:
         store.write(ds, path)
     return ds

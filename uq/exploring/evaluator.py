@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows
-from uq.rows.workload import Work
-from uq.running.dispatch import Job
-from uq.running.executor import Computing
+from uq.rows.workload import Workload
+from uq.running.dispatch import Dispatcher
+from uq.running.executor import Executor
+from uq.running.options import DEFAULTS, RunOptions
 from uq.store import MemoryStore
 
 if TYPE_CHECKING:
@@ -29,8 +30,7 @@ class Evaluator:
     study : Study
     output : str
         The output that is wanted: computed alone, where the model can do so.
-    workers, scheduler
-        As in `uq.run`.
+    options : RunOptions
 
     Attributes
     ----------
@@ -38,16 +38,11 @@ class Evaluator:
         Rows computed so far.
     """
 
-    def __init__(
-        self,
-        study: "Study",
-        output: str,
-        workers: int | None = None,
-        scheduler: str | None = None,
-    ) -> None:
+    def __init__(self, study: "Study", output: str, options: RunOptions = DEFAULTS) -> None:
         cheap = output in study.model.cheap
         self.rows = 0
-        self._work = Work(
+        self._options = options
+        self._workload = Workload(
             model=study.model.alone(output) if cheap else study.model,
             model_reference=study.model_reference,
             settings=study.settings,
@@ -56,14 +51,14 @@ class Evaluator:
             block=_NONE.part,
             output=output if cheap else "",
         )
-        self._computing = Computing(self._work, workers, scheduler)
+        self._executor = Executor(self._workload, options)
 
     def __enter__(self) -> Self:
-        self._computing.__enter__()
+        self._executor.__enter__()
         return self
 
     def __exit__(self, *exception: object) -> None:
-        self._computing.__exit__(*exception)
+        self._executor.__exit__(*exception)
 
     def __call__(self, x: NDArray[np.float64], seed: NDArray[np.uint64]) -> Chunk:
         """Run the model on some rows.
@@ -81,9 +76,10 @@ class Evaluator:
         """
         zeros = np.zeros(len(x), np.int64)
         rows = Rows(x, seed, zeros.astype(np.int32), zeros, zeros.astype(np.int16))
-        work = self._work._replace(total=len(x), block=rows.part)
-        store = MemoryStore(work)
-        self._computing.finish(Job(work, None, lambda _: None, store, self._computing.evaluate))
+        workload = self._workload._replace(total=len(x), block=rows.part)
+        store = MemoryStore(workload)
+        dispatcher = Dispatcher(workload, self._options, store, self._executor.evaluate)
+        self._executor.finish(dispatcher)
         columns, status, failures = store.chunk()
         numbered = {label: (self.rows + row, text) for label, (row, text) in failures.items()}
         self.rows += len(x)

@@ -20,6 +20,7 @@ from uq.exploring.rare_event_intervals import (
 )
 from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, subset_simulation
 from uq.intervals import Ends, binomial_interval
+from uq.running.options import RunOptions
 from uq.study.definition import Study, load_study
 
 METHODS = ("subset", "importance")
@@ -101,7 +102,7 @@ def rare_event(
             f"{study.path}: [design] method = 'imported': rare events draw rows from laws, and"
             " imported rows have none; use another method"
         )
-    evaluator = Evaluator(study, output.partition("[")[0], workers, scheduler)
+    evaluator = Evaluator(study, output.partition("[")[0], RunOptions(workers, scheduler))
     margin = LimitState(study, output, threshold, below, evaluator)
     generators = np.random.default_rng((study.design.seed, 1)).spawn(replicates)
     with evaluator:

@@ -2,7 +2,7 @@
 
 import xarray as xr
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import factor_of
 from uq.rows.elements import Floats
 from uq.study.file import Tied

@@ -4,57 +4,38 @@ The rows themselves cannot tell. A factor recovered from a product is rounded, a
 where only what it multiplies does; an input of discrete values may stay as it is in its own step.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
-from uq.indices.groups import grouped_rows
 from uq.rows.elements import Floats
 from uq.study.file import Tied
 from uq.study.reading import read_study_text
 
 
-class Steps(NamedTuple):
-    """Groups of rows in which one input changes at a time.
-
-    Attributes
-    ----------
-    order : ndarray of int, shape (R, N, d + 1)
-        Row of each replicate, group and place in it.
-    parameters : tuple of str
-        The inputs that change, d of them.
-    direction : ndarray, shape (R, N, d, d)
-        Whether a step (third axis) raises an input (last axis), 1, lowers it, -1, or neither, 0,
-        in probability.
-    """
-
-    order: NDArray[np.intp]
-    parameters: tuple[str, ...]
-    direction: Floats
-
-
-def steps(ds: xr.Dataset) -> Steps:
-    """Find the groups of a design in which one input changes at a time, and its steps.
+def directions(ds: xr.Dataset, order: NDArray[np.intp]) -> Floats:
+    """Find the steps of a design in which one input changes at a time.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        A result, its rows in any order.
+        A result.
+    order : ndarray of int, shape (R, N, d + 1)
+        Row of each replicate, group and place in it.
 
     Returns
     -------
-    Steps
+    ndarray, shape (R, N, d, d)
+        Whether a step (third axis) raises an input (last axis), 1, lowers it, -1, or neither, 0,
+        in probability.
 
     Raises
     ------
     InputError
-        When rows are missing or are not those of the design.
+        When the rows are not those of the design.
     """
-    order, _ = grouped_rows(ds)
     entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
     scales = {name: e.times for name, e in entries.items() if not isinstance(e, Tied)}
     parameters = tuple(scales)
@@ -71,7 +52,7 @@ def steps(ds: xr.Dataset) -> Steps:
             f"the rows are not those of its design as '{ds.attrs['design']}' is drawn here, so the"
             " effect of an input cannot be determined: run the study again"
         )
-    return Steps(order, parameters, direction)
+    return np.asarray(direction)
 
 
 def _unit(ds: xr.Dataset, order: NDArray[np.intp], d: int) -> Floats:

@@ -1,9 +1,7 @@
-"""What goes into every sensitivity method, a target, and what comes out of it, indices."""
+"""What sensitivity indices are of: a target, one number per row."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -46,44 +44,6 @@ class Target:
     refused: str = ""
     event: bool = False
     notes: tuple[str, ...] = ()
-
-
-class Index(NamedTuple):
-    """One index with its 95 % interval, NaN where there is none."""
-
-    value: float
-    low: float = np.nan
-    high: float = np.nan
-
-
-class Indices(NamedTuple):
-    """All indices of one target.
-
-    Attributes
-    ----------
-    values : dict of str to dict
-        ``S1``, ``ST``, ... -> parameter (``"first,second"`` for a pair) -> Index.
-    notes : tuple of str
-        Sentences on what could not be given.
-    dummy : dict of str to float
-        Name of the index -> its largest value over inputs that play no part; with ``_any``, what
-        the largest of as many such inputs as there are passes once in twenty.
-    noise : Index or None
-        Share of the variance that remains once all inputs are known, where rows tell it.
-    """
-
-    values: dict[str, dict[str, Index]]
-    notes: tuple[str, ...] = ()
-    dummy: Mapping[str, float] = MappingProxyType({})
-    noise: Index | None = None
-
-
-class RefusedError(Exception):
-    """A target has no indices; the message is the sentence that says why."""
-
-
-ALL_NOISE = "no input changes it at one seed: all of its variance is noise"
-"""Why an output of a random model has no shares where rows that are compared share a seed."""
 
 
 def targets(

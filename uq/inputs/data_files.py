@@ -15,7 +15,7 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.designs.table import IMPORTED
+from uq.designs.registry import IMPORTED
 from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.literals import key

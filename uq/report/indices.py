@@ -1,21 +1,24 @@
 """What a report says of sensitivities: one table for each target of each method."""
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from math import isfinite
+from typing import NamedTuple
 
 import xarray as xr
 
 from uq.drawing.figure import sentence, with_symbol
 from uq.drawing.index_plot import bars, subject
 from uq.errors import InputError
-from uq.indices.sensitivities import methods, sensitivities
+from uq.estimate import Estimate
+from uq.indices.ranked import Values, lines, ranking, size
+from uq.indices.sensitivities import TargetIndices, methods, sensitivities
 from uq.indices.targets import FORMS, split_name
+from uq.methods.indices import S1, Kind, Null
 from uq.report.cells import Cell, Table
 from uq.report.pictures import Picture, picture
-from uq.wording import index, index_interval
 
-_SHARES, _LEAST = ("S1", "ST", "shapley"), 0.05
-"""Of these shares of a variance, less than that is not worth a sentence of its own."""
+_LEAST = 0.05
+"""Less than this share of a variance is not worth a sentence of its own."""
 
 
 class Subject(NamedTuple):
@@ -73,91 +76,59 @@ def _method(ds: xr.Dataset, name: str) -> Method:
         found = sensitivities(ds, name)
     except InputError as error:
         return Method(name, refused=str(error))
-    used = f"Of {found['rows_used']} rows"
-    if found["groups_dropped"]:
-        used += (
-            f", {found['groups_dropped']} groups dropped for lack of a value in some of their rows"
-        )
-    subjects = (_subject(ds, name, *one) for one in found["outputs"].items())
+    used = f"Of {found.rows_used} rows"
+    if found.groups_dropped:
+        used += f", {found.groups_dropped} groups dropped for lack of a value in some of their rows"
+    subjects = (_subject(ds, name, one) for one in found.targets.values())
     return Method(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(ds: xr.Dataset, method: str, name: str, entry: Mapping[str, Any]) -> Subject:
+def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
+    name, indices = found.target.name, found.indices
     words = " ".join(subject(ds, name).split())
-    if "refused" in entry:
-        return Subject(name, words, refused=entry["refused"])
-    kinds = {kind: value for kind, value in entry.items() if _is_index(value)}
-    pairs = {"S2": kinds.pop("S2")} if "S2" in kinds else {}
-    dummy = entry.get("dummy", {})
-    told: tuple[tuple[str, Mapping[str, Any], Mapping[str, float]], ...] = (
-        (f"Indices of {name}", kinds, dummy),
-        (f"Second order, of {name}", pairs, {}),
-    )
-    tables = tuple(_table(*one) for one in told if one[1])
-    if noise := entry.get("noise"):
-        line = [(Cell("noise"), _cell(noise, "ST"))]
+    if found.refused:
+        return Subject(name, words, refused=found.refused)
+    kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
+    told = ((f"Indices of {name}", kinds), (f"Second order, of {name}", pairs))
+    tables = tuple(_table(caption, one, indices.nulls) for caption, one in told if one)
+    if indices.noise:
+        line = [(Cell("noise"), _cell(S1, indices.noise))]
         tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
     caption = f"Sensitivity indices of {name} by {method}"
-    drawn = picture(bars(ds, name, entry), caption) if kinds else None
+    drawn = picture(bars(ds, found), caption) if kinds else None
     article = "the " * (split_name(name)[0] in FORMS)
-    leading = _leading(ds, method, f"{article}{words[:1].lower()}{words[1:]}", kinds, dummy)
-    return Subject(name, words, "", tables, drawn, tuple(entry["notes"]), leading)
+    leading = _leading(ds, method, f"{article}{words[:1].lower()}{words[1:]}", found)
+    return Subject(name, words, "", tables, drawn, indices.notes, leading)
 
 
-def _leading(
-    ds: xr.Dataset,
-    method: str,
-    words: str,
-    kinds: Mapping[str, Any],
-    dummy: Mapping[str, float],
-) -> str:
+def _leading(ds: xr.Dataset, method: str, words: str, found: TargetIndices) -> str:
+    kinds = found.kinds()
     if not kinds:
         return ""
-    kind, (first, *others) = list(kinds)[-1], _ranking(kinds)
-    entry = kinds[kind][first]
-    value = entry["value"] or 0.0
-    if value <= dummy.get(f"{kind}_any", dummy.get(kind, 0.0)):
+    kind, (first, *others) = list(kinds)[-1], ranking(kinds)
+    index, null = kinds[kind][first], found.indices.nulls.get(kind, Null(0.0))
+    if size(index) <= (null.largest if isfinite(null.largest) else null.one):
         return ""
-    told, low = kind if kind == method else f"{method}: {kind}", entry.get("low")
-    size = index(entry, "value", kind)
-    if others and low is not None and low < (kinds[kind][others[0]]["value"] or 0.0):
+    told = kind.key if kind.key == method else f"{method}: {kind.key}"
+    if others and index.low < size(kinds[kind][others[0]]):
         return (
             f"Which input matters most to {words} is not settled "
-            f"({told} of {first} is {index_interval(entry, kind)})."
+            f"({told} of {first} is {kind.interval(index)})."
         )
-    if kind in _SHARES and value < _LEAST:
-        return f"No input alone does much to {words} ({told} is {size} at most)."
+    if kind.unit == "variance" and index.value < _LEAST:
+        return f"No input alone does much to {words} ({told} is {kind.text(index.value)} at most)."
     name = sentence(with_symbol(ds[first]), width=1000)
-    return f"{name} matters most to {words} ({told} = {size})."
+    return f"{name} matters most to {words} ({told} = {kind.text(index.value)})."
 
 
-def _is_index(value: Any) -> bool:
-    return (
-        isinstance(value, Mapping)
-        and bool(value)
-        and all(isinstance(one, Mapping) for one in value.values())
-    )
-
-
-def _ranking(kinds: Mapping[str, Any]) -> list[str]:
-    last = list(kinds.values())[-1]
-    return sorted(last, key=lambda label: -(last[label]["value"] or 0.0))
-
-
-def _table(caption: str, kinds: Mapping[str, Any], dummy: Mapping[str, float]) -> Table:
+def _table(caption: str, values: Values, nulls: Mapping[Kind, Null]) -> Table:
     rows = [
-        (Cell(label), *(_cell(one[label], kind) for kind, one in kinds.items()))
-        for label in _ranking(kinds)
+        (Cell(label), *(_cell(kind, one) for kind, one in zip(values, estimates, strict=True)))
+        for label, estimates in lines(values, nulls)
     ]
-    if dummy:
-        limits = (_cell({"value": dummy.get(kind)}, kind) for kind in kinds)
-        rows.append((Cell("(an input without effect)"), *limits))
-    if any(f"{kind}_any" in dummy for kind in kinds):
-        limits = (_cell({"value": dummy.get(f"{kind}_any")}, kind) for kind in kinds)
-        rows.append((Cell(f"(largest of {len(rows) - 1} such inputs)"), *limits))
-    return Table(caption, ("input", *kinds), rows)
+    return Table(caption, ("input", *(kind.key for kind in values)), rows)
 
 
-def _cell(entry: Mapping[str, Any], kind: str) -> Cell:
-    ends = {"low": None, "high": None, **entry}
-    return Cell(index(entry, "value", kind), index_interval(ends, kind), entry["value"])
+def _cell(kind: Kind, one: Estimate) -> Cell:
+    key = one.value if isfinite(one.value) else None
+    return Cell(kind.text(one.value), kind.interval(one), key)

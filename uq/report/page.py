@@ -9,7 +9,7 @@ import xarray as xr
 from markupsafe import Markup, escape
 
 from uq.analysis.summary import Summary, summarise
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.drawing.elements_plot import occurring_regimes
 from uq.drawing.input_plot import inputs
 from uq.errors import InputError

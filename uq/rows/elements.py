@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from uq.columns import censored_name
 from uq.contract import Output
-from uq.designs.seeds import of_curves
-from uq.designs.table import DESIGNS, NOISE
+from uq.designs.layouts import CURVES, NOISE
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.results import elements, failed
@@ -130,7 +130,7 @@ def why_no_statistics(ds: xr.Dataset) -> str:
     design = DESIGNS[ds.attrs["design"]]
     if not design.follows_laws:
         return "do not follow the laws of the inputs"
-    if ds.attrs.get("random") and design.shared_seeds is of_curves:
+    if ds.attrs.get("random") and design.layout is CURVES:
         return "share seeds along a curve, as the model is random"
     return ""
 

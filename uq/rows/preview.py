@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.columns import censored_name
-from uq.rows.workload import Work
+from uq.rows.workload import Workload
 
 if TYPE_CHECKING:
     from uq.rows.evaluate import Chunk
@@ -15,30 +15,30 @@ _KEPT = 4096
 """Values of a life kept at most; of more, every second, every fourth and so on."""
 
 
-class Glimpse:
+class Preview:
     """What the rows of one run say so far, in bounded memory; nothing of it enters a result.
 
     Parameters
     ----------
-    work : Work
+    workload : Workload
     """
 
-    def __init__(self, work: Work) -> None:
+    def __init__(self, workload: Workload) -> None:
         self._regimes: tuple[str, ...] = ()
         self._life, self._label = "", ""
         self._sample = _Sample()
-        outputs = work.model.outputs
+        outputs = workload.model.outputs
         if "regime" in outputs and outputs["regime"].is_category:
             self._regimes = outputs["regime"].categories
-        lives = [name for name in work.shown if outputs[name].is_lifetime]
+        lives = [name for name in workload.shown if outputs[name].is_lifetime]
         if lives:  # the first stands for all, and its first element for all of them
             self._life, dims = lives[0], outputs[lives[0]].dims
-            coordinates = work.model.coordinates(work.settings)
+            coordinates = workload.model.coordinates(workload.settings)
             place = ",".join(f"{dim}={list(coordinates[dim])[0]}" for dim in dims)
             self._label = f"{self._life}[{place}]" if place else self._life
         self._counts = np.zeros(len(self._regimes), dtype=np.int64)
 
-    def see(self, chunk: "Chunk") -> None:
+    def add(self, chunk: "Chunk") -> None:
         """Take note of some rows."""
         if self._regimes:
             codes = chunk.columns["regime"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.designs.table import DESIGNS, block_names
+from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import factor_ends, ppf_between, ppf_within
 from uq.inputs.data_files import numbers
 from uq.inputs.dependence import correlated
@@ -51,7 +51,8 @@ def block_labels(study: "Study") -> tuple[str, ...]:
     """Return the name of each row of a group, in order."""
     table = study.design
     parameters = tuple(study.uncertain)
-    return block_names(DESIGNS[table.method], parameters, table.second_order, study.random)
+    layout = DESIGNS[table.method].layout
+    return layout.labels(parameters, table.second_order, study.random)
 
 
 def group_size(study: "Study") -> int:
@@ -97,7 +98,7 @@ def _seeds(
     study: "Study", replicate: NDArray[np.int64], group: NDArray[np.int64], block: NDArray[np.int64]
 ) -> NDArray[np.uint64]:
     if study.random:
-        rule = DESIGNS[study.design.method].shared_seeds
+        rule = DESIGNS[study.design.method].layout.shared_seeds
         group, block = rule(group, block, block_labels(study))
     return row_seeds(study.design.seed, replicate, group, block)
 

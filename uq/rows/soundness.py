@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from uq.contract import Kind
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 
 _TEXTS = ("title", "source", "study", "study_identity", "design")
 _NUMBERS = ("samples", "replicates")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _FIRST = 32  # samples of the first look at least
 
 
-class Look(NamedTuple):
+class InterimEstimate(NamedTuple):
     """What a run sees when it looks.
 
     Attributes
@@ -37,7 +37,7 @@ class Look(NamedTuple):
     reached: bool
 
 
-def looks(design: "DesignTable") -> tuple[int, ...]:
+def interim_sizes(design: "DesignTable") -> tuple[int, ...]:
     """Return the numbers of samples at which a run looks, the last being all of them."""
     size = design.samples
     sizes = [size]
@@ -48,10 +48,10 @@ def looks(design: "DesignTable") -> tuple[int, ...]:
 
 def confidence(design: "DesignTable") -> float:
     """Return the confidence of the interval of one look (Bonferroni)."""
-    return 1 - (1 - intervals.CONFIDENCE) / len(looks(design))
+    return 1 - (1 - intervals.CONFIDENCE) / len(interim_sizes(design))
 
 
-def look(design: "DesignTable", ds: xr.Dataset) -> Look:
+def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
     """Look at the rows of a run so far.
 
     Parameters
@@ -63,7 +63,7 @@ def look(design: "DesignTable", ds: xr.Dataset) -> Look:
 
     Returns
     -------
-    Look
+    InterimEstimate
     """
     until = design.until
     assert until is not None
@@ -75,13 +75,13 @@ def look(design: "DesignTable", ds: xr.Dataset) -> Look:
     ]
     halves = [(one.high - one.low) / 2 for one in seen]
     worst = int(np.argmax(np.nan_to_num(halves, nan=np.inf)))
-    return Look(seen[worst], bool(halves[worst] <= until.half_width))
+    return InterimEstimate(seen[worst], bool(halves[worst] <= until.half_width))
 
 
 def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
     """Return whether a result that is smaller than its budget is where the run ends."""
     size = _latest(design, ds)
-    return size > 0 and look(design, _first(ds, size)).reached
+    return size > 0 and interim_estimate(design, _first(ds, size)).reached
 
 
 def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
@@ -91,7 +91,7 @@ def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
     """
     if design.until is None:
         return 0
-    return max((size for size in looks(design) if size <= ds.attrs["samples"]), default=0)
+    return max((size for size in interim_sizes(design) if size <= ds.attrs["samples"]), default=0)
 
 
 def _first(ds: xr.Dataset, samples: int) -> xr.Dataset:
@@ -103,7 +103,7 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     until, samples = design.until, int(ds.attrs["samples"])
     assert until is not None
     size = _latest(design, ds)
-    seen = look(design, _first(ds, size))
+    seen = interim_estimate(design, _first(ds, size))
     what = f"{until.estimate} of {until.output}"
     known = "{:.6g}, {:.6g} to {:.6g}".format(*seen.estimate.numbers)
     if np.isnan(seen.estimate.low) and np.isnan(seen.estimate.high):
@@ -114,11 +114,11 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
             f"the budget of {samples} samples is spent: {what} is {known}, and a half-width of"
             f" {until.half_width:g} was asked for"
         )
-    number = 1 + looks(design).index(size)
+    number = 1 + interim_sizes(design).index(size)
     first = "" if size == samples else f" with the first {size} of {samples} samples"
     return (
         f"{what} is {known}: the asked half-width of {until.half_width:g} was reached at look"
-        f" {number} of at most {len(looks(design))}{first}. This interval,"
+        f" {number} of at most {len(interim_sizes(design))}{first}. This interval,"
         f" {confidence(design):.2%} at each look, is one of 95 % for a run that stops so; the"
         " others are for a number of rows fixed beforehand"
     )

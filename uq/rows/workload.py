@@ -1,4 +1,4 @@
-"""What a job has to compute: some rows of one model, whoever asks for them."""
+"""What is to be computed: some rows of one model, whoever asks for them."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -20,7 +20,7 @@ Finish = Callable[
 ]
 
 
-class Work(NamedTuple):
+class Workload(NamedTuple):
     """Rows to be computed, and what becomes of them.
 
     Attributes
@@ -56,9 +56,9 @@ class Work(NamedTuple):
     shown: tuple[str, ...] = ()
 
 
-def work_of(study: "Study") -> Work:
+def workload_of(study: "Study") -> Workload:
     """Return the work that a study is."""
-    return Work(
+    return Workload(
         study.model,
         study.model_reference,
         study.settings,

@@ -21,7 +21,7 @@ from uq.study.code import code_of
 from uq.study.registry import find_model
 
 
-class Task(NamedTuple):
+class ModelSpec(NamedTuple):
     """What a child is for: one model with its settings.
 
     Attributes
@@ -93,20 +93,20 @@ def main(handle: str) -> None:
     """Answer the requests that arrive on a connection until it closes."""
     end_with_parent()
     connection = Connection(int(handle))
-    task: Task = connection.recv()
+    spec: ModelSpec = connection.recv()
     try:
-        model = task.find_model()
-        if model.version != task.version:
+        model = spec.find_model()
+        if model.version != spec.version:
             raise InputError(
                 f"a worker has version {model.version} of model '{model.name}', "
-                f"this process has {task.version}: install the same on both"
+                f"this process has {spec.version}: install the same on both"
             )
-        if task.code not in ("", code_of(task.model)):
+        if spec.code not in ("", code_of(spec.model)):
             raise InputError(
                 f"a worker has other code of model '{model.name}' than this process: start again "
                 "if it was edited meanwhile, or install the same on both"
             )
-        settings = model.settings(**dict(task.settings))
+        settings = model.settings(**dict(spec.settings))
     except Exception as error:
         connection.send((REFUSED, error))
         return

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from uq.errors import InputError
 from uq.provenance import differences
 from uq.rows.evaluate import Chunk
-from uq.running.child import Task
+from uq.running.child import ModelSpec
 from uq.running.isolation import Isolated
 
 _lock = threading.Lock()
@@ -24,7 +24,7 @@ _KEPT = 64  # children at most that wait for more rows of their model
 
 
 def evaluate_rows(
-    task: Task,
+    spec: ModelSpec,
     versions: Mapping[str, str],
     limit: float | None,
     x: NDArray[np.float64],
@@ -38,17 +38,17 @@ def evaluate_rows(
 
     Parameters
     ----------
-    task : uq.running.child.Task
+    spec : uq.running.child.ModelSpec
     versions : dict of str to str
         What computes must be, as `uq.provenance.versions` tells.
     limit : float or None
         Longest time for one row [s].
     x, seed, start
-        As `uq.rows.evaluate.evaluate`.
+        As in `uq.rows.evaluate.evaluate`.
     """
     if wrong := differences(versions):
         raise InputError(f"a worker {wrong}")
-    with _child(task, limit) as child:
+    with _child(spec, limit) as child:
         child.start()
         began = time.perf_counter()
         return child.evaluate(x, seed, start), time.perf_counter() - began
@@ -64,11 +64,11 @@ def end_children() -> None:
 
 
 @contextmanager
-def _child(task: Task, limit: float | None) -> Iterator[Isolated]:
+def _child(spec: ModelSpec, limit: float | None) -> Iterator[Isolated]:
     """Yield a child that nobody else uses, a waiting one if there is one."""
     with _lock:
-        fitting = [child for child in _idle if (child.task, child.limit) == (task, limit)]
-        child = fitting[0] if fitting else Isolated(task, limit)
+        fitting = [child for child in _idle if (child.spec, child.limit) == (spec, limit)]
+        child = fitting[0] if fitting else Isolated(spec, limit)
         if fitting:
             _idle.remove(child)
     try:

@@ -1,4 +1,4 @@
-"""The rows of one run on their way: taken in order, computed here or on workers, kept.
+"""The rows of one run: taken in order, computed here or on workers, kept.
 
 Rows are cut into chunks of whole design groups, one kernel call each. How they are cut and who
 computes them changes no bit of the result.
@@ -6,20 +6,20 @@ computes them changes no bit of the result.
 
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
 from math import ceil
-from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from uq.rows.evaluate import Chunk, KernelError
 from uq.rows.sampling import Rows
-from uq.rows.workload import Work
-from uq.running.isolation import Evaluate, task_of
-from uq.running.sent_chunks import Flight
+from uq.rows.workload import Workload
+from uq.running.isolation import Evaluate
+from uq.running.options import RunOptions
+from uq.running.progress import Progress
+from uq.running.sent_chunks import SentChunks
 from uq.store import DiskStore, MemoryStore, row_bytes
 
 if TYPE_CHECKING:
-    from uq.running.cluster import Workers
+    from uq.running.workers import Workers
 
 CHUNK_SECONDS = 0.5
 """Work in a chunk, unless the caller says how many rows."""
@@ -27,67 +27,25 @@ CHUNK_SECONDS = 0.5
 # Longest chunk for the sake of a whole block of the kernel: half a block may take as long.
 _BLOCK_SECONDS = 5.0
 _FIRST_ROWS = 16
-_IN_FLIGHT = 4  # chunks at least, also while workers start
+_SENT_CHUNKS = 4  # at least, also while workers start
 _LAST_SHARE = 1 / 8  # of a chunk: smaller ones towards the end would waste work
 _GROWTH = 4  # of the chunks of the pilot
 _LIMIT_SHARE = 0.25  # of the time limit of a row, for a whole chunk
 _CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
 _ENOUGH_ROWS = 32  # to blame the model and not the rows
-_POLL_SECONDS = 0.2
 
 
-class Progress(NamedTuple):
-    """How far a run is.
-
-    Attributes
-    ----------
-    done, total, failed : int
-        Rows.
-    found : int
-        Rows among those done that were there from the start.
-    status : dict of str to int
-        Status label -> rows.
-    median : tuple of (str, float) or None
-        Name and median of a life [s] that is of interest, among the rows that arrived in this
-        process.
-    shares : dict of str to float
-        Of regimes, among the same rows.
-    dashboard : str
-        Address of the page of a dask cluster, or "".
-    compiling : bool
-        Whether the model is being compiled, for which rows wait.
-    """
-
-    done: int
-    total: int
-    failed: int
-    found: int = 0
-    status: Mapping[str, int] = MappingProxyType({})
-    median: tuple[str, float] | None = None
-    shares: Mapping[str, float] = MappingProxyType({})
-    dashboard: str = ""
-    compiling: bool = False
-
-
-Report = Callable[[Progress], object]
-
-
-class Job:
-    """Work under way; rows are taken in order.
+class Dispatcher:
+    """Has the rows of a workload computed, in order.
 
     Parameters
     ----------
-    work : Work
-    chunk_rows : int or None
-        Rows per chunk, if the caller has a wish.
-    report : callable
-        Called with a `Progress` whenever rows have arrived.
+    workload : Workload
+    options : RunOptions
     store : MemoryStore or DiskStore
         Where they are kept; what it lacks is computed.
     evaluate : callable
         Computes rows on this computer.
-    row_limit : float or None
-        Longest time for one row [s].
     stop : int, optional
         Number behind the last row that is wanted; by default all are.
 
@@ -99,20 +57,18 @@ class Job:
 
     def __init__(
         self,
-        work: Work,
-        chunk_rows: int | None,
-        report: Report,
+        workload: Workload,
+        options: RunOptions,
         store: MemoryStore | DiskStore,
         evaluate: Evaluate,
-        row_limit: float | None = None,
         stop: int | None = None,
     ) -> None:
-        self.work = work
-        self.report = report
+        self.workload = workload
         self.store = store
-        self._wish = chunk_rows
+        self._options = options
+        self._wish = options.chunk_rows
         self._evaluate = evaluate
-        self._row_limit = row_limit
+        self._row_limit = options.row_limit
         stop = store.total if stop is None else stop
         self._todo = deque((a, min(b, stop)) for a, b in store.missing if a < stop)
         self._rows = sum(b - a for a, b in self._todo)
@@ -138,7 +94,7 @@ class Job:
     @property
     def groups(self) -> int:
         """Tasks into which the rows can be cut at most."""
-        return self.store.total // self.work.group
+        return self.store.total // self.workload.group
 
     def pilot(self, share: float) -> None:
         """Run the first rows here, more and more of them, until a chunk takes a while.
@@ -162,16 +118,16 @@ class Job:
     def finish_on(self, crew: "Workers") -> None:
         """Run the other rows on workers, and here while none of our own is there."""
         self._dashboard = crew.dashboard
-        flight = Flight(self.work, task_of(self.work), crew, self._row_limit)
+        sent = SentChunks(self.workload, crew, self._row_limit)
         while not self.complete:
             threads = crew.threads
             sharing = max(1, threads or crew.own)
-            # No more chunks in flight than keep the workers busy.
-            while self._untaken and len(flight) < max(_IN_FLIGHT, 2 * sharing):
-                flight.send(*self._take(self._shared(sharing)))
+            # No more chunks are sent than keep the workers busy.
+            while self._untaken and len(sent) < max(_SENT_CHUNKS, 2 * sharing):
+                sent.send(*self._take(self._shared(sharing)))
             if crew.own and not threads and self._untaken:
                 self._here(self._shared(sharing))
-            for start, some, chunk, seconds in flight.landed():
+            for start, some, chunk, seconds in sent.returned():
                 self._row_seconds = seconds / len(some.x)
                 self._keep(start, some, chunk)
             self.store.keep_up()
@@ -194,32 +150,32 @@ class Job:
         if stop < end:
             self._todo.appendleft((stop, end))
         self._untaken -= stop - start
-        return start, self.work.block(start, stop)
+        return start, self.workload.block(start, stop)
 
     def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
-        self.store.glimpse.see(chunk)
+        self.store.preview.add(chunk)
         self.store.add(start, some, chunk)
         self._left -= len(some.x)
-        self.tell()  # at once: an interrupt says how many rows are kept
+        self.report_progress()  # at once: an interrupt says how many rows are kept
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
-            raise KernelError(f"model '{self.work.model.name}': every row is wrong: {wrong}")
+            raise KernelError(f"model '{self.workload.model.name}': every row is wrong: {wrong}")
         self.store.keep_up()
 
-    def tell(self) -> None:
+    def report_progress(self) -> None:
         """Report how far the run is."""
         store = self.store
-        seen = store.glimpse.median, store.glimpse.shares
+        seen = store.preview.median, store.preview.shares
         counts = store.done, store.total, store.failed, store.found, dict(store.status)
-        self.report(Progress(*counts, *seen, self._dashboard))
+        self._options.progress(Progress(*counts, *seen, self._dashboard))
 
     def _chunk_rows(self) -> int:
-        most = _CHUNK_BYTES // row_bytes(self.work)
+        most = _CHUNK_BYTES // row_bytes(self.workload)
         if self._row_limit and self._row_seconds:  # sound chunks are not to be stopped
             most = max(1, min(most, int(_LIMIT_SHARE * self._row_limit / self._row_seconds)))
         if self._wish:
             return self._whole(min(self._wish, most) if self._row_limit else self._wish)
-        return min(self._whole(most), chunk_rows(self.work, self._row_seconds))
+        return min(self._whole(most), chunk_rows(self.workload, self._row_seconds))
 
     def _shared(self, threads: int) -> int:
         """Return the rows of the next chunk: all threads are to finish together."""
@@ -229,20 +185,20 @@ class Job:
 
     def _whole(self, size: float) -> int:
         """Round up to whole groups of the design."""
-        return self.work.group * ceil(size / self.work.group)
+        return self.workload.group * ceil(size / self.workload.group)
 
 
-def chunk_rows(work: Work, row_seconds: float) -> int:
+def chunk_rows(workload: Workload, row_seconds: float) -> int:
     """Return how many rows make a good chunk, whole groups of the design.
 
     Parameters
     ----------
-    work : Work
+    workload : Workload
     row_seconds : float
         What a row costs [s], 0 if unknown.
     """
-    size: float = _CHUNK_BYTES // row_bytes(work)
+    size: float = _CHUNK_BYTES // row_bytes(workload)
     if row_seconds:
-        block = min(work.model.block, ceil(_BLOCK_SECONDS / row_seconds))
+        block = min(workload.model.block, ceil(_BLOCK_SECONDS / row_seconds))
         size = min(size, block * max(1, round(CHUNK_SECONDS / (row_seconds * block))))
-    return work.group * ceil(size / work.group)
+    return workload.group * ceil(size / workload.group)

@@ -8,31 +8,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.compilation import compilation
-from uq.errors import InputError
 from uq.interrupts import in_background
 from uq.rows.evaluate import Chunk, evaluate
-from uq.rows.workload import Work
-from uq.running.dispatch import Job
+from uq.rows.workload import Workload
+from uq.running.dispatch import Dispatcher
 from uq.running.isolation import Evaluate, isolated
+from uq.running.options import RunOptions
 
 if TYPE_CHECKING:
-    from uq.running.cluster import Workers
+    from uq.running.workers import Workers
 
 SHORT_SECONDS = 4.0
 """Work that is shorter than this is not worth starting workers."""
 
 
-class Computing:
-    """Whoever computes one job after another; a context manager.
+class Executor:
+    """Whoever computes the rows of one dispatcher after another; a context manager.
 
-    Workers start when a job first needs them, and stay for the next.
+    Workers start when they are first needed, and stay for the next dispatcher.
 
     Parameters
     ----------
-    work : Work
-        The jobs are about its model and settings.
-    workers, scheduler, row_limit
-        As in `uq.run`.
+    workload : Workload
+        All dispatchers are about its model and settings.
+    options : RunOptions
     compiling : callable
         Called when the model begins to be compiled.
 
@@ -44,88 +43,77 @@ class Computing:
     Raises
     ------
     InputError
-        When these exclude each other.
+        When options exclude each other.
     """
 
     evaluate: Evaluate
 
     def __init__(
         self,
-        work: Work,
-        workers: int | None = None,
-        scheduler: str | None = None,
-        row_limit: float | None = None,
+        workload: Workload,
+        options: RunOptions,
         compiling: Callable[[], object] = lambda: None,
     ) -> None:
-        if workers is not None and scheduler is not None:
-            raise InputError("workers and scheduler exclude each other")
-        if workers is not None and workers < 0:
-            raise InputError(f"workers must not be negative: {workers}")
-        if row_limit is not None and not row_limit > 0:
-            raise InputError(f"the time limit of a row must be positive: {row_limit:g} s")
-        if row_limit is not None and workers == 0:
-            raise InputError(
-                "a time limit for rows needs another process that can be stopped: "
-                "workers = 0 has none (leave it out, or take 1)"
-            )
-        self._work, self._row_limit = work, row_limit
-        self._workers, self._scheduler = workers, scheduler
+        options.check()
+        self._workload, self._options = workload, options
         self._compiling = compiling
         self._crew: Workers | None = None
         self._stack = ExitStack()
         self._seconds = 0.0
 
     def __enter__(self) -> Self:
-        if self._workers == 0:
+        if self._options.workers == 0:
             self._stack.enter_context(compilation(self._compiling))
-            self.evaluate = _in_process(self._work)
+            self.evaluate = _in_process(self._workload)
         else:
-            process = isolated(self._work, self._row_limit, self._compiling)
+            process = isolated(self._workload, self._options.row_limit, self._compiling)
             self.evaluate = self._stack.enter_context(process)
         return self
 
     def __exit__(self, *exception: object) -> None:
         self._stack.close()
 
-    def finish(self, job: Job) -> None:
-        """Have all rows of a job computed."""
-        if self._scheduler is not None:
-            crew = self._started(job)  # before anything is computed
-            job.pilot(share=1 / 8)
-            job.finish_on(crew)
+    def finish(self, dispatcher: Dispatcher) -> None:
+        """Have all rows of a dispatcher computed."""
+        workers = self._options.workers
+        if self._options.scheduler is not None:
+            crew = self._started(dispatcher)  # before anything is computed
+            dispatcher.pilot(share=1 / 8)
+            dispatcher.finish_on(crew)
             return
-        if not self._workers and self._crew is None:
-            job.pilot(share=1)
-        if self._workers == 0 or (self._workers is None and self._short(job)):
-            job.finish_here()
-        elif not job.complete:
-            known = self._workers is None and self._crew is None
-            crew = self._started(job)
+        if not workers and self._crew is None:
+            dispatcher.pilot(share=1)
+        if workers == 0 or (workers is None and self._short(dispatcher)):
+            dispatcher.finish_here()
+        elif not dispatcher.complete:
+            known = workers is None and self._crew is None
+            crew = self._started(dispatcher)
             if not known:
-                job.pilot(share=1 / 8)  # while they start
-            job.finish_on(crew)
-        self._seconds += job.seconds
+                dispatcher.pilot(share=1 / 8)  # while they start
+            dispatcher.finish_on(crew)
+        self._seconds += dispatcher.seconds
 
-    def _short(self, job: Job) -> bool:
-        """Return whether a job, with those before it, is not worth starting workers."""
-        return self._crew is None and self._seconds + job.seconds_left < SHORT_SECONDS
+    def _short(self, dispatcher: Dispatcher) -> bool:
+        """Return whether these rows, with those before, are not worth starting workers."""
+        return self._crew is None and self._seconds + dispatcher.seconds_left < SHORT_SECONDS
 
-    def _started(self, job: Job) -> "Workers":
-        from uq.running import cluster
+    def _started(self, dispatcher: Dispatcher) -> "Workers":
+        from uq.running import local_cluster, remote_cluster
 
         if self._crew is None:
-            if self._scheduler is not None:
-                crew = cluster.remote(self._scheduler)
+            if self._options.scheduler is not None:
+                crew = remote_cluster.remote_workers(self._options.scheduler)
             else:
-                crew = cluster.local(min(self._workers or cluster.CORES, job.groups))
+                count = self._options.workers or local_cluster.CORES
+                crew = local_cluster.local_workers(min(count, dispatcher.groups))
             self._crew = self._stack.enter_context(crew)
         return self._crew
 
 
-def _in_process(work: Work) -> Evaluate:
+def _in_process(workload: Workload) -> Evaluate:
     """Return what computes rows in this process: nothing protects it from them."""
 
     def call(x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
-        return in_background(lambda: evaluate(work.model, work.settings, x, seed, start))
+        return in_background(lambda: evaluate(workload.model, workload.settings, x, seed, start))
 
     return call

@@ -28,7 +28,7 @@ from uq.running import child
 from uq.study.code import code_of
 
 if TYPE_CHECKING:
-    from uq.rows.workload import Work
+    from uq.rows.workload import Workload
 
 # Somebody else may have killed a process: three, that of its chunk included, make a row guilty.
 _SINGLE_CRASHES = 2
@@ -43,28 +43,30 @@ Evaluate = Callable[[NDArray[np.float64], NDArray[np.uint64], int], Chunk]
 """``evaluate(x, seed, start)`` -> chunk, as `uq.rows.evaluate.evaluate` for one model."""
 
 
-def task_of(work: "Work") -> child.Task:
+def spec_of(workload: "Workload") -> child.ModelSpec:
     """Return what a process that computes rows of some work is told beforehand."""
-    settings = tuple(asdict(work.settings).items())
-    code = code_of(work.model_reference)
-    return child.Task(work.model_reference, work.model.version, settings, work.output, code)
+    settings = tuple(asdict(workload.settings).items())
+    code = code_of(workload.model_reference)
+    return child.ModelSpec(
+        workload.model_reference, workload.model.version, settings, workload.output, code
+    )
 
 
 @contextmanager
 def isolated(
-    work: "Work", limit: float | None = None, compiling: Callable[[], object] = lambda: None
+    workload: "Workload", limit: float | None = None, compiling: Callable[[], object] = lambda: None
 ) -> Iterator[Evaluate]:
     """Yield a function that computes rows of some work in a process of their own.
 
     Parameters
     ----------
-    work : Work
+    workload : Workload
     limit : float, optional
         Longest time for one row [s].
     compiling : callable
         Called when that process begins to compile.
     """
-    process = Isolated(task_of(work), limit, compiling)
+    process = Isolated(spec_of(workload), limit, compiling)
     with undone(process.close):
         yield process.evaluate
 
@@ -74,7 +76,7 @@ class Isolated:
 
     Parameters
     ----------
-    task : uq.running.child.Task
+    spec : uq.running.child.ModelSpec
     limit : float or None
         Longest time for one row [s]; compiling does not count.
     compiling : callable
@@ -83,11 +85,11 @@ class Isolated:
 
     def __init__(
         self,
-        task: child.Task,
+        spec: child.ModelSpec,
         limit: float | None = None,
         compiling: Callable[[], object] = lambda: None,
     ) -> None:
-        self.task = task
+        self.spec = spec
         self.limit = limit
         self._compiling = compiling
         self._process: subprocess.Popen[bytes] | None = None
@@ -134,8 +136,8 @@ class Isolated:
                 return outcome
             if outcome.status is not Status.CRASHED:
                 break
-        model = self.task.find_model()
-        settings = model.settings(**dict(self.task.settings))
+        model = self.spec.find_model()
+        settings = model.settings(**dict(self.spec.settings))
         return lost_rows(model, settings, 1, cast(Fault, outcome), start)
 
     def close(self) -> None:
@@ -193,7 +195,7 @@ class Isolated:
                 )
             self._connection = connection
             try:
-                connection.send(self.task)
+                connection.send(self.spec)
                 kind, value = connection.recv()
             except (EOFError, OSError):
                 reason = self._end()

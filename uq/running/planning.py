@@ -19,10 +19,10 @@ from uq.interrupts import undone
 from uq.rows import results
 from uq.rows.evaluate import Chunk, joined
 from uq.rows.sampling import Rows
-from uq.rows.workload import Work, work_of
+from uq.rows.workload import Workload, workload_of
 from uq.running import executor
 from uq.running.dispatch import CHUNK_SECONDS, chunk_rows
-from uq.running.isolation import Isolated, task_of
+from uq.running.isolation import Isolated, spec_of
 from uq.store import row_bytes
 from uq.study.definition import Study
 
@@ -93,21 +93,23 @@ def pilot(
     """
     if workers is not None and workers < 0:
         raise InputError(f"workers must not be negative: {workers}")
-    from uq.running.cluster import CORES
+    from uq.running.local_cluster import CORES
 
-    work = work_of(study)
-    processes = min(workers or (1 if workers == 0 else CORES), work.total // work.group)
+    workload = workload_of(study)
+    processes = min(workers or (1 if workers == 0 else CORES), workload.total // workload.group)
     with ExitStack() as stack:
-        crew = [Isolated(task_of(work), None, compiling) for _ in range(processes)]
+        crew = [Isolated(spec_of(workload), None, compiling) for _ in range(processes)]
         for process in crew:
             stack.enter_context(undone(process.close))
         load_seconds = _load_seconds()
-        row_seconds, pilot_seconds = _warm_up(work, crew)
-        some, chunks, row = _sample(work, crew, row_seconds)
-    kept = row_bytes(study) * work.total
+        row_seconds, pilot_seconds = _warm_up(workload, crew)
+        some, chunks, row = _sample(workload, crew, row_seconds)
+    kept = row_bytes(study) * workload.total
     constants = len(study.model.parameter_names) - len(study.uncertain)
-    size = _FILE_BYTES + kept - 8 * constants * work.total  # a constant is one number in the result
-    alone = row.seconds * work.total
+    size = (
+        _FILE_BYTES + kept - 8 * constants * workload.total
+    )  # a constant is one number in the result
+    alone = row.seconds * workload.total
     if workers is None and alone < executor.SHORT_SECONDS:
         processes = 1
     beside = _RUN_LOADS * load_seconds
@@ -120,7 +122,7 @@ def pilot(
     chunk = joined(chunks)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
     cost = Cost(
-        rows=work.total,
+        rows=workload.total,
         workers=processes,
         pilot_rows=len(rows.x),
         row_seconds=row.seconds,
@@ -137,41 +139,41 @@ def pilot(
 def _load_seconds() -> float:
     """Return how long a new process takes to load what a run needs [s]."""
     began = time.perf_counter()
-    subprocess.run(command("uq.cli.studies"), env=inherited(), stdin=subprocess.DEVNULL, check=True)
+    subprocess.run(command("uq.cli.run"), env=inherited(), stdin=subprocess.DEVNULL, check=True)
     return time.perf_counter() - began
 
 
-def _warm_up(work: Work, crew: list[Isolated]) -> tuple[float, float]:
+def _warm_up(workload: Workload, crew: list[Isolated]) -> tuple[float, float]:
     """Compile the model in one process, load it in the others.
 
     Then one takes more and more rows, as a run does before it starts workers: return the time of
     a row, and of all those rows.
     """
-    size, seconds = min(work.total, work.group * ceil(_FIRST_ROWS / work.group)), 0.0
-    first = work.block(0, size)
+    size, seconds = min(workload.total, workload.group * ceil(_FIRST_ROWS / workload.group)), 0.0
+    first = workload.block(0, size)
     for process in crew:
         process.evaluate(first.x, first.seed)
     while True:
-        rows = work.block(0, size)
+        rows = workload.block(0, size)
         began = time.perf_counter()
         crew[0].evaluate(rows.x, rows.seed)
         last = time.perf_counter() - began
         seconds += last
-        grown = min(_GROWTH * size, chunk_rows(work, last / size), work.total)
+        grown = min(_GROWTH * size, chunk_rows(workload, last / size), workload.total)
         if seconds > CHUNK_SECONDS or grown <= size:
             return last / size, seconds
         size = grown
 
 
 def _sample(
-    work: Work, crew: list[Isolated], row_seconds: float
+    workload: Workload, crew: list[Isolated], row_seconds: float
 ) -> tuple[list[Rows], list[Chunk], "_RowCost"]:
     """Return rows spread over the study, what became of them, and what a row costs.
 
     They are cut as a run cuts them: rows that are computed together may share work.
     """
-    size = chunk_rows(work, row_seconds)
-    chunks = ceil(work.total / size)
+    size = chunk_rows(workload, row_seconds)
+    chunks = ceil(workload.total / size)
     starts = [index * size for index in _spread(chunks)]
     least, end = _CHUNKS_AT_LEAST * len(crew), time.perf_counter() + PILOT_SECONDS
     done: dict[int, tuple[Rows, Chunk, float]] = {}
@@ -184,7 +186,7 @@ def _sample(
                 if not taken or (chunks - taken >= least and time.perf_counter() > end):
                     return
                 start = starts.pop()
-            rows = work.block(start, min(start + size, work.total))
+            rows = workload.block(start, min(start + size, workload.total))
             began = time.perf_counter()
             chunk = process.evaluate(rows.x, rows.seed, start)
             done[start] = rows, chunk, time.perf_counter() - began

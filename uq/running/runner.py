@@ -5,9 +5,8 @@ it, they show what a row costs, and they are the first chunks of the result. A p
 computes them, so that a row may crash it, unless the user wants all in one process.
 """
 
-import os
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -16,13 +15,14 @@ import xarray as xr
 
 from uq import store
 from uq.errors import InputError
-from uq.rows import results, stopping
+from uq.rows import stopping
 from uq.rows.sampling import rows
-from uq.rows.workload import Work, work_of
-from uq.running.dispatch import Job, Progress, Report
-from uq.running.executor import Computing
-from uq.study.changes import refusal_to_extend, what_changed
-from uq.study.code import is_other_code
+from uq.rows.workload import Workload, workload_of
+from uq.running.dispatch import Dispatcher
+from uq.running.executor import Executor
+from uq.running.existing import finished, made_elsewhere, output_path
+from uq.running.options import RunOptions, Say, ignore
+from uq.running.progress import Progress, Report
 from uq.study.definition import Study, load_study
 from uq.study.reading import read_study_text
 
@@ -36,7 +36,7 @@ def run(
     row_limit: float | None = None,
     fresh: bool = False,
     progress: Report | None = None,
-    say: Callable[[str], object] | None = None,
+    say: Say | None = None,
     mixed: bool = False,
 ) -> xr.Dataset:
     """Run a study and write its result, or return the result that is already there.
@@ -92,141 +92,89 @@ def run(
     """
     if not isinstance(study, Study):
         study = load_study(study)
-    path, until = output_path(study, output), _until(study)
-    if not fresh and (found := finished(study, path)) is not None:
-        if say is None and not mixed and (line := made_elsewhere(study, path, found)):
-            warnings.warn(line, stacklevel=2)
+    path = output_path(study, output)
+    options = RunOptions(
+        workers,
+        scheduler,
+        chunk_rows,
+        row_limit,
+        fresh,
+        mixed,
+        progress=progress or ignore,
+        say=say or ignore,
+    )
+    ds = run_study(study, path, options)
+    if say is None and not mixed and (line := made_elsewhere(study, path, ds)):
+        warnings.warn(line, stacklevel=2)
+    return ds
+
+
+def run_study(study: Study, path: Path, options: RunOptions) -> xr.Dataset:
+    """Run a study into a file, or return the result that is already there; as `run`."""
+    until = _until(study)
+    if not options.fresh and (found := finished(study, path)) is not None:
         return found
-    with kept(study, path, fresh, say=say or (lambda _: None), mixed=mixed) as there:
-        options = (workers, scheduler, chunk_rows, progress, row_limit)
-        return carry_out(work_of(study), *options, there, until)
+    with kept(study, path, options) as there:
+        return carry_out(workload_of(study), options, there, until)
 
 
 @contextmanager
 def kept(
-    study: Study,
-    path: Path,
-    fresh: bool = False,
-    again: Mapping[str, Any] | None = None,
-    say: Callable[[str], object] = lambda _: None,
-    mixed: bool = False,
+    study: Study, path: Path, options: RunOptions, again: Mapping[str, Any] | None = None
 ) -> Iterator[store.DiskStore]:
     """Keep the rows of a run on disk, if there is room for them; see `uq.store.keep`."""
     needed = 2 * store.row_bytes(study) * rows(study)  # the rows, and the result made from them
     store.check_target(path, needed - store.size_kept(path))
-    with store.keep(study, path, fresh, again, say, mixed) as there:
+    with store.keep(study, path, options.fresh, again, options.say, options.mixed) as there:
         yield there
 
 
-def output_path(study: Study, output: str | Path | None = None) -> Path:
-    """Return where the result of a study goes."""
-    return Path(output) if output is not None else Path("results") / f"{study.name}.nc"
-
-
-def finished(study: Study, path: Path) -> xr.Dataset | None:
-    """Return the result of this very study, if `path` holds it.
-
-    Its [analysis], comments and sources may have changed since: then the file gets the new text.
-    None also where it holds fewer samples, and more can be appended; a study that may end early is
-    complete where enough is known.
-
-    Raises
-    ------
-    InputError
-        When `path` holds something else.
-    """
-    if not os.path.isfile(path):  # nor can it be seen
-        return None
-    remedy = "choose another output, or overwrite it with --fresh"
-    ds = results.open_result(path, remedy)
-    if ds.attrs["study_identity"] != study.identity:
-        change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
-        raise InputError(f"{path}: holds the result of another study ({change}); {remedy}")
-    there, wanted = int(ds.attrs["samples"]), study.design.samples
-    enough = there < wanted and stopping.ended(study.design, ds)
-    if there != wanted and not enough:
-        problem = remedy if there > wanted else refusal_to_extend(study)
-        if problem:
-            sizes = f"samples = {there}, not {wanted}"
-            raise InputError(f"{path}: holds this study with {sizes}; {problem}")
-        return None
-    if ds.attrs["study"] != study.text:
-        store.write_result(results.relabel(ds, study.with_samples(there)), path)
-        ds = results.open_result(path)
-    store.drop_leftovers(path)
-    return ds
-
-
-def made_elsewhere(study: Study, path: Path, ds: xr.Dataset) -> str:
-    """Say what to do where rows of a result are of other code of its model than is here."""
-    if not is_other_code(ds.attrs, study.model_reference):
-        return ""
-    return (
-        f"{path}: holds rows that other code of model '{study.model.name}' computed; 'uq verify' "
-        "compares them with the code here, 'uq run --fresh' computes all of them again"
-    )
-
-
-def compute(
-    study: Study,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    chunk_rows: int | None = None,
-    progress: Report | None = None,
-    row_limit: float | None = None,
-) -> xr.Dataset:
-    """Run a study without writing anything; parameters as in `run`."""
-    options = (workers, scheduler, chunk_rows, progress, row_limit)
-    return carry_out(work_of(study), *options, until=_until(study))
+def compute(study: Study, **options: Any) -> xr.Dataset:
+    """Run a study without writing anything; options as those of `RunOptions`."""
+    return carry_out(workload_of(study), RunOptions(**options), until=_until(study))
 
 
 def carry_out(
-    work: Work,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    chunk_rows: int | None = None,
-    progress: Report | None = None,
-    row_limit: float | None = None,
+    workload: Workload,
+    options: RunOptions,
     kept: store.DiskStore | None = None,
     until: Study | None = None,
 ) -> xr.Dataset:
-    """Compute the rows of some work, in memory or to be kept.
+    """Compute the rows of some workload, in memory or to be kept.
 
     Parameters
     ----------
-    work : Work
-    workers, scheduler, chunk_rows, progress, row_limit
-        As in `run`.
+    workload : Workload
+    options : RunOptions
     kept : DiskStore, optional
         Where the rows are kept.
     until : Study, optional
-        The study that the work is, if it is to be looked at on the way, and may end early.
+        The study that the workload is, if it may end early.
 
     Returns
     -------
     xarray.Dataset
     """
-    if chunk_rows is not None and chunk_rows < 1:
-        raise InputError(f"chunk_rows must be at least 1: {chunk_rows}")
-    report = progress or (lambda _: None)
-    where = kept or store.MemoryStore(work)
+    there = kept or store.MemoryStore(workload)
 
     def compiling() -> None:
-        counts = where.done, where.total, where.failed, where.found
-        report(Progress(*counts, compiling=True))
+        counts = there.done, there.total, there.failed, there.found
+        options.progress(Progress(*counts, compiling=True))
 
-    with Computing(work, workers, scheduler, row_limit, compiling) as computing:
-        for part in (*_looks(until, where.reach), None):
-            stop = work.total if part is None else rows(part)
-            job = Job(work, chunk_rows, report, where, computing.evaluate, row_limit, stop)
-            if where.found:
-                job.tell()
-            computing.finish(job)
-            if part and until and stopping.look(until.design, where.first(part)).reached:
-                where.cut(part)
-                job.tell()
+    with Executor(workload, options, compiling) as executor:
+        for part in (*_interim_studies(until, there.reach), None):
+            stop = workload.total if part is None else rows(part)
+            dispatcher = Dispatcher(workload, options, there, executor.evaluate, stop)
+            if there.found:
+                dispatcher.report_progress()
+            executor.finish(dispatcher)
+            if part is None or until is None:
                 break
-    return where.dataset()
+            if stopping.interim_estimate(until.design, there.first(part)).reached:
+                there.cut(part)
+                dispatcher.report_progress()
+                break
+    return there.dataset()
 
 
 def _until(study: Study) -> Study | None:
@@ -242,9 +190,9 @@ def _until(study: Study) -> Study | None:
     return study
 
 
-def _looks(until: Study | None, reach: int) -> list[Study]:
+def _interim_studies(until: Study | None, reach: int) -> list[Study]:
     """Return what to look at before the budget is spent: a run that goes on looks where it was."""
     if until is None:
         return []
-    parts = [until.with_samples(samples) for samples in stopping.looks(until.design)]
+    parts = [until.with_samples(samples) for samples in stopping.interim_sizes(until.design)]
     return [part for part in parts[:-1] if rows(part) >= reach]

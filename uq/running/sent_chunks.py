@@ -11,14 +11,14 @@ from uq.errors import InputError, RunError
 from uq.provenance import versions
 from uq.rows.evaluate import Chunk, Fault, lost_rows
 from uq.rows.sampling import Rows
-from uq.rows.workload import Work
-from uq.running.child import Task
+from uq.rows.workload import Workload
 from uq.running.dask_task import evaluate_rows
+from uq.running.isolation import spec_of
 
 if TYPE_CHECKING:
     from distributed import Future
 
-    from uq.running.cluster import Workers
+    from uq.running.workers import Workers
 
 _TRIES = 3
 _WAIT_SECONDS = 0.2
@@ -30,7 +30,7 @@ class _Sent(NamedTuple):
     tries: int = 1
 
 
-class Landed(NamedTuple):
+class Returned(NamedTuple):
     """Rows that are back.
 
     Attributes
@@ -50,39 +50,36 @@ class Landed(NamedTuple):
     seconds: float
 
 
-class Flight:
+class SentChunks:
     """Chunks that workers have, or are about to have.
 
     Parameters
     ----------
-    work : Work
-    task : uq.running.child.Task
+    workload : Workload
     crew : Workers
     row_limit : float or None
         Longest time for one row [s].
     """
 
-    def __init__(
-        self, work: Work, task: Task, crew: "Workers", row_limit: float | None = None
-    ) -> None:
+    def __init__(self, workload: Workload, crew: "Workers", row_limit: float | None = None) -> None:
         from distributed import as_completed
 
-        self._work = work
-        self._task = task
+        self._workload = workload
+        self._spec = spec_of(workload)
         self._crew = crew
         self._row_limit = row_limit
-        self._flying: dict[Future, _Sent] = {}
-        self._grounded: list[_Sent] = []  # the scheduler was out of reach
+        self._under_way: dict[Future, _Sent] = {}
+        self._unsent: list[_Sent] = []  # the scheduler was out of reach
         self._arrivals = as_completed(loop=crew.client.loop, with_results=True, raise_errors=False)
 
     def __len__(self) -> int:
-        return len(self._flying) + len(self._grounded)
+        return len(self._under_way) + len(self._unsent)
 
     def send(self, start: int, rows: Rows) -> None:
         """Have some rows computed."""
         self._send(_Sent(start, rows))
 
-    def landed(self) -> list[Landed]:
+    def returned(self) -> list[Returned]:
         """Return what is back, after a short wait if there is nothing.
 
         Raises
@@ -98,17 +95,17 @@ class Flight:
                 condition.wait(_WAIT_SECONDS)
         back = []
         for future, result in self._arrivals.next_batch(block=False):
-            sent = self._flying.pop(future)
+            sent = self._under_way.pop(future)
             if future.status == "finished":
                 chunk, seconds = result
-                back.append(Landed(sent.start, sent.rows, chunk, seconds))
+                back.append(Returned(sent.start, sent.rows, chunk, seconds))
             elif future.status == "error":
                 back += self._failed(sent, result[1])
             else:
-                self._grounded.append(sent)
+                self._unsent.append(sent)
         self._crew.watch(progress=bool(back))
-        if self._grounded and self._crew.connected:
-            again, self._grounded = self._grounded, []
+        if self._unsent and self._crew.connected:
+            again, self._unsent = self._unsent, []
             for sent in again:
                 self._send(sent)
         return back
@@ -116,7 +113,7 @@ class Flight:
     def _send(self, sent: _Sent) -> None:
         future = self._crew.client.submit(
             evaluate_rows,
-            self._task,
+            self._spec,
             versions(),
             self._row_limit,
             sent.rows.x,
@@ -124,10 +121,10 @@ class Flight:
             sent.start,
             pure=False,
         )
-        self._flying[future] = sent
+        self._under_way[future] = sent
         self._arrivals.add(future)
 
-    def _failed(self, sent: _Sent, error: Any) -> list[Landed]:
+    def _failed(self, sent: _Sent, error: Any) -> list[Returned]:
         """Send rows again that did not come back, in halves if they killed their workers."""
         from distributed import KilledWorker
 
@@ -138,8 +135,8 @@ class Flight:
         if isinstance(error, KilledWorker):
             if count == 1:
                 fault = Fault(Status.CRASHED, "killed every worker that computed it")
-                lost = lost_rows(self._work.model, self._work.settings, 1, fault, start)
-                return [Landed(start, rows, lost, 0.0)]
+                lost = lost_rows(self._workload.model, self._workload.settings, 1, fault, start)
+                return [Returned(start, rows, lost, 0.0)]
             half = count // 2
             self.send(start, rows.part(0, half))
             self.send(start + half, rows.part(half, count))

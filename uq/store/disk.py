@@ -15,7 +15,7 @@ from uq.errors import RunError
 from uq.rows import results
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
-from uq.rows.workload import work_of
+from uq.rows.workload import workload_of
 from uq.store.chunk_file import Block, Piece, joined, load, pack, row_type, save, unpack
 from uq.store.files import reason
 from uq.store.folder import JOURNAL, clear, folder_of
@@ -50,7 +50,7 @@ class DiskStore(Tally):
     """
 
     def __init__(self, study: "Study", path: Path) -> None:
-        super().__init__(work_of(study))
+        super().__init__(workload_of(study))
         self.folder = folder_of(path)
         self.settings: dict[str, Any] = {}
         self._study = study
@@ -110,8 +110,8 @@ class DiskStore(Tally):
 
     def cut(self, study: "Study") -> None:
         """End with the rows of a study of fewer samples, which are all that have arrived."""
-        self._study, self.work = study, work_of(study)
-        self.total = self.work.total
+        self._study, self.workload = study, workload_of(study)
+        self.total = self.workload.total
         size = {"samples": study.design.samples, "rows": self.total}
         self.note(self._run.model_copy(update=size | {"time": time.time()}))
 

@@ -9,7 +9,7 @@ from uq.columns import blank_rows, columns_of
 from uq.rows import results
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
-from uq.rows.workload import Work, work_of
+from uq.rows.workload import Workload, workload_of
 from uq.store.tally import Tally, ended
 
 if TYPE_CHECKING:
@@ -21,12 +21,12 @@ class MemoryStore(Tally):
 
     Parameters
     ----------
-    work : Work
+    workload : Workload
     """
 
-    def __init__(self, work: Work) -> None:
-        super().__init__(work)
-        total, d = self.total, len(work.model.parameter_names)
+    def __init__(self, workload: Workload) -> None:
+        super().__init__(workload)
+        total, d = self.total, len(workload.model.parameter_names)
         self._rows = Rows(
             x=np.empty((total, d)),
             seed=np.empty(total, dtype=np.uint64),
@@ -34,7 +34,7 @@ class MemoryStore(Tally):
             group=np.empty(total, dtype=np.int64),
             block=np.empty(total, dtype=np.int16),
         )
-        self._columns = blank_rows(columns_of(work.model, work.settings), total)
+        self._columns = blank_rows(columns_of(workload.model, workload.settings), total)
         self._status = np.zeros(total, dtype=np.int8)
 
     @property
@@ -73,8 +73,8 @@ class MemoryStore(Tally):
 
     def cut(self, study: "Study") -> None:
         """End with the rows of a study of fewer samples, which are all that have arrived."""
-        self.work = work_of(study)
-        n = self.total = self.work.total
+        self.workload = workload_of(study)
+        n = self.total = self.workload.total
         self._rows, self._status = self._rows.part(0, n), self._status[:n]
         self._columns = {name: whole[:n] for name, whole in self._columns.items()}
 
@@ -87,5 +87,5 @@ class MemoryStore(Tally):
 
     def dataset(self) -> xr.Dataset:
         """Return the result of a run whose rows have all arrived."""
-        assert self.work.finish is not None
-        return self.work.finish(self._rows, self._columns, self._status, self.examples)
+        assert self.workload.finish is not None
+        return self.workload.finish(self._rows, self._columns, self._status, self.examples)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from uq.columns import columns_of, failed_rows
 from uq.contract import Status
-from uq.rows.preview import Glimpse
-from uq.rows.workload import Work
+from uq.rows.preview import Preview
+from uq.rows.workload import Workload
 
 if TYPE_CHECKING:
     from uq.rows.evaluate import Chunk
@@ -25,7 +25,7 @@ class Tally:
 
     Parameters
     ----------
-    work : Work
+    workload : Workload
 
     Attributes
     ----------
@@ -40,19 +40,19 @@ class Tally:
     failures : Failures
     status : dict of str to int
         Status label -> rows.
-    glimpse : Glimpse
+    preview : Preview
         Of the rows that arrived in this process.
     """
 
-    def __init__(self, work: Work) -> None:
-        self.work = work
-        self.total = work.total
+    def __init__(self, workload: Workload) -> None:
+        self.workload = workload
+        self.total = workload.total
         self.done = 0
         self.failed = 0
         self.found = 0
         self.failures: Failures = {}
         self.status: Counter[str] = Counter()
-        self.glimpse = Glimpse(work)
+        self.preview = Preview(workload)
         self._bad_shapes = 0
 
     def count(self, rows: int, failed: int, status: dict[str, int], failures: Failures) -> None:
@@ -79,7 +79,7 @@ class Tally:
         """Return how many rows of a chunk failed."""
         required = (
             (output, chunk.columns[name])
-            for name, output in self.work.model.outputs.items()
+            for name, output in self.workload.model.outputs.items()
             if not output.may_be_undefined
         )
         return int(np.count_nonzero(failed_rows(chunk.status, required)))
@@ -98,8 +98,8 @@ def joined_failures(first: Failures, second: Failures) -> Failures:
     }
 
 
-def row_bytes(work: "Work | Study") -> int:
+def row_bytes(workload: "Workload | Study") -> int:
     """Return about how many bytes a row takes, inputs and outputs."""
-    columns = columns_of(work.model, work.settings).values()
+    columns = columns_of(workload.model, workload.settings).values()
     outputs = sum(column.dtype.itemsize * prod(column.shape) for column in columns)
-    return 8 * len(work.model.parameter_names) + 32 + outputs
+    return 8 * len(workload.model.parameter_names) + 32 + outputs

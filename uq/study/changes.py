@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.literals import read_toml, shown
 from uq.study.definition import Study
 

@@ -4,10 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from uq.contract import Model
-from uq.designs.table import DESIGNS, IMPORTED
+from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
+from uq.methods.registry import designs_for, fed_by
 
 Tables = Mapping[str, Mapping[str, Any]]
 """The sound entries of a study file: table -> key -> value, as parsed."""
@@ -135,10 +136,18 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
         yield Fault(("analysis", "twin"), f"{why}; use method = {able}", analysis["twin"])
     unsaid = design.imported and not stated
     dependent = bool(tables["dependence"]) or unsaid
-    if dependent and not design.feeds_with(dependent):
+    yield from _method_faults(method, analysis.get("sensitivity", ()), dependent, unsaid)
+
+
+def _method_faults(
+    method: str, asked: Iterable[str], dependent: bool, unsaid: bool
+) -> Iterator[Fault]:
+    """Yield the sensitivity methods that a design cannot feed."""
+    feeds, able = fed_by(DESIGNS[method]), fed_by(DESIGNS[method], dependent)
+    if dependent and not able:
         return  # told at the design
-    for name in analysis.get("sensitivity", ()):
-        if dependent and name in design.feeds and name not in design.feeds_with(dependent):
+    for name in asked:
+        if name in feeds and name not in able:
             why = (
                 "imported rows may be dependent (independent = true in [design] states that they"
                 " are not)"
@@ -147,16 +156,14 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
             )
             yield Fault(
                 ("analysis", "sensitivity"),
-                f"supposes independent inputs, and {why}; those that do not are"
-                f" {_names(design.feeds_with(dependent))}",
+                f"supposes independent inputs, and {why}; those that do not are {_names(able)}",
                 name,
             )
-        elif name not in design.feeds:
-            able = _names(key for key, other in DESIGNS.items() if name in other.feeds)
+        elif name not in feeds:
             yield Fault(
                 ("analysis", "sensitivity"),
-                f"a '{method}' design cannot feed it, method = {able} can;"
-                f" '{method}' feeds {_names(design.feeds)}",
+                f"a '{method}' design cannot feed it, method = {_names(designs_for(name))} can;"
+                f" '{method}' feeds {_names(feeds)}",
                 name,
             )
 

@@ -115,6 +115,6 @@ def key_of(module: str) -> str:
     """
     sources = sources_of(module)
     whole = digest(sources.own)
-    for package in sorted(sources.others):
-        whole.update(repr(signature(package)).encode())
+    for package in sorted({name.partition(".")[0] for name in sources.others}):
+        whole.update(repr(signature(package, sources.others)).encode())
     return whole.hexdigest()[:16]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from uq.contract import Model
-from uq.designs.table import DESIGNS, IMPORTED
+from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import InputError, nearest
 from uq.inputs.data_files import Columns, columns_of_files, numbers, with_columns
 from uq.inputs.distributions import Law

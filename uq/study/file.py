@@ -4,6 +4,7 @@ Pydantic checks files against these classes (`uq.study.reading`), and the JSON S
 comes from them (`uq.study.schema`).
 """
 
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, NamedTuple, Self, get_args
 
 from pydantic import (
@@ -19,22 +20,22 @@ from pydantic import (
     model_validator,
 )
 
-from uq.designs.table import DESIGNS, MAX_SAMPLES
+from uq.designs.design import MAX_SAMPLES
+from uq.designs.registry import DESIGNS
 from uq.errors import nearest
 from uq.inputs.distributions import Law
 from uq.inputs.law import BaseLaw
 from uq.literals import shown
+from uq.methods.registry import METHODS
 
 LAW: TypeAdapter[Any] = TypeAdapter(Law)
 LAWS = {
     get_args(law.model_fields["distribution"].annotation)[0]: law
     for law in get_args(get_args(Law)[0])
 }
-METHODS = tuple(dict.fromkeys(name for design in DESIGNS.values() for name in design.feeds))
-"""Sensitivity methods that some design can feed."""
 
 
-def _one_of(kind: str, choices: tuple[str, ...]) -> AfterValidator:
+def _one_of(kind: str, choices: Mapping[str, Any]) -> AfterValidator:
     def check(name: str) -> str:
         if name not in choices:
             allowed = f"(allowed: {', '.join(choices)})"
@@ -42,6 +43,11 @@ def _one_of(kind: str, choices: tuple[str, ...]) -> AfterValidator:
         return name
 
     return AfterValidator(check)
+
+
+def _enum(choices: Mapping[str, Any]) -> Callable[[dict[str, Any]], None]:
+    """Return what puts the names of a table, as they are by then, into a JSON Schema."""
+    return lambda schema: schema.update(enum=list(choices))
 
 
 def _tuple(value: Any) -> Any:
@@ -126,8 +132,9 @@ class Until(_Table):
 class DesignTable(_Table):
     """Which rows are computed."""
 
-    method: Annotated[str, _one_of("design", tuple(DESIGNS))] = Field(
-        description="how rows are chosen", json_schema_extra={"enum": list(DESIGNS)}
+    method: Annotated[str, _one_of("design", DESIGNS)] = Field(
+        description="how rows are chosen",
+        json_schema_extra=_enum(DESIGNS),
     )
     samples: int = Field(
         default_factory=lambda: 0,  # all rows of an imported file; other designs must say
@@ -246,7 +253,7 @@ class AnalysisTable(_Table):
     ] = Field(
         (),
         description="sensitivity methods; the design's own if not given",
-        json_schema_extra={"items": {"enum": list(METHODS)}},
+        json_schema_extra=lambda schema: schema.update(items={"enum": list(METHODS)}),
     )
 
 

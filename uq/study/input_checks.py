@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from uq.contract import Model, Parameter
-from uq.designs.table import DESIGNS, FOR_DEPENDENT_INPUTS, IMPORTED
+from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import nearest
 from uq.inputs.conditioning import (
     OUTSIDE_AT_MOST,
@@ -21,6 +21,7 @@ from uq.inputs.dependence import matrix_problem
 from uq.inputs.distributions import Law
 from uq.inputs.faults import Fault
 from uq.inputs.observed import Empirical, values_problem
+from uq.methods.registry import fed_by, for_dependent_inputs
 from uq.study.file import ENTRY, Tied
 from uq.study.reading import parse, shape_faults, sound_entries
 
@@ -101,11 +102,11 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
     method = tables["design"].get("method")
     if method in IMPORTED:
         yield Fault(("dependence",), "imported rows are as dependent as they are; take it out")
-    elif method is not None and not DESIGNS[method].feeds_with(dependent=True):
-        able = [n for n, d in DESIGNS.items() if not d.imported and d.feeds_with(dependent=True)]
+    elif method is not None and not fed_by(DESIGNS[method], dependent=True):
+        able = [n for n, d in DESIGNS.items() if not d.imported and fed_by(d, dependent=True)]
         problem = (
             f"supposes independent inputs, and [dependence] says they are not; use"
-            f" {' or '.join(able)}, which feed {' and '.join(FOR_DEPENDENT_INPUTS)}"
+            f" {' or '.join(able)}, which feed {' and '.join(for_dependent_inputs())}"
         )
         yield Fault(("design", "method"), problem, method)
 

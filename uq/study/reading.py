@@ -5,7 +5,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from uq.designs.table import IMPORTED
+from uq.designs.registry import IMPORTED
 from uq.errors import InputError, nearest
 from uq.inputs.faults import Fault
 from uq.inputs.law import BaseLaw

@@ -7,9 +7,11 @@ from pydantic import TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
 from uq.contract import Model
-from uq.designs.table import DESIGNS, MAX_SAMPLES, Design
+from uq.designs.design import MAX_SAMPLES, Design
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.inputs.values import setting_types
+from uq.methods.registry import fed_by
 from uq.study.file import StudyFile
 from uq.study.registry import find_model, model_names
 
@@ -101,7 +103,7 @@ def _model_schema(model: Model) -> dict[str, Schema]:
 
 def _design_schema(design: Design) -> dict[str, Schema]:
     table: Schema = {}
-    analysis: Schema = {"sensitivity": {"items": {"enum": list(design.feeds)}}}
+    analysis: Schema = {"sensitivity": {"items": {"enum": list(fed_by(design))}}}
     if design.power_of_two:
         table["samples"] = {"enum": [2**k for k in range(MAX_SAMPLES.bit_length())]}
     if not design.crossed:

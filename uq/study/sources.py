@@ -8,7 +8,7 @@ import ast
 import hashlib
 import os
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache, lru_cache
 from importlib.machinery import EXTENSION_SUFFIXES
 from importlib.metadata import entry_points
@@ -34,7 +34,7 @@ class Sources(NamedTuple):
     root : Path or None
         The folder in which the package lies.
     others : set of str
-        Packages from elsewhere that they import.
+        Modules from elsewhere that they import.
     """
 
     own: dict[str, bytes]
@@ -64,7 +64,7 @@ def sources_of(module: str) -> Sources:
         first = name.partition(".")[0]
         home = root if first == package or (beside and _is_module(root, first)) else _edited(first)
         if home is None:
-            others.add(first)
+            others.add(name)
             continue
         for ending in _FILES:
             file = Path(f"{home.joinpath(*name.split('.'))}{ending}")
@@ -104,14 +104,17 @@ def digest(sources: Mapping[str, bytes]) -> "hashlib._Hash":
     return whole
 
 
-def signature(package: str) -> list[tuple[str, int, int]]:
+def signature(package: str, modules: Set[str]) -> list[tuple[str, int, int]]:
     """Return what changes when a package from elsewhere does: files, times and sizes.
 
-    Of an installed package its first file says enough: all are written together.
+    Of an installed package its first file says enough: all are written together. Our own models
+    count where they are imported, and what they share always does.
 
     Parameters
     ----------
     package : str
+    modules : set of str
+        Those that are imported from elsewhere.
     """
     root = _root(package) if package not in sys.stdlib_module_names else None
     if root is None:
@@ -119,7 +122,12 @@ def signature(package: str) -> list[tuple[str, int, int]]:
     folder = root / package
     files = [file for ending in _FILES if (file := Path(f"{folder}{ending}")).is_file()]
     if root.name not in _INSTALLED:
-        files += sorted(folder.rglob("*.py"))
+        unused = [root.joinpath(*name.split(".")) for name in own_models() - _above(modules)]
+        files += [
+            file
+            for file in sorted(folder.rglob("*.py"))
+            if not any(one in (file.with_suffix(""), *file.parents) for one in unused)
+        ]
     looks = ((str(file), file.stat()) for file in files)
     return [(name, look.st_mtime_ns, look.st_size) for name, look in looks]
 
@@ -131,11 +139,23 @@ def is_installed(package: str) -> bool:
 
 
 @cache
-def own_packages() -> set[str]:
-    """Return the packages of our own models, which see to their compiled code themselves."""
+def own_models() -> set[str]:
+    """Return the modules of our own models, which see to their compiled code themselves."""
     points = entry_points(group="vibrolife.models")
-    names = ((point.dist.name if point.dist else "", point.value) for point in points)
-    return {value.partition(".")[0] for name, value in names if name == DISTRIBUTION}
+    names = ((point.dist.name if point.dist else "", point.module) for point in points)
+    return {module for name, module in names if name == DISTRIBUTION}
+
+
+@cache
+def own_packages() -> set[str]:
+    """Return the packages in which our own models lie."""
+    return {module.partition(".")[0] for module in own_models()}
+
+
+def _above(modules: Iterable[str]) -> set[str]:
+    """Return some modules, and the packages in which they lie."""
+    parts = (name.split(".") for name in modules)
+    return {".".join(names[: i + 1]) for names in parts for i in range(len(names))}
 
 
 def _root(package: str) -> Path | None:

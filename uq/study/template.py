@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from uq.contract import Model, Parameter
-from uq.designs.table import DESIGNS
+from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import law_problem
 from uq.inputs.distributions import Law, LogNormal, Normal, Uniform
 from uq.inputs.law import BaseLaw

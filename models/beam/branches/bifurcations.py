@@ -1,4 +1,4 @@
-"""What can happen to a periodic orbit as a parameter changes, told from orbits on either side.
+"""What can happen to a periodic orbit as a parameter changes, by the orbits on either side.
 
 Folds, period doublings, Neimark-Sacker and symmetry-breaking bifurcations show in a multiplier that
 crosses the unit circle. Grazing, where a contact is born or dies, shows in the trajectory alone:
@@ -47,7 +47,7 @@ class Event(NamedTuple):
 
 
 def kind_of(before: Orbit, after: Orbit, turns: bool) -> Kind:
-    """Tell what happens between two orbits that are neighbours to within rounding of the search.
+    """Return what happens between two orbits that are neighbours to within rounding of the search.
 
     Parameters
     ----------

@@ -194,5 +194,5 @@ def trace(path: Path, orbit: Orbit, stable_only: bool, largest: float) -> Branch
 
 
 def _turns(a: Point, b: Point) -> bool:
-    """Tell whether the branch turns back an odd number of times between two points."""
+    """Return whether the branch turns back an odd number of times between two points."""
     return (a.tangent[-1] > 0) != (b.tangent[-1] > 0)

@@ -5,8 +5,8 @@ the wear coefficient,
 
     dx_i/ds = r_i/(r_1 + r_2),    dT/ds = 1/(r_1 + r_2),
 
-which is regular also where one site is not worn at all; x_1 as control is the paper's choice. The
-pair of orders 3 and 2 is that of P. Bogacki and L. F. Shampine, Appl. Math. Lett. 2 (1989) 321.
+which is regular also where one site is not worn at all; x_1 as control is the paper's choice. Steps
+are those of the pair of orders 3 and 2 by Bogacki and Shampine.
 """
 
 from typing import NamedTuple
@@ -20,6 +20,7 @@ from models.beam.exact.passage import Passage, passage
 from models.beam.exact.tuning import Beam
 from models.beam.structure.modal import Array
 from models.numerics.newton import find_root
+from models.numerics.tableaux import BOGACKI_SHAMPINE_3, ERROR_2
 
 ATTEMPTS = 5000  # steps, at most
 NEARNESS = 1e-6  # in initial gaps: how well the end and every grazing are located
@@ -29,8 +30,8 @@ _EXTINCT = 1e-6  # of the first work-rate: what is left when the gaps approach t
 _ARRIVED = 1e-9  # in initial gaps
 _FIRST = 0.01  # step, in initial gaps
 _SAFETY, _GROWTH = 0.9, 3.0
-_STAGES = (np.array([1 / 2]), np.array([0.0, 3 / 4]), np.array([2 / 9, 1 / 3, 4 / 9]))
-_ERROR = np.array([-5 / 72, 1 / 12, 1 / 9, -1 / 8])
+_STAGES = tuple(np.array(row) for row in BOGACKI_SHAMPINE_3.a[1:])
+_ERROR = np.array(ERROR_2)
 
 
 class WornOrbit(NamedTuple):
@@ -208,7 +209,7 @@ def _contacts(place: _Place) -> list[int]:
 
 
 def _end(here: _Place, stop: float, last_rate: float) -> str:
-    """Tell why wear goes no further, empty if it does."""
+    """Return why wear ends here, empty if it does not."""
     if here.rate <= last_rate:
         return "no-impact"
     return "stop" if stop - here.at[:2].max() < _ARRIVED else ""

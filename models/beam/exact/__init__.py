@@ -1,13 +1,19 @@
 """The exact propagator: from event to event, one beam at a time.
 
-phases        free flight and contact as sums of exponentials
-tip_bounds    how long the tip is certain to keep its distance from a stop
-events        where contacts begin, turn and end
-tuning        one beam at any forcing frequency
-passage       one trajectory with its tangents
-propagator    many beams over whole forcing periods
+Reading order; a module imports only those above it:
+
+    phases          free flight and contact as sums of exponentials
+    within_phase    motion within one of them
+    tip_bounds      how long the tip is certain to keep its distance from a stop
+    events          where contacts begin, turn and end
+    one_beam        one beam over whole forcing periods
+    tuning          one beam at any forcing frequency
+    passage         one trajectory with its tangents
+    systems         beams with their phases
+    propagator      many beams over whole forcing periods
 """
 
-from models.beam.exact.propagator import CLOCK, advance, finer, groups, monodromy, start
+from models.beam.exact.propagator import CLOCK, advance, monodromy, start
+from models.beam.exact.systems import finer, groups
 
 __all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "start"]

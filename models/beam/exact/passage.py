@@ -28,8 +28,8 @@ from models.beam.exact.events import (
     scratch,
     site_of,
 )
-from models.beam.exact.phases import carry, join
 from models.beam.exact.tuning import Beam
+from models.beam.exact.within_phase import carry, join
 from models.beam.structure.modal import Array
 from models.numerics.jit import kernel
 

@@ -4,14 +4,14 @@ Between events the beam is linear and the tip a sum of exponentials, none of whi
 
     x(s) = Re sum_k a_k exp(r_k s),    |d^p x/ds^p (s')| <= sum_k |a_k| |r_k|^p |exp(r_k s)|
 
-for all s' >= s. These bounds of the second and third derivative say how long the next event is
+for all s' >= s. These bounds of the second and third derivative show how long the next event is
 certain to stay away.
 """
 
 import math
 from typing import NamedTuple
 
-from models.beam.exact.phases import exponentials
+from models.beam.exact.within_phase import exponentials
 from models.numerics.jit import kernel
 
 _FADED = 1e-18  # a velocity too small to matter

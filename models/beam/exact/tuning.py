@@ -30,7 +30,7 @@ class Beam(NamedTuple):
 
     @staticmethod
     def of(pair: tuple[Phase, Phase]) -> "Beam":
-        """Return a beam whose forcing frequency is never asked about."""
+        """Return a beam whose forcing frequency does not vary."""
         return Beam(pair[0], pair[1], np.zeros((2, *pair[0].shape.shape[1:])))
 
 

@@ -1,18 +1,17 @@
 """Branches of periodic orbits, over frequency, gap and wear, labelled for plotting."""
 
-from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from models.beam.branches.bifurcations import Event
-from models.beam.branches.orbits import Orbit, settled_orbit
+from models.beam.branches.orbits import settled_orbit
 from models.beam.branches.path import Path, Setting, trace
 from models.beam.branches.worn_orbit import wear_along
 from models.beam.exact.tuning import Tuning
-from models.beam.parameters import SITES, Params, Settings
+from models.beam.explore.orbit_labels import labelled_events, labelled_orbits, named
+from models.beam.parameters import Params, Settings
 from models.beam.structure.modal import Array, beams
 
 Parameter = Literal["forcing_frequency", "gap"]
@@ -110,9 +109,11 @@ def continue_orbit(
     branch = trace(path, orbit, stable_only, largest_step)
     frequencies = branch.values if parameter == "forcing_frequency" else forcing
     unit, meaning = _ABOUT[parameter]
-    about = _named(unit, meaning)
-    ds = _labelled(params, tuning, branch.orbits, np.broadcast_to(frequencies, len(branch.orbits)))
-    ds = ds.merge(_events(params, branch.events, about)).assign_attrs(end=branch.end)
+    about = named(unit, meaning)
+    ds = labelled_orbits(
+        params, tuning, branch.orbits, np.broadcast_to(frequencies, len(branch.orbits))
+    )
+    ds = ds.merge(labelled_events(params, branch.events, about)).assign_attrs(end=branch.end)
     return ds.assign_coords({parameter: ("point", branch.values, about)})
 
 
@@ -164,15 +165,15 @@ def follow_wear(
     share = np.array([1.0, params.wear_coefficient_ratio])
     worn = wear_along(beam, orbit, share, stop / x0, accuracy)
     frequencies = np.full(len(worn.orbits), params.forcing_frequency)
-    ds = _labelled(params, tuning, worn.orbits, frequencies)
+    ds = labelled_orbits(params, tuning, worn.orbits, frequencies)
     scaled = [event._replace(value=event.value * x0) for event in worn.events]
-    ds = ds.merge(_events(params, scaled, _named("m", "right gap")))
+    ds = ds.merge(labelled_events(params, scaled, named("m", "right gap")))
     dimensionless = worn.time * 2 * np.pi * tuning.fundamental / tuning.forcing
     wear = params.wear_coefficient / params.contact_area * params.contact_stiffness * x0
     time = worn.time / (params.forcing_frequency * wear)
     return ds.assign_attrs(end=worn.end).assign_coords(
-        time=("point", time, _named("s", "time of wear")),
-        dimensionless_time=("point", dimensionless, _named("1", "T (eq 12)")),
+        time=("point", time, named("s", "time of wear")),
+        dimensionless_time=("point", dimensionless, named("1", "T (eq 12)")),
     )
 
 
@@ -196,85 +197,3 @@ def _first_state(params: Params, tuning: Tuning, state: ArrayLike | None) -> Arr
     first[0] = params.initial_displacement / params.initial_gap
     first[tuning.size // 2] = params.initial_velocity / params.initial_gap / tuning.forcing
     return first
-
-
-def _labelled(
-    params: Params, tuning: Tuning, orbits: Sequence[Orbit], frequency: Array
-) -> xr.Dataset:
-    """Give the orbits of a branch their units."""
-    x0, k_c = params.initial_gap, params.contact_stiffness
-    work = np.array([orbit.work for orbit in orbits])
-    impacts = np.full((len(orbits), max(len(o.impact_velocities) for o in orbits)), np.nan)
-    for row, orbit in zip(impacts, orbits, strict=True):
-        row[: len(orbit.impact_velocities)] = orbit.impact_velocities
-    multipliers = np.array([orbit.multipliers for orbit in orbits])
-    f = frequency[:, None]
-    sited, multiplied = ("point", "site"), ("point", "multiplier")
-    variables: dict[str, tuple[Any, Array, str, str]] = {
-        "gaps": (sited, x0 * np.array([o.gaps for o in orbits]), "m", "gap of each site"),
-        "work_rate": (sited, k_c * x0**2 * f * work, "W", "impact work-rate of each site"),
-        "dimensionless_work_rate": (
-            sited,
-            f / tuning.fundamental * work,
-            "1",
-            "impact work-rate of each site over k_c X0^2 w0",
-        ),
-        "peak_contact_force": (
-            sited,
-            k_c * x0 * np.array([o.peak for o in orbits]),
-            "N",
-            "largest contact force of each site",
-        ),
-        "impact_velocity": (
-            ("point", "impact"),
-            x0 * 2 * np.pi * f * impacts,
-            "m s-1",
-            "velocity at which the right stop is met",
-        ),
-        "multiplier_real": (multiplied, multipliers.real, "1", "real part of the multipliers"),
-        "multiplier_imag": (multiplied, multipliers.imag, "1", "imaginary part of the multipliers"),
-        "stable": ("point", np.array([o.is_stable for o in orbits]), "1", "whether it is stable"),
-        "clearance": (
-            "point",
-            x0 * np.array([o.clearance for o in orbits]),
-            "m",
-            "how near to a stop's face the tip turns",
-        ),
-        "state": (
-            ("point", "component"),
-            np.array([o.state for o in orbits]),
-            "1",
-            "z and dz/d(Omega t) of each mode at phase 0 of the force, over X0",
-        ),
-    }
-    return xr.Dataset(
-        {
-            name: (dims, values, _named(unit, meaning))
-            for name, (dims, values, unit, meaning) in variables.items()
-        },
-        {"site": list(SITES)},
-        {"model": "beam", "period": orbits[0].period},
-    )
-
-
-def _events(params: Params, events: Sequence[Event], about: dict[str, str]) -> xr.Dataset:
-    """Give what happened on a branch its units."""
-    before = [event.before for event in events]
-    after = [event.after is not None and event.after.is_stable for event in events]
-    gaps = params.initial_gap * np.array([o.gaps for o in before]).reshape(-1, 2)
-    multipliers = np.array([abs(o.multipliers[0]) for o in before], float)
-    stable_before = np.array([o.is_stable for o in before], bool)
-    return xr.Dataset(
-        {
-            "event_value": ("event", np.array([event.value for event in events], float), about),
-            "event_gaps": (("event", "site"), gaps, _named("m", "gap of each site at the event")),
-            "event_multiplier": ("event", multipliers, _named("1", "largest multiplier before")),
-            "event_stable_before": ("event", stable_before, _named("1", "stable before it")),
-            "event_stable_after": ("event", np.array(after, bool), _named("1", "stable after it")),
-        },
-        {"event": np.array([event.kind for event in events], str)},
-    )
-
-
-def _named(unit: str, meaning: str) -> dict[str, str]:
-    return {"units": unit, "long_name": meaning}

@@ -3,13 +3,12 @@
 import numpy as np
 
 from models.beam import lanes
-from models.beam.batch import initial_gaps
-from models.beam.explore.sweeps import one_system
 from models.beam.lanes.systems import System
 from models.beam.lanes.tangents import carry
 from models.beam.parameters import Params, Rows, Settings
 from models.beam.response.settling import settle
-from models.beam.structure.modal import Array
+from models.beam.start import initial_gaps, initial_state, one_system
+from models.beam.structure.modal import Array, beams
 from models.numerics.batch_means import mean_and_error
 from models.numerics.exponents import grown
 
@@ -45,12 +44,10 @@ def lyapunov_exponent(
     if params.random_force_level > 0:
         raise ValueError("what a random load does has no Lyapunov exponent")
     p: Rows = Params._make(np.full(1, float(value)) for value in params)
-    propagator, system = one_system(p, settings)
-    if propagator is not lanes:
+    _, system = one_system(beams(p, settings), settings)
+    if not isinstance(system, System):
         raise ValueError("the fast propagator is needed, and contact that its steps can follow")
-    state = lanes.start(
-        system, p.initial_displacement / p.initial_gap, p.initial_velocity / p.initial_gap
-    )
+    state = initial_state(lanes, system, p)
     gaps = initial_gaps(p)
     settle(lanes, system, state, gaps)
     exponent, error = exponents(system, state, gaps, periods)
@@ -99,5 +96,5 @@ def exponents(
     per_batch = -(-periods // (BATCHES * _STRETCH))
     batches = growth(BATCHES * per_batch).reshape(n, BATCHES, per_batch).mean(axis=2)
     exponent, error = mean_and_error(batches / _STRETCH)
-    to_rate = system.forcing / (2 * np.pi)
+    to_rate = system.beams.forcing / (2 * np.pi)
     return exponent * to_rate, error * to_rate

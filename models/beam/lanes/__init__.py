@@ -1,19 +1,18 @@
 """The fast propagator: sixteen beams abreast, in fixed steps.
 
-systems       modes as recurrences, and the size of the step
-lines         the random load at each step
-tangents      what a small change of the state grows to
-propagator    many beams over whole forcing periods: the hot loop
+Reading order; a module imports only those above it:
+
+    recurrence    one mode over one step
+    systems       beams that share the size of the step
+    states        where they start
+    lines         the random load at each step
+    steps         the hot loop
+    tangents      what a small change of the state grows to
+    propagator    many beams over whole forcing periods
 """
 
-from models.beam.lanes.propagator import (
-    CLOCK,
-    advance,
-    finer,
-    groups,
-    monodromy,
-    refine,
-    start,
-)
+from models.beam.lanes.propagator import CLOCK, advance, monodromy
+from models.beam.lanes.states import finer, start
+from models.beam.lanes.systems import groups
 
-__all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "refine", "start"]
+__all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "start"]

@@ -15,16 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.structure.modal import Array
-from models.beam.structure.random_load import (
-    AMPLITUDE,
-    COUNT,
-    SPEED,
-    TURN,
-    add_modes,
-    draw,
-    respond,
-    turn_at,
-)
+from models.beam.structure.random_lines import AMPLITUDE, COUNT, SPEED, TURN, draw, turn_at
+from models.beam.structure.random_response import add_modes, respond
 from models.numerics.blocks import LANES, aligned
 from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
@@ -36,7 +28,7 @@ _STEPS = 4  # taken together, as are four lines
 
 
 class Load(NamedTuple):
-    """The random load of n beams, and what responds to it: the fields of `systems.System`."""
+    """The random load of n beams, and what responds to it."""
 
     load: NDArray[np.void]
     oscillators: Array
@@ -81,7 +73,7 @@ class Lines(NamedTuple):
 
 @kernel
 def draw_lines(load, state, first, steps, lines):
-    """Bring the lines of up to LANES rows from `first` on into lanes; tell whether there are any.
+    """Bring the lines of up to LANES rows from `first` on into lanes; return whether there are any.
 
     Spare lanes repeat the last row.
     """

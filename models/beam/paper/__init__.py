@@ -1,4 +1,4 @@
-"""What the paper prints, computed again; nothing else needs it.
+"""What reproduces the paper; nothing else needs it.
 
-facts    its statements beside ours: ``python -m models.beam.paper.facts``
+``facts`` prints its statements beside ours: ``python -m models.beam.paper.facts``.
 """

@@ -23,7 +23,7 @@ literally the gap has trebled. Both readings are given; neither meets both publi
 
 
 class Fact(NamedTuple):
-    """What the paper says, and what the model gives."""
+    """A statement of the paper, and the model's answer."""
 
     published: str
     model: str

@@ -5,13 +5,13 @@ map is nearly linear between the two, and a stable orbit is then also the one th
 to in time. A step that is long, or not much shorter than the one before, ends the search.
 """
 
-from types import ModuleType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.structure.modal import Array, Record
+from models.beam.structure.modal import Array
+from models.beam.structure.propagation import Propagator, Record, System
 from models.numerics.linear import inverse, product
 from models.numerics.multipliers import largest_multiplier
 
@@ -28,7 +28,7 @@ class Approached(NamedTuple):
     Attributes
     ----------
     found : ndarray of bool, shape (n,)
-        Where there is a stable orbit near the state; nothing else is said of the others.
+        Where there is a stable orbit near the state; the other fields are undefined elsewhere.
     state : ndarray, shape (n, k)
         On the orbit.
     work : ndarray, shape (n, 2)
@@ -52,8 +52,8 @@ class Approached(NamedTuple):
 class _Map(NamedTuple):
     """The map of k periods of n beams at constant gaps, strobed at phase 0 of the force."""
 
-    propagator: ModuleType
-    system: Any
+    propagator: Propagator
+    system: System
     gaps: Array
     periods: int
 
@@ -61,7 +61,7 @@ class _Map(NamedTuple):
         return self._replace(system=self.system.take(rows), gaps=self.gaps[rows])
 
     def advance(self, state: Array) -> tuple[Array, Record]:
-        """Return the image of the state, and what is said of the way there."""
+        """Return the image of the state, and the record of the way there."""
         image, gaps = state.copy(), self.gaps.copy()
         still = np.zeros_like(gaps)
         record = self.propagator.advance(self.system, image, gaps, still, self.periods)
@@ -74,16 +74,15 @@ class _Map(NamedTuple):
 
 
 def approached(
-    propagator: ModuleType, system: Any, state: Array, gaps: Array, size: Array, periods: int
+    propagator: Propagator, system: System, state: Array, gaps: Array, size: Array, periods: int
 ) -> Approached:
     """Find the stable orbits of k periods, or of a divisor of k, that n beams approach.
 
     Parameters
     ----------
-    propagator : module
-        `models.beam.lanes` or `models.beam.exact`.
-    system
-        What the propagator prepared.
+    propagator : Propagator
+    system : System
+        What it prepared.
     state : ndarray, shape (n, k)
         Not changed.
     gaps : ndarray, shape (n, 2)

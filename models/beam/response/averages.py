@@ -4,16 +4,15 @@ The run is doubled until it is long enough; its first quarter is left out, the r
 batches that grow with it. It lasts `MEMORIES` times what the beam remembers at least.
 """
 
-from types import ModuleType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from models.beam.structure.modal import Array
+from models.beam.structure.propagation import LONGEST, Propagator, System
 from models.numerics.batch_means import mean_and_error
 
 SHORTEST = 1024  # periods
-LONGEST = 16_384  # periods; a propagator may take fewer
 MEMORIES = 20
 _PIECE = 32  # periods in one call, and in the shortest batch
 _BATCHES = 24  # cut from what is kept
@@ -36,7 +35,7 @@ class Mean(NamedTuple):
 
 
 def time_mean(
-    propagator: ModuleType, system: Any, state: Array, gaps: Array, accuracy: float, least: int
+    propagator: Propagator, system: System, state: Array, gaps: Array, accuracy: float, least: int
 ) -> Mean:
     """Average the work of n beams until both sites' errors are small, or the budget ends.
 
@@ -44,10 +43,9 @@ def time_mean(
 
     Parameters
     ----------
-    propagator : module
-        `models.beam.lanes` or `models.beam.exact`.
-    system
-        What the propagator prepared.
+    propagator : Propagator
+    system : System
+        What it prepared.
     state : ndarray, shape (n, k)
         Updated in place: the state at the end.
     gaps : ndarray, shape (n, 2)
@@ -63,7 +61,7 @@ def time_mean(
         NaN for a beam whose memory is too long for the longest run.
     """
     n = len(state)
-    wanted = np.maximum(least, MEMORIES * system.memory)
+    wanted = np.maximum(least, MEMORIES * system.beams.memory)
     touches = system.reach >= gaps.min(axis=1)
     out = Mean(*np.zeros((3, n, 2)))
     pieces = np.zeros((n, LONGEST // _PIECE, 2))

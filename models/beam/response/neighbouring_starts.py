@@ -7,30 +7,28 @@ differ from the first by more than their errors, the largest difference, of eith
 error of its mean: their responses may be each other's mirror images.
 """
 
-from types import ModuleType
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.response.settling import APERIODIC, MEMORIES, SEGMENT, Response, look
+from models.beam.response.response import APERIODIC, Response
+from models.beam.response.settling import MEMORIES, SEGMENT, look
 from models.beam.structure.modal import Array
+from models.beam.structure.propagation import Propagator, System
 
 _SHORTEST = 16  # segments of a further look
 _AWAY = (-1e-3, 1e-3, 2e-3)  # where they begin, in the first mode and in initial gaps
 
 
-def add_second_looks(
-    propagator: ModuleType, system: Any, begin: Array, gaps: Array, out: Response
+def add_neighbour_error(
+    propagator: Propagator, system: System, begin: Array, gaps: Array, out: Response
 ) -> None:
     """Look at aperiodic responses again, from starts close to the first.
 
     Parameters
     ----------
-    propagator : module
-        `models.beam.lanes` or `models.beam.exact`.
-    system
-        What the propagator prepared.
+    propagator : Propagator
+    system : System
+        What it prepared.
     begin : ndarray, shape (n, k)
         Where `models.beam.response.settling.settle` began; not changed.
     gaps : ndarray, shape (n, 2)
@@ -38,7 +36,7 @@ def add_second_looks(
     out : Response
         Updated in place: the error of aperiodic responses.
     """
-    rattles = ~system.is_random & (out.regime == APERIODIC) & (out.work > 0).any(axis=1)
+    rattles = ~system.beams.is_random & (out.regime == APERIODIC) & (out.work > 0).any(axis=1)
     rows = np.flatnonzero(rattles)
     if not len(rows):
         return
@@ -46,7 +44,7 @@ def add_second_looks(
     state = begin[again]
     state[:, 0] += np.tile(_AWAY, len(rows))
     found = Response.settling(len(again))
-    segments = np.repeat(_segments(system.memory[rows]), len(_AWAY))
+    segments = np.repeat(_segments(system.beams.memory[rows]), len(_AWAY))
     for some in np.unique(segments):
         alike = np.flatnonzero(segments == some)
         look(propagator, system.take(again), state, gaps[again], alike, found, some, some)

@@ -1,24 +1,31 @@
 """The settled response at constant gaps: which regime it is, and its work-rate.
 
-The tip is looked at once per forcing period. Where its strobe points seem to approach an orbit of
-k periods, Newton's method on the map of k periods looks for it; if it is there, near and stable,
+The tip is observed once per forcing period. Where its strobe points seem to approach an orbit of
+k periods, Newton's method on the map of k periods searches for it; if it exists, near and stable,
 the response is that orbit and its work-rate is exact. A response that has not come near a stable
-orbit is aperiodic, and its work-rate is a time mean with the error of batch means. It is looked at
-for `SHORTEST` segments, and twice as long again and again where the mean is still uncertain, the
-start not forgotten yet, or a beam that could do without contact may still come to that. Under a
-random load it never settles, see `models.beam.response.averages`.
+orbit is aperiodic, and its work-rate is a time mean with the error of batch means. It is observed
+for `SHORTEST` segments; the time is doubled again and again while the mean is uncertain, the start
+not yet forgotten, or a beam that could live without contact may still do so. Under a random load it
+never settles, see `models.beam.response.averages`.
 """
 
-from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.parameters import REGIMES
 from models.beam.response.approached_orbits import Approached, approached
 from models.beam.response.averages import time_mean
+from models.beam.response.response import (
+    APERIODIC,
+    ASYMMETRIC,
+    NO_IMPACT,
+    PERIODIC,
+    SYMMETRIC,
+    Response,
+)
 from models.beam.structure.modal import Array
+from models.beam.structure.propagation import Propagator, System
 from models.numerics.batch_means import mean_and_bound
 from models.numerics.jit import kernel
 
@@ -36,73 +43,15 @@ _SHRINKING = 0.9  # factor of that distance from one look to the next
 _NEARER = 0.5  # that distance over the one at which an orbit was looked for in vain
 _SYMMETRIC = 1e-3  # difference of the sites' work, relative to their sum
 
-NO_IMPACT, SYMMETRIC, ASYMMETRIC, PERIODIC, APERIODIC = range(len(REGIMES))
 
-
-class Response(NamedTuple):
-    """The settled response of n beams at constant gaps.
-
-    Attributes
-    ----------
-    work : ndarray, shape (n, 2)
-        Mean dimensionless work per forcing period at the right and the left site.
-    error : ndarray, shape (n, 2)
-        Within which nine in ten means lie, 0 if periodic.
-    peak : ndarray, shape (n, 2)
-        Largest penetration, in initial gaps.
-    regime : ndarray of int8, shape (n,)
-        Index into `models.beam.parameters.REGIMES`.
-    period : ndarray, shape (n,)
-        In forcing periods, 0 if aperiodic.
-    multiplier : ndarray, shape (n,)
-        Largest modulus of the orbit's Floquet multipliers, over its period; NaN if aperiodic or
-        without impacts.
-    """
-
-    work: Array
-    error: Array
-    peak: Array
-    regime: NDArray[np.int8]
-    period: Array
-    multiplier: Array
-
-    @staticmethod
-    def settling(n: int) -> "Response":
-        """Return a response of n beams to be filled in: aperiodic, at rest."""
-        regime = np.full(n, APERIODIC, np.int8)
-        return Response._make([*np.zeros((3, n, 2)), regime, np.zeros(n), np.full(n, np.nan)])
-
-    @staticmethod
-    def nothing(n: int) -> "Response":
-        """Return what is known of n beams before they are run."""
-        regime = np.full(n, APERIODIC, np.int8)
-        unknown = np.full((2, n), np.nan)
-        return Response._make([*np.full((3, n, 2), np.nan), regime, *unknown])
-
-    def take(self, rows: NDArray[np.intp]) -> "Response":
-        """Return the responses of some beams."""
-        return Response._make(field[rows] for field in self)
-
-    def put(self, rows: NDArray[np.intp], known: "Response") -> None:
-        """Set the responses of some beams."""
-        fields: tuple[Any, ...] = self
-        for mine, theirs in zip(fields, known, strict=True):
-            mine[rows] = theirs
-
-    def forget(self, rows: NDArray[np.intp]) -> None:
-        """Know nothing of some beams."""
-        self.put(rows, Response.nothing(len(rows)))
-
-
-def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Response:
+def settle(propagator: Propagator, system: System, state: Array, gaps: Array) -> Response:
     """Run n beams until they have settled.
 
     Parameters
     ----------
-    propagator : module
-        `models.beam.lanes` or `models.beam.exact`.
-    system
-        What the propagator prepared.
+    propagator : Propagator
+    system : System
+        What it prepared.
     state : ndarray, shape (n, k)
         Updated in place: the state at the end.
     gaps : ndarray, shape (n, 2)
@@ -116,20 +65,20 @@ def settle(propagator: ModuleType, system: Any, state: Array, gaps: Array) -> Re
     """
     out = Response.settling(len(state))
     never_touches = system.reach < gaps.min(axis=1)
-    random = np.flatnonzero(system.is_random)
+    random = np.flatnonzero(system.beams.is_random)
     if len(random):
         _settle_random(propagator, system, state, gaps, never_touches, random, out)
     longest = min(LONGEST, max(SHORTEST, MOST_STEPS // (SEGMENT * system.steps)))
-    look(propagator, system, state, gaps, np.flatnonzero(~system.is_random), out, longest)
-    remembers = ~system.is_random & (MEMORIES * system.memory > longest * SEGMENT)
+    look(propagator, system, state, gaps, np.flatnonzero(~system.beams.is_random), out, longest)
+    remembers = ~system.beams.is_random & (MEMORIES * system.beams.memory > longest * SEGMENT)
     out.forget(np.flatnonzero(remembers & (out.regime == APERIODIC)))
     out.forget(np.flatnonzero(np.isnan(out.work).any(axis=1)))
     return out
 
 
 def look(
-    propagator: ModuleType,
-    system: Any,
+    propagator: Propagator,
+    system: System,
     state: Array,
     gaps: Array,
     rows: NDArray[np.intp],
@@ -167,7 +116,7 @@ def look(
         size = np.abs(record.strobe).max(axis=(1, 2))
         before, distance[left] = distance[left], _distances(record.strobe, size)
         quiet[left] = np.where((record.work == 0).all(axis=(1, 2)), quiet[left] + SEGMENT, 0)
-        silent = never_touches[left] & (quiet[left] >= np.maximum(SEGMENT, TURNS * part.turn))
+        silent = never_touches[left] & (quiet[left] >= np.maximum(SEGMENT, TURNS * part.beams.turn))
         _note_silence(out, left[silent])
         guess = np.zeros(len(left), int)
         if (segment + 1) % (1 + segment // 4) == 0:  # late ones wait for company
@@ -183,7 +132,7 @@ def look(
         segment += 1
         if segment == total:
             out.work[left], out.error[left] = mean_and_bound(batches[left, total // 4 : total])
-            remembers = MEMORIES * system.memory[left] > total * SEGMENT
+            remembers = MEMORIES * system.beams.memory[left] > total * SEGMENT
             enough = ACCURACY * out.work[left].max(axis=1, keepdims=True)
             uncertain = (out.error[left] > enough).any(axis=1)
             unsettled = remembers | uncertain | never_touches[left]
@@ -193,15 +142,15 @@ def look(
 
 
 def _settle_random(
-    propagator: ModuleType,
-    system: Any,
+    propagator: Propagator,
+    system: System,
     state: Array,
     gaps: Array,
     never_touches: NDArray[np.bool_],
     rows: NDArray[np.intp],
     out: Response,
 ) -> None:
-    """Average over a random load: nothing repeats, so only silence can be told from the rest."""
+    """Average over a random load: nothing repeats, so only silence can be distinguished."""
     now = state[rows]
     mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, 0)
     state[rows] = now

@@ -1,28 +1,26 @@
 """What the fast propagator's steps do to a periodic response: the orbit again, in half steps."""
 
-from types import ModuleType
-from typing import Any
-
 import numpy as np
 
 from models.beam.response.approached_orbits import approached
-from models.beam.response.settling import NO_IMPACT, Response, look, note_orbit
+from models.beam.response.response import NO_IMPACT, Response
+from models.beam.response.settling import look, note_orbit
 from models.beam.structure.modal import Array
+from models.beam.structure.propagation import Propagator, System
 
 _SEGMENTS = 16  # of the look at what leaves its orbit
 
 
 def add_step_error(
-    propagator: ModuleType, system: Any, state: Array, gaps: Array, out: Response
+    propagator: Propagator, system: System, state: Array, gaps: Array, out: Response
 ) -> None:
     """Put orbits in the place of those of twice the step; what that changes is their error.
 
     Parameters
     ----------
-    propagator : module
-        `models.beam.lanes`, or `models.beam.exact`, which knows no steps.
-    system
-        What the propagator prepared.
+    propagator : Propagator
+    system : System
+        What it prepared.
     state : ndarray, shape (n, k)
         On the orbits, where there are some; not changed.
     gaps : ndarray, shape (n, 2)
@@ -32,10 +30,9 @@ def add_step_error(
         of it.
     """
     rows = np.flatnonzero((out.period > 0) & (out.regime != NO_IMPACT))
-    for part, fine in propagator.finer(system.take(rows)):
+    for part, fine, now in propagator.finer(system.take(rows), state[rows]):
         some = rows[part]
         coarse = out.take(some)
-        now = propagator.refine(system.take(some), state[some], fine)
         found = Response.settling(len(some))
         size = (gaps[some] + coarse.peak).max(axis=1)
         for k in np.unique(coarse.period):

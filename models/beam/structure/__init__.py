@@ -1,6 +1,11 @@
-"""The rod as one oscillator per mode, and the random load on it.
+"""The rod as one oscillator per mode, and the load on it.
 
-finite_element    frequencies and tip values of the modes
-random_load       the random force as a sum of lines, drawn anew in each epoch
-modal             rows of parameters as beams in modal form; what a propagator records
+Reading order; a module imports only those above it:
+
+    finite_element     frequencies and tip values of the modes
+    random_lines       the random force as a sum of lines
+    random_response    the steady response to it
+    random_load        its lines for a given beam, and how long they last
+    modal              rows of parameters as beams in modal form
+    propagation        what a propagator of them promises and reports
 """

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from models.beam.parameters import Rows, Settings
 from models.beam.structure.finite_element import modes
-from models.beam.structure.random_load import random_load, sure_reach, tip_deviation
+from models.beam.structure.random_load import random_load
+from models.beam.structure.random_response import sure_reach, tip_deviation
 
 Array = NDArray[np.float64]
 
@@ -48,6 +49,21 @@ class Beams(NamedTuple):
     stiffness: Array
     moving: NDArray[np.int64]
     load: NDArray[np.void]
+
+    @property
+    def is_random(self) -> NDArray[np.bool_]:
+        """Which beams have a random load, shape (n,)."""
+        return self.load["power"] > 0
+
+    @property
+    def memory(self) -> Array:
+        """Forcing periods in which the first mode's free motion falls to 1/e, shape (n,)."""
+        return self.forcing / (2 * np.pi * self.decay[:, 0])
+
+    @property
+    def turn(self) -> Array:
+        """Forcing periods in a free oscillation of the first mode, shape (n,)."""
+        return self.forcing / self.frequency[:, 0]
 
     def take(self, rows: NDArray[np.intp]) -> "Beams":
         """Return the beams of some rows."""
@@ -133,34 +149,3 @@ def reach(b: Beams) -> Array:
         return harmonic
     random = tip_deviation(b.load, b.forcing, b.frequency, b.decay, b.mobility)
     return harmonic + sure_reach(random)
-
-
-class Record(NamedTuple):
-    """What a propagator says of some forcing periods of n beams.
-
-    Attributes
-    ----------
-    work : ndarray, shape (n, periods, 2)
-        Nondimensional impact work at the right and the left site in each period.
-    strobe : ndarray, shape (n, periods, 2)
-        Tip x and dx/d(Omega t) at the end of each period, in initial gaps.
-    peak : ndarray, shape (n, 2)
-        Largest penetration at each site, in initial gaps.
-    trace : ndarray, shape (n, periods * steps)
-        Tip displacement at every step, in initial gaps; empty unless asked for.
-    """
-
-    work: Array
-    strobe: Array
-    peak: Array
-    trace: Array
-
-    @staticmethod
-    def empty(n: int, periods: int, steps: int = 0) -> "Record":
-        """Return a record to be filled in."""
-        return Record(
-            np.zeros((n, periods, 2)),
-            np.zeros((n, periods, 2)),
-            np.zeros((n, 2)),
-            np.zeros((n, periods * steps)),
-        )

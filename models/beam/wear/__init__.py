@@ -1,8 +1,13 @@
 """Lives of beams whose gaps grow with the impact work.
 
-regimes             the regime of a response that drifts with wear, and its changes
-lost_stability      orbits that wear has made unstable
-accelerated_life    one life, many times faster than in reality
-lives               lifetimes in the limit of slow wear
-random_lives        the same under a random load
+Reading order; a module imports only those above it:
+
+    regimes             the regime of a response that drifts with wear, and its changes
+    lost_stability      orbits that wear has made unstable
+    growth              how the gaps grow, and what is noted of it
+    accelerated_life    one life, many times faster than in reality
+    extrapolation       the limit of ever slower lives
+    lives               lifetimes in that limit
+    fitted_wear         the wear of a site along the path, from noisy means
+    random_lives        lifetimes under a random load
 """

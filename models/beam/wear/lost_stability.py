@@ -3,25 +3,23 @@
 A beam that follows an orbit through the loss of its stability stays next to it until what is left
 of its disturbances has grown again. In a life of 1e9 periods that is no time at all; in an
 accelerated one it may be half of it, and the life comes out too long. So the multiplier of an orbit
-of one period is looked at on the way, and a beam whose orbit has just become unstable is pushed.
+of one period is computed on the way, and a beam whose orbit has just become unstable is pushed.
 """
-
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.response.settling import ASYMMETRIC, SYMMETRIC
+from models.beam.response.response import ASYMMETRIC, SYMMETRIC
 from models.beam.structure.modal import Array
+from models.beam.structure.propagation import Propagator, System
 from models.numerics.multipliers import largest_multiplier
 
 _PUSH = 3e-3  # of the first mode [X0]
 
 
 def push_off_unstable_orbits(
-    propagator: ModuleType,
-    system: Any,
+    propagator: Propagator,
+    system: System,
     state: Array,
     gaps: Array,
     regime: NDArray[np.int8],
@@ -31,10 +29,9 @@ def push_off_unstable_orbits(
 
     Parameters
     ----------
-    propagator : module
-        `models.beam.lanes` or `models.beam.exact`.
-    system
-        What the propagator prepared.
+    propagator : Propagator
+    system : System
+        What it prepared.
     state : ndarray, shape (n, k)
         Updated in place.
     gaps : ndarray, shape (n, 2)

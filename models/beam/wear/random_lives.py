@@ -3,40 +3,28 @@
 A random load leaves no branches to follow and no memory of the path: the mean wear of a site
 depends on the gaps alone, and its life is the integral of dx over it (eqs 10 to 12 of Knudsen &
 Massih 2002). An accelerated life would take each burst of the load for a hundred, and each lull.
-
-The means are noisy, and one over a noisy mean is too large. So the logarithm of the wear along the
-path is taken for a cubic, fitted such that the ratios of means and fit average to one (the
-quasi-likelihood of a gamma law): unbiased, and the scatter about it says how well it is known, what
-the cubic misses included. Where the means are good it is interpolated instead.
 """
-
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 
 from models.beam.response.averages import SHORTEST, time_mean
 from models.beam.response.settling import NINE_IN_TEN
 from models.beam.structure.modal import Array
+from models.beam.structure.propagation import Propagator, System
+from models.beam.wear.fitted_wear import FittedWear
 from models.beam.wear.lives import Lives
-from models.numerics.elementary import exp, expm1, log, log1p
-from models.numerics.linear import inverse, product
+from models.numerics.elementary import expm1, log1p
 
 INCREMENTS = 12  # in which the faster gap grows to the last depth
 _OVERTIME = 3  # times as many for the slower one
 _LONGEST = 82  # over the accuracy: periods at each increment
 _ANY = 1e9  # error of a mean whose length is given
 _MEMORY = 0.3  # weight of the newest node in the sites' shares of wear
-_GOOD = 0.05  # relative error of means that are interpolated
-_CUBIC = 3
-_STEEPEST = 300.0  # logarithm by which a fit may fall short of a rate
-_GRID = 129  # points of a quadrature
-_ITERATIONS = 30
 
 
 def find_random_lives(
-    propagator: ModuleType,
-    system: Any,
+    propagator: Propagator,
+    system: System,
     state: Array,
     gaps: Array,
     work: Array,
@@ -50,12 +38,12 @@ def find_random_lives(
     Parameters
     ----------
     propagator, system, state, gaps, work, share, growths
-        As in `models.beam.wear.accelerated_life.run`.
+        As in `models.beam.wear.accelerated_life.run_life`.
     error : ndarray, shape (n, 2)
         Standard error of `work`.
     accuracy : float
-        Sets how long a time mean is taken at each increment. What the lives lack in accuracy their
-        errors say.
+        Sets how long a time mean is taken at each increment. Their
+        errors show what accuracy the lives have.
 
     Returns
     -------
@@ -134,7 +122,7 @@ def _note(
         x = grown[:, site]
         if x[-1] == 0:
             continue
-        wear = _Wear(x, rate[:, site], doubt[:, site])
+        wear = FittedWear(x, rate[:, site], doubt[:, site])
         whole, _ = wear.life(x[-1])
         simulated = max(simulated, whole if np.isfinite(whole) else 0.0)
         for depth in np.flatnonzero(growths <= x[-1] * (1 + 1e-9)).tolist():
@@ -153,66 +141,3 @@ def _note(
         if out.reached[i, 2, depth]:
             other = np.interp(at[first, depth], np.arange(len(grown)), grown[:, 1 - first])
             out.ratio[i, depth] = (gaps[1 - first] + other) / (gaps[first] + goal)
-
-
-class _Wear:
-    """How fast one site wears along the path, known at nodes with a standard error."""
-
-    def __init__(self, x: Array, rate: Array, error: Array):
-        worn = rate > 0
-        relative = error[worn] / rate[worn]
-        self.x, self.interpolated = x, bool(worn.all() and np.sqrt((relative**2).mean()) < _GOOD)
-        if self.interpolated:
-            self.log, self.relative = log(rate), relative
-        else:
-            self.coefficient, self.covariance = _fit(x / x[-1], rate)
-
-    def life(self, end: float) -> tuple[float, float]:
-        """Return the integral of dx over the rate up to an end, and its standard error."""
-        if self.interpolated:
-            inside = np.append(self.x[self.x < end], end)
-            level = np.interp(inside, self.x, self.log)
-            piece = np.diff(inside) * exp(-level[:-1]) * _mean_exponential(-np.diff(level))
-            coarse = np.append(inside[:-1:2], end)
-            level = np.interp(coarse, self.x, self.log)
-            other = np.diff(coarse) * exp(-level[:-1]) * _mean_exponential(-np.diff(level))
-            weight = (np.append(piece, 0.0) + np.append(0.0, piece)) / 2
-            noise = weight * np.interp(inside, self.x, self.relative)
-            change = (other.sum() - piece.sum()) / 3
-            return float(piece.sum()), float(np.sqrt((noise**2).sum() + change**2))
-        grid = np.linspace(0.0, end, _GRID)
-        basis = np.vander(grid / self.x[-1], len(self.coefficient), increasing=True)
-        with np.errstate(over="ignore", invalid="ignore"):
-            inverse = exp(-_values(basis, self.coefficient))
-            slope = -np.trapezoid(basis * inverse[:, None], grid, axis=0)
-            life = np.trapezoid(inverse, grid)
-            return float(life), float(np.sqrt((slope[:, None] * self.covariance * slope).sum()))
-
-
-def _fit(t: Array, rate: Array) -> tuple[Array, Array]:
-    """Fit log rate by a polynomial in t such that rate over fit averages to one; and covariance."""
-    degree = min(_CUBIC, (len(t) - 1) // 3)
-    basis = np.vander(t, degree + 1, increasing=True)
-    coefficient = np.zeros(degree + 1)
-    coefficient[0] = log(rate.mean())
-    normal = inverse(product(basis.T[None], basis[None]))[0][0]
-    for _ in range(_ITERATIONS):
-        residual = rate * exp(np.minimum(-_values(basis, coefficient), _STEEPEST)) - 1
-        # Steps are kept where the fit changes by no more than a factor e: fits of noise run away.
-        change = _values(normal, _values(basis.T, residual))
-        coefficient += change / max(1.0, np.abs(_values(basis, change)).max())
-    residual = rate * exp(np.minimum(-_values(basis, coefficient), _STEEPEST)) - 1
-    scatter = (residual**2).sum() / max(1, len(t) - degree - 1)
-    return coefficient, scatter * normal
-
-
-def _values(basis: Array, coefficient: Array) -> Array:
-    """Return the product of a matrix and a vector."""
-    return product(basis[None], coefficient[None, :, None])[0, :, 0]
-
-
-def _mean_exponential(a: Array) -> Array:
-    """Return the mean of exp over [0, a]."""
-    small = np.abs(a) < 1e-6
-    safe = np.where(small, 1.0, a)
-    return np.where(small, 1 + a / 2, expm1(safe) / safe)

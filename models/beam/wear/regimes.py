@@ -1,8 +1,8 @@
-"""What a wearing beam does, look by look: its regime, told in spite of the drift, and its changes.
+"""The regime of a wearing beam, look by look, in spite of the drift, and its changes.
 
 The strobe points of a beam whose gaps grow never return exactly: they drift. But those of a
 response of period k all drift alike, so that the step from one to the k-th after it is the same
-all along a look. That is what is asked for here; the answer hardly depends on how nearly the same.
+all along a look. That is the criterion here; the result hardly depends on its tolerance.
 """
 
 from typing import NamedTuple
@@ -10,18 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.beam.response.settling import (
-    APERIODIC,
-    ASYMMETRIC,
-    LONGEST_PERIOD,
-    NO_IMPACT,
-    PERIODIC,
-    SYMMETRIC,
-)
+from models.beam.response.response import APERIODIC, ASYMMETRIC, NO_IMPACT, PERIODIC, SYMMETRIC
+from models.beam.response.settling import LONGEST_PERIOD
 from models.beam.structure.modal import Array
 from models.numerics.jit import kernel
 
-WINDOW = 2 * LONGEST_PERIOD  # periods that a look must have for its regime to be told
+WINDOW = 2 * LONGEST_PERIOD  # periods that a look must have for its regime to be known
 CONFIRMED = 3  # looks in a row that a regime must last to count
 UNKNOWN = -1
 _STEADY = 1e-2  # unevenness of the drift, relative to the response
@@ -58,7 +52,7 @@ class History(NamedTuple):
 
 @kernel
 def regime_of(strobe, work):
-    """Tell the regime from the last `WINDOW` strobe points and works of one beam."""
+    """Return the regime by the last `WINDOW` strobe points and works of one beam."""
     periods = len(strobe)
     scale = right = left = 0.0
     for j in range(periods - WINDOW, periods):
@@ -105,14 +99,14 @@ def confirmed_regimes(regime, confirmed=CONFIRMED):
     """
     out = np.full_like(regime, UNKNOWN)
     for i in range(len(regime)):
-        told = 0
-        while told < regime.shape[1] and regime[i, told] != UNKNOWN:
-            told += 1
+        known = 0
+        while known < regime.shape[1] and regime[i, known] != UNKNOWN:
+            known += 1
         now, streak = UNKNOWN, 0
-        for look in range(told):
+        for look in range(known):
             seen = regime[i, look]
             streak = streak + 1 if look > 0 and seen == regime[i, look - 1] else 1
-            is_end = seen == NO_IMPACT and look == told - 1
+            is_end = seen == NO_IMPACT and look == known - 1
             if seen != now and (streak >= confirmed or is_end):
                 now = seen
                 out[i, look - streak + 1 : look] = now
@@ -121,7 +115,7 @@ def confirmed_regimes(regime, confirmed=CONFIRMED):
 
 
 def changes_of(regime: NDArray[np.int8]) -> NDArray[np.bool_]:
-    """Tell in which looks a confirmed regime follows upon another, shape (n, L).
+    """Return in which looks a confirmed regime follows another, shape (n, L).
 
     Parameters
     ----------

@@ -1,6 +1,16 @@
 """The fast propagator: sixteen moles abreast.
 
-Read `propagation` (the loop), then what it is made of: `block` (the memory of the lanes), `rates`
-(their rates of change), `modes` (guards, and what an event changes), `steps` (what follows a trial
-step), `rows` (how a row enters and leaves a lane).
+Reading order; a module imports only those above it:
+
+    block         the memory of the lanes
+    rates         their rates of change
+    modes         guards, and what an event changes
+    steps         what follows a trial step
+    rows          how a row enters and leaves a lane
+    loop          each lane with its own step: the hot loop
+    propagator    n moles, prepared, started and advanced
 """
+
+from models.mole.lanes.propagator import System, advance, groups, monodromy, start
+
+__all__ = ["System", "advance", "groups", "monodromy", "start"]

@@ -1,1 +1,1 @@
-"""What reproduces the paper; nothing else needs it. Read `table`: its claims, and the model's."""
+"""What reproduces the paper, and nothing else needs: its claims beside ours, in `table`."""

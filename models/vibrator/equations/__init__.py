@@ -1,5 +1,13 @@
-"""The equations of motion, for one machine or for all lanes at once.
+"""The equations of motion, of one machine or of many.
 
-Read `system`, the constants; `rigid`, motors bolted to the body, and `rigid_motion`, the same for a
-state; then `general`, with exact kinematics, mounts and feed. `time_scales` bounds steps and waits.
+Reading order; a module imports only those above it:
+
+    rigid                motors bolted to the body, no feed: constants and accelerations
+    rigid_derivatives    and the derivatives of these
+    rigid_motion         the same for a state
+    system               the constants of any machine
+    geometry             exact kinematics, mounts and feed: where everything is
+    mass_matrix          and how it resists
+    general              and how it moves
+    time_scales          bounds of steps and waits
 """

@@ -47,7 +47,7 @@ def acceleration(m, state, out):
 
     Parameters
     ----------
-    m : System
+    m : Rigid
     state : ndarray, shape (10,)
     out : ndarray, shape (>= 5,)
     """

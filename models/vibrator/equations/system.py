@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics import elementary
+from models.vibrator.equations.rigid import Rigid
 from models.vibrator.parameters import Params, Rows
 from models.vibrator.theory.averaged import feed_gravity
 
@@ -20,29 +21,8 @@ class System(NamedTuple):
 
     Attributes
     ----------
-    mass, moment_x, moment_y, inertia : float
-        Of all that moves with the body about C, unbalanced masses at their shafts: M [kg],
-        sum of m s [kg m], J [kg m2].
-    working_angle : float
-        beta [rad]
-    shaft_x_1, shaft_y_1, shaft_x_2, shaft_y_2 : float
-        s_1, s_2 [m]
-    unbalance_1, unbalance_2 : float
-        m e_1, m e_2 [kg m]
-    mobility_1, mobility_2 : float
-        1/(J_zr + m e_i^2) [kg-1 m-2]
-    torque_1, torque_2 : float
-        2 p M_zn (w_s - w_u), of (22) [N m rad s-1]
-    synchronous_speed_1, synchronous_speed_2 : float
-        w_s [rad s-1]
-    slip_1, slip_2 : float
-        w_s - w_u [rad s-1]
-    bearing_loss_1, bearing_loss_2 : float
-        rho m e_i [kg m2]
-    stiffness_x, stiffness_y, damping_x, damping_y : float
-        k_x, k_y [N m-1], b_x, b_y [N s m-1]
-    support_offset, half_spacing : float
-        h, l [m]
+    rigid : Rigid
+        The same with rigid mounts and without feed.
     unbalanced_mass, rotor_inertia : float
         m [kg], J_zr [kg m2]
     body_mass, body_inertia : float
@@ -63,33 +43,7 @@ class System(NamedTuple):
         1 for exact kinematics, 0 for the geometry at alpha = 0.
     """
 
-    mass: Any
-    moment_x: Any
-    moment_y: Any
-    inertia: Any
-    working_angle: Any
-    shaft_x_1: Any
-    shaft_y_1: Any
-    shaft_x_2: Any
-    shaft_y_2: Any
-    unbalance_1: Any
-    unbalance_2: Any
-    mobility_1: Any
-    mobility_2: Any
-    torque_1: Any
-    torque_2: Any
-    synchronous_speed_1: Any
-    synchronous_speed_2: Any
-    slip_1: Any
-    slip_2: Any
-    bearing_loss_1: Any
-    bearing_loss_2: Any
-    stiffness_x: Any
-    stiffness_y: Any
-    damping_x: Any
-    damping_y: Any
-    support_offset: Any
-    half_spacing: Any
+    rigid: Rigid
     unbalanced_mass: Any
     rotor_inertia: Any
     body_mass: Any
@@ -113,50 +67,64 @@ class System(NamedTuple):
 
     def row(self, i: int) -> "System":
         """Return one of n machines, its fields floats."""
-        return System._make(float(field[i]) for field in self)
+        rigid, *others = self
+        one = Rigid._make(float(field[i]) for field in rigid)
+        return System(one, *(float(field[i]) for field in others))
 
 
-def systems(p: Rows, kinematics: str = "small") -> System:
-    """Prepare n machines.
+class _MotorSet(NamedTuple):
+    """The motor set of n machines, unbalanced masses included."""
+
+    x_1: Any  # levers of the shafts and of their midpoint from C
+    y_1: Any
+    x_2: Any
+    y_2: Any
+    x: Any
+    y: Any
+    mass: Any
+    inertia: Any  # about the midpoint
+
+
+def _motor_set(p: Rows) -> _MotorSet:
+    cos, sin = elementary.cos(p.working_angle), elementary.sin(p.working_angle)
+    along = p.shaft_distance * elementary.cos(p.shaft_half_angle)
+    half = p.shaft_distance * elementary.sin(p.shaft_half_angle)
+    (x_1, y_1), (x_2, y_2), (x, y) = [
+        (along * cos - across * sin, along * sin + across * cos)
+        for across in (p.axis_offset + half, p.axis_offset - half, p.axis_offset)
+    ]
+    m = p.unbalanced_mass
+    mass, inertia = p.mount_mass + 2 * m, p.mount_inertia + 2 * m * half**2
+    return _MotorSet(x_1, y_1, x_2, y_2, x, y, mass, inertia)
+
+
+def rigid_machines(p: Rows) -> Rigid:
+    """Prepare n machines as if their mounts were rigid and no feed on the deck.
 
     Parameters
     ----------
     p : Params
         Each field an ndarray of shape (n,).
-    kinematics : {"small", "exact"}
 
     Returns
     -------
-    System
+    Rigid
         Each field an ndarray of shape (n,).
     """
-    cos, sin = elementary.cos(p.working_angle), elementary.sin(p.working_angle)
-    along = p.shaft_distance * elementary.cos(p.shaft_half_angle)
-    half = p.shaft_distance * elementary.sin(p.shaft_half_angle)
-    levers = [
-        (along * cos - across * sin, along * sin + across * cos)
-        for across in (p.axis_offset + half, p.axis_offset - half, p.axis_offset)
-    ]
-    (x_1, y_1), (x_2, y_2), (x_0, y_0) = levers
-    m = p.unbalanced_mass
-    set_mass, set_inertia = p.mount_mass + 2 * m, p.mount_inertia + 2 * m * half**2
+    motors, m = _motor_set(p), p.unbalanced_mass
     sprung = p.body_mass + 2 * m
-    slides, rocks = np.isfinite(p.mount_stiffness), np.isfinite(p.mount_rotational_stiffness)
-    slide_stiffness = np.where(slides, p.mount_stiffness, 0.0)
-    rock_stiffness = np.where(rocks, p.mount_rotational_stiffness, 0.0)
-    direction = p.working_angle + p.mount_angle
     slip_1 = p.synchronous_speed_1 - p.breakdown_speed_1
     slip_2 = p.synchronous_speed_2 - p.breakdown_speed_2
-    return System(
-        mass=p.body_mass + set_mass,
-        moment_x=set_mass * x_0,
-        moment_y=set_mass * y_0,
-        inertia=p.body_inertia + set_inertia + set_mass * (x_0**2 + y_0**2),
+    return Rigid(
+        mass=p.body_mass + motors.mass,
+        moment_x=motors.mass * motors.x,
+        moment_y=motors.mass * motors.y,
+        inertia=p.body_inertia + motors.inertia + motors.mass * (motors.x**2 + motors.y**2),
         working_angle=p.working_angle,
-        shaft_x_1=x_1,
-        shaft_y_1=y_1,
-        shaft_x_2=x_2,
-        shaft_y_2=y_2,
+        shaft_x_1=motors.x_1,
+        shaft_y_1=motors.y_1,
+        shaft_x_2=motors.x_2,
+        shaft_y_2=motors.y_2,
         unbalance_1=p.unbalance_1,
         unbalance_2=p.unbalance_2,
         mobility_1=1 / (p.rotor_inertia + p.unbalance_1**2 / m),
@@ -175,12 +143,36 @@ def systems(p: Rows, kinematics: str = "small") -> System:
         damping_y=2 * p.damping_ratio * np.sqrt(sprung * p.stiffness_y),
         support_offset=p.support_offset,
         half_spacing=p.support_half_spacing,
-        unbalanced_mass=m,
+    )
+
+
+def systems(p: Rows, kinematics: str = "small") -> System:
+    """Prepare n machines.
+
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,).
+    kinematics : {"small", "exact"}
+
+    Returns
+    -------
+    System
+        Each field an ndarray of shape (n,).
+    """
+    motors = _motor_set(p)
+    slides, rocks = np.isfinite(p.mount_stiffness), np.isfinite(p.mount_rotational_stiffness)
+    slide_stiffness = np.where(slides, p.mount_stiffness, 0.0)
+    rock_stiffness = np.where(rocks, p.mount_rotational_stiffness, 0.0)
+    direction = p.working_angle + p.mount_angle
+    return System(
+        rigid=rigid_machines(p),
+        unbalanced_mass=p.unbalanced_mass,
         rotor_inertia=p.rotor_inertia,
         body_mass=p.body_mass,
         body_inertia=p.body_inertia,
-        mount_x=x_0,
-        mount_y=y_0,
+        mount_x=motors.x,
+        mount_y=motors.y,
         slides=slides.astype(float),
         rocks=rocks.astype(float),
         slide_x=slides * elementary.cos(direction),
@@ -188,13 +180,13 @@ def systems(p: Rows, kinematics: str = "small") -> System:
         mount_mass=p.mount_mass,
         mount_inertia=p.mount_inertia,
         slide_stiffness=slide_stiffness,
-        slide_damping=2 * p.mount_damping_ratio * np.sqrt(slide_stiffness * set_mass),
+        slide_damping=2 * p.mount_damping_ratio * np.sqrt(slide_stiffness * motors.mass),
         rock_stiffness=rock_stiffness,
-        rock_damping=2 * p.mount_damping_ratio * np.sqrt(rock_stiffness * set_inertia),
+        rock_damping=2 * p.mount_damping_ratio * np.sqrt(rock_stiffness * motors.inertia),
         feed_mass=p.feed_mass,
         feed_gravity=_gravity(p),
         feed_position=p.feed_position,
-        exact=np.full_like(m, kinematics == "exact"),
+        exact=np.full_like(p.unbalanced_mass, kinematics == "exact"),
     )
 
 

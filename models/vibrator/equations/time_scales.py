@@ -5,15 +5,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.equations.system import System
+from models.vibrator.equations.rigid import Rigid
 
 
-def fastest_rates(m: System) -> NDArray[np.float64]:
+def fastest_rates(m: Rigid) -> NDArray[np.float64]:
     """Return an upper bound of the rates of free vibration and decay of n rigid machines.
 
     Parameters
     ----------
-    m : System
+    m : Rigid
         Each field an ndarray of shape (n,).
 
     Returns
@@ -46,12 +46,12 @@ def fastest_rates(m: System) -> NDArray[np.float64]:
     return np.maximum.reduce([vibration + decay, *motor])
 
 
-def slowest_period(m: System) -> Any:
+def slowest_period(m: Rigid) -> Any:
     """Return about the longest period of a body on its supports [s].
 
     Parameters
     ----------
-    m : System
+    m : Rigid
         One machine, or n with fields of shape (n,).
 
     Returns

@@ -1,5 +1,15 @@
 """The exact propagator: any machine, one at a time, with error control.
 
-Read `propagator`; then `budgeted`, a machine that is run again and again, its periodic `orbit`, and
-the `measures` of a sampled motion.
+Reading order; a module imports only those above it:
+
+    propagator    one machine, started and followed
+    budgeted      a machine that is run again and again within a budget of steps
+    measures      what is read off a sampled motion
+    orbit         the synchronous motion as a periodic orbit, by shooting
+
+It is a `models.numerics.propagator.Yardstick`.
 """
+
+from models.vibrator.exact.propagator import Motion, propagate, start
+
+__all__ = ["Motion", "propagate", "start"]

@@ -127,7 +127,7 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
         part[:5] for part in np.split(samples.T, 2)
     )
     turned = m.exact * alpha
-    cos, sin = math.cos(m.working_angle), math.sin(m.working_angle)
+    cos, sin = math.cos(m.rigid.working_angle), math.sin(m.rigid.working_angle)
     # How a unit of `half_spacing` to the right of C moves along xi.
     arm = cos * (elementary.cos(turned) - 1) + sin * (elementary.sin(turned) if m.exact else alpha)
     arm_rate = spin * (sin * elementary.cos(turned) - cos * elementary.sin(turned))
@@ -140,12 +140,12 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
     return Measures(
         _mean(psi_1 - psi_2),
         _half_range(alpha, spin, interval),
-        stroke(-m.half_spacing),
-        stroke(m.half_spacing),
+        stroke(-m.rigid.half_spacing),
+        stroke(m.rigid.half_spacing),
         float(psi_1[-1] - psi_1[0]) / duration,
         float(psi_2[-1] - psi_2[0]) / duration,
-        _mean(w_1 * kloss(m.torque_1, m.slip_1, m.synchronous_speed_1 - w_1)),
-        _mean(w_2 * kloss(m.torque_2, m.slip_2, m.synchronous_speed_2 - w_2)),
+        _mean(w_1 * kloss(m.rigid.torque_1, m.rigid.slip_1, m.rigid.synchronous_speed_1 - w_1)),
+        _mean(w_2 * kloss(m.rigid.torque_2, m.rigid.slip_2, m.rigid.synchronous_speed_2 - w_2)),
     )
 
 

@@ -113,7 +113,7 @@ def find_orbit(machine: Machine, guess: NDArray[np.float64], tolerance: float) -
 
 
 def _longest_turn(machine: Machine, state: NDArray[np.float64]) -> float:
-    speed = max(state[machine.degrees + PSI_1], 1e-2 * machine.system.synchronous_speed_1)
+    speed = max(state[machine.degrees + PSI_1], 1e-2 * machine.system.rigid.synchronous_speed_1)
     return _SLOWEST * 2 * np.pi / speed
 
 

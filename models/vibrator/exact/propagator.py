@@ -65,7 +65,7 @@ class Motion(NamedTuple):
 def _rigid_rates(t, y, task, dy):
     for i in range(rigid_motion.DEGREES):
         dy[i] = y[rigid_motion.DEGREES + i]
-    rigid_motion.acceleration(task.system, y, dy[rigid_motion.DEGREES :])
+    rigid_motion.acceleration(task.system.rigid, y, dy[rigid_motion.DEGREES :])
 
 
 @kernel
@@ -219,12 +219,12 @@ def propagate(
 
 
 def _speed(m: System) -> float:
-    return max(m.synchronous_speed_1, m.synchronous_speed_2)
+    return max(m.rigid.synchronous_speed_1, m.rigid.synchronous_speed_2)
 
 
 def scales_of(m: System, degrees: int) -> NDArray[np.float64]:
     """Return the size of each component of the state, of x, y, alpha, psi, u, chi, height."""
-    shift = (m.unbalance_1 + m.unbalance_2) / m.mass
-    turn = shift / math.sqrt(m.inertia / m.mass)
+    shift = (m.rigid.unbalance_1 + m.rigid.unbalance_2) / m.rigid.mass
+    turn = shift / math.sqrt(m.rigid.inertia / m.rigid.mass)
     sizes = np.array([shift, shift, turn, 1.0, 1.0, shift, turn, shift])[:degrees]
     return np.concatenate([sizes, sizes * _speed(m)])

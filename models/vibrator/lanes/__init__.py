@@ -1,5 +1,21 @@
 """The fast propagator: sixteen rigid machines at a time, in steps of fixed length.
 
-Read `fixed_steps`, with the accelerations in `dynamics`; then `orbit`, Newton's method for the
-synchronous motion, with its `tangents` and the largest Floquet `multiplier`.
+Reading order; a module imports only those above it:
+
+    packed         constants and states of machines in lanes
+    machines       n machines, prepared and started
+    dynamics       their accelerations, with the fewest operations
+    notes          what is noted of a step
+    fixed_steps    n machines advanced: the hot loop
+    tangents       a revolution with its derivatives by the start
+    multiplier     the largest Floquet multiplier of many orbits
+    orbit          the synchronous motion as a periodic orbit, by Newton's method
+
+It is a `models.numerics.propagator.Propagator`.
 """
+
+from models.vibrator.lanes.fixed_steps import advance
+from models.vibrator.lanes.machines import Machines, groups, start
+from models.vibrator.lanes.tangents import monodromy
+
+__all__ = ["Machines", "advance", "groups", "monodromy", "start"]

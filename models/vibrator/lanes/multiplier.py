@@ -10,7 +10,7 @@ import numpy as np
 from models.numerics.blocks import LANES, aligned
 from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
-from models.vibrator.lanes.fixed_steps import STATE, Array
+from models.vibrator.lanes.packed import STATE, Array
 from models.vibrator.lanes.tangents import ANCHOR, COLUMNS
 
 _SQUARINGS = 40  # |A^n| may differ from the radius to the n by a factor c: log(c)/2^40 is left

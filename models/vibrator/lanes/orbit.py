@@ -16,8 +16,8 @@ from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
 from models.numerics.linear import product, solve
 from models.numerics.tsit5 import combiner, layout
-from models.vibrator.lanes.fixed_steps import CONSTANTS, STATE, Array, load, slopes, store
 from models.vibrator.lanes.multiplier import largest_multiplier
+from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, slopes, store
 from models.vibrator.lanes.tangents import FREE, revolve
 
 ITERATIONS = 10

@@ -11,34 +11,12 @@ from models.numerics.blocks import LANES, aligned
 from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
 from models.numerics.sincos import cosine_sine
-from models.numerics.tsit5 import (
-    _A21,
-    _A31,
-    _A32,
-    _A41,
-    _A42,
-    _A43,
-    _A51,
-    _A52,
-    _A53,
-    _A54,
-    _A61,
-    _A62,
-    _A63,
-    _A64,
-    _A65,
-    _B1,
-    _B2,
-    _B3,
-    _B4,
-    _B5,
-    _B6,
-    STAGES,
-    combiner,
-    layout,
-)
-from models.vibrator.equations.rigid import accelerations, derivatives
-from models.vibrator.lanes.fixed_steps import CONSTANTS, STATE, Array, load, machine, slopes
+from models.numerics.tableaux import TSITOURAS_5
+from models.numerics.tsit5 import STAGES, combiner, layout
+from models.vibrator.equations.rigid import accelerations
+from models.vibrator.equations.rigid_derivatives import derivatives
+from models.vibrator.lanes.machines import Machines
+from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, machine, slopes
 
 ANCHOR = 3  # psi_1
 FREE = [i for i in range(STATE) if i != ANCHOR]
@@ -48,6 +26,9 @@ _Y, _NEW, _K, _SIZE = layout(STATE)
 _WHOLE = STATE * LANES
 _K_2, _K_3, _K_4, _K_5, _K_6 = (_K + i * _WHOLE for i in range(1, STAGES))
 _HALF = LANES // 2
+_, (_A21,), (_A31, _A32), (_A41, _A42, _A43), (_A51, _A52, _A53, _A54), _LAST = TSITOURAS_5.a
+_A61, _A62, _A63, _A64, _A65 = _LAST
+_B1, _B2, _B3, _B4, _B5, _B6 = TSITOURAS_5.b
 
 # One flat array has the Jacobians of the stages by rows, times the step; the step; the column at
 # work; and all columns: only with offsets known to the compiler is `_carry` vectorised. A gap of
@@ -268,3 +249,25 @@ def revolve(constants: Array, start: Array, period: Array, steps: int) -> Array:
     )
     _revolve(constants, start, (period / steps)[:, None], steps, end, work)
     return end
+
+
+def monodromy(machines: Machines, state: Array, period: Array, steps: int) -> Array:
+    """Return how the states after a period depend on those at its start.
+
+    Parameters
+    ----------
+    machines : Machines
+    state : ndarray, shape (n, 10)
+    period : ndarray, shape (n,)
+        [s]
+    steps : int
+        In the period.
+
+    Returns
+    -------
+    ndarray, shape (n, 10, 10)
+        Derivatives of the components by those at the start, zero by psi_1.
+    """
+    out = np.zeros((len(state), STATE, STATE))
+    out[:, :, FREE] = revolve(machines.constants, state, period, steps)[:, :, 1:-1]
+    return out

@@ -1,5 +1,11 @@
 """From standstill to the steady state, on either propagator.
 
-Read `regimes`, what may become of a machine; `fast`, with the `synchronous` motion it looks for and
-the `last_second` that it measures; then `exact`, which samples its run-up as a `track`.
+Reading order; a module imports only those above it:
+
+    regimes        what may become of a machine
+    synchronous    the motion that fast rows are expected to reach
+    last_second    what is measured of those that reach none
+    fast           many rigid machines, abreast
+    track          a run-up of one machine, sampled as it goes
+    exact          any machines, one after the other
 """

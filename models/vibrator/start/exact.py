@@ -75,14 +75,15 @@ def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
     """Set the outcome of one machine, fields of shape (1,)."""
     machine = prepare(params, settings.kinematics, BUDGET)
     state = propagator.start(params, machine.system)
-    speed = np.max([machine.system.synchronous_speed_1, machine.system.synchronous_speed_2])
+    rigid = machine.system.rigid
+    speed = np.max([rigid.synchronous_speed_1, rigid.synchronous_speed_2])
     if not math.isfinite(speed):
         return Status.NON_FINITE
     wanted = math.ceil(settings.run_up * speed * SAMPLES_PER_TURN / (2 * np.pi))
     track = Track(state, settings.run_up / wanted, LOOK)
     guess = proposal(machine)
     orbit, next_search = None, LOOK
-    slowest = slowest_period(machine.system)
+    slowest = slowest_period(rigid)
     while track.count < wanted:
         times = track.interval * np.arange(1, min(LOOK, wanted - track.count) + 1)
         ended, samples = machine.run(state, times[-1], settings.tolerance, times=times)
@@ -114,7 +115,7 @@ def _search(
 ) -> Orbit | None:
     """Look for a stable orbit at working speed: near the guess, else near the state."""
     m = machine.system
-    slowest = CAPTURED_BELOW * max(m.synchronous_speed_1, m.synchronous_speed_2)
+    slowest = CAPTURED_BELOW * max(m.rigid.synchronous_speed_1, m.rigid.synchronous_speed_2)
     for near in (guess, anchored(machine, state, tolerance)):
         orbit = None if near is None else find_orbit(machine, near, tolerance)
         if orbit and orbit.multiplier < 1 and 2 * np.pi / orbit.period >= slowest:
@@ -138,8 +139,8 @@ def _is_steady(m: System, track: Track) -> bool:
     states = track.last(LOOK)
     speed_1, speed_2 = _speeds(states, track.interval)
     return bool(
-        speed_1 >= CAPTURED_BELOW * m.synchronous_speed_1
-        and speed_2 >= CAPTURED_BELOW * m.synchronous_speed_2
+        speed_1 >= CAPTURED_BELOW * m.rigid.synchronous_speed_1
+        and speed_2 >= CAPTURED_BELOW * m.rigid.synchronous_speed_2
         and np.ptp(_by_turns(states)) < _STEADY
     )
 
@@ -190,9 +191,8 @@ def _describe_last_second(m: System, track: Track, out: Outcome) -> bool:
     states = track.last()
     seen = measure(m, states, track.interval)
     _describe(seen, track, out)
-    w_1, w_2, top_1, top_2 = np.array(
-        [[seen.speed_1], [seen.speed_2], [m.synchronous_speed_1], [m.synchronous_speed_2]]
-    )
+    top_1, top_2 = m.rigid.synchronous_speed_1, m.rigid.synchronous_speed_2
+    w_1, w_2, top_1, top_2 = np.array([[seen.speed_1], [seen.speed_2], [top_1], [top_2]])
     out.regime[:] = unlocked_regime(w_1, w_2, top_1, top_2)
     locked = out.regime[0] == ASYNCHRONOUS and np.ptp(_by_turns(states)) < _LOCKED
     if locked:

@@ -12,10 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.equations.rigid_motion import initial_state
 from models.vibrator.equations.time_scales import slowest_period
-from models.vibrator.lanes import fixed_steps
-from models.vibrator.lanes.fixed_steps import Array
+from models.vibrator.lanes.fixed_steps import STABLE, advance
+from models.vibrator.lanes.machines import Machines, prepared, start
+from models.vibrator.lanes.notes import ANGLE_HIGH, ANGLE_LOW, EXCURSION, LAST_ENTRY
+from models.vibrator.lanes.packed import Array
 from models.vibrator.parameters import Rows, Settings
 from models.vibrator.start.last_second import LAST, NEAR, STEPS, Live, learn, run_last_second
 from models.vibrator.start.regimes import (
@@ -25,7 +26,7 @@ from models.vibrator.start.regimes import (
     Outcome,
     locked_regime,
 )
-from models.vibrator.start.synchronous import Known, Machines, describe, propose
+from models.vibrator.start.synchronous import Known, describe, propose
 from uq.contract import Status
 
 LOOK = 96  # steps between two looks at a run
@@ -56,7 +57,7 @@ class _Plan(NamedTuple):
         """Choose steps that are short enough, and fill the time in whole looks."""
         per_turn = settings.steps_per_turn or STEPS
         turn = 2 * np.pi / machines.synchronous_speed.max(axis=1)
-        step = np.minimum(turn / per_turn, fixed_steps.STABLE / machines.fastest)
+        step = np.minimum(turn / per_turn, STABLE / machines.fastest)
         time = settings.run_up - LAST
         looks = np.ceil(time / (LOOK * step)).astype(np.int64)
         over = looks > BUDGET
@@ -78,7 +79,7 @@ def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
     outcome : Outcome
     status : ndarray of int8, shape (n,)
     """
-    machines = Machines.prepared(p)
+    machines = prepared(p)
     known = propose(machines, settings.steps_per_turn)
     plan = _Plan.made(machines, settings)
     n = len(known.found)
@@ -113,7 +114,7 @@ def _run(
     """
     again = [np.empty(0, np.intp)]
     some, n = machines.take(rows), len(rows)
-    live = Live(rows, some, initial_state(some.p), *np.zeros((3, n)))
+    live = Live(rows, some, start(some), *np.zeros((3, n)))
     ending = plan.looks[rows] == 0
     look = 0
     while len(live.rows):
@@ -127,11 +128,11 @@ def _run(
                 break
         before = live.state[:, 3:5].copy()
         step, target = plan.step[live.rows], known.disphasing[live.rows]
-        constants, accurate = live.machines.constants, settings.steps_per_turn > 0
-        notes = fixed_steps.advance(constants, step, live.state, target, LOOK, BAND, accurate)
-        came = notes[:, fixed_steps.LAST_ENTRY]
-        far = np.maximum(live.far, notes[:, fixed_steps.EXCURSION])
-        near = notes[:, fixed_steps.EXCURSION] > COMPARABLE**2 * far
+        accurate = settings.steps_per_turn > 0
+        notes = advance(live.machines, live.state, step, target, LOOK, BAND, accurate)
+        came = notes[:, LAST_ENTRY]
+        far = np.maximum(live.far, notes[:, EXCURSION])
+        near = notes[:, EXCURSION] > COMPARABLE**2 * far
         live = live._replace(
             came=np.where(came >= 0, (look * LOOK + came) * step, live.came),
             far=far,
@@ -139,10 +140,10 @@ def _run(
         )
         look += 1
         speed = (live.state[:, 3:5] - before) / (LOOK * step)[:, None]
-        low, high = notes[:, fixed_steps.ANGLE_LOW], notes[:, fixed_steps.ANGLE_HIGH]
+        low, high = notes[:, ANGLE_LOW], notes[:, ANGLE_HIGH]
         finite = np.isfinite(live.state).all(axis=1)
         arrived = finite & _is_near(known, live.rows, low, high, speed)
-        calm = look * LOOK * step - live.neared >= slowest_period(live.machines.system)
+        calm = look * LOOK * step - live.neared >= slowest_period(live.machines.rigid)
         done = arrived & (calm | (plan.looks[live.rows] <= look))
         _note_locked(known, live.take(done), out)
         going = finite & ~done

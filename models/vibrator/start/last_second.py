@@ -5,8 +5,22 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.lanes import fixed_steps
-from models.vibrator.lanes.fixed_steps import Array
+from models.vibrator.lanes.fixed_steps import STABLE, advance
+from models.vibrator.lanes.machines import Machines
+from models.vibrator.lanes.notes import (
+    ALPHA_LOW,
+    ANGLE,
+    ANGLE_HIGH,
+    ANGLE_LOW,
+    EXCURSION,
+    LAST_ENTRY,
+    LEFT_LOW,
+    POWER_1,
+    POWER_2,
+    RIGHT_LOW,
+    SUMS,
+)
+from models.vibrator.lanes.packed import Array
 from models.vibrator.parameters import Settings
 from models.vibrator.start.regimes import (
     BAND,
@@ -16,7 +30,7 @@ from models.vibrator.start.regimes import (
     unlocked_regime,
     wrapped,
 )
-from models.vibrator.start.synchronous import Known, Machines, describe, search
+from models.vibrator.start.synchronous import Known, describe, search
 
 LAST = 1.0  # [s]
 STEPS = 12  # in a turn at synchronous speed, unless the machine is stiff
@@ -94,7 +108,7 @@ def run_last_second(
     part, state, rows = live.machines, live.state, live.rows
     turn = 2 * np.pi / part.synchronous_speed.max(axis=1)
     per_turn = settings.steps_per_turn or _CLOSELY
-    needed = LAST * np.maximum(per_turn / turn, part.fastest / fixed_steps.STABLE)
+    needed = LAST * np.maximum(per_turn / turn, part.fastest / STABLE)
     part_of_two, power = np.frexp(np.minimum(needed, _LONGEST))
     steps = 2 ** (power - (part_of_two == 0.5)).astype(np.int64)
     again = np.zeros(len(rows), bool)
@@ -105,21 +119,21 @@ def run_last_second(
         first = here[:, 3] - here[:, 4]
         h = np.full(len(i), LAST / count)
         target, accurate = known.disphasing[these], settings.steps_per_turn > 0
-        notes = fixed_steps.advance(some.constants, h, here, target, count, BAND, accurate)
+        notes = advance(some, here, h, target, count, BAND, accurate)
         speed = (here[:, 3:5] - before) / LAST
-        notes[:, : fixed_steps.SUMS] /= count
+        notes[:, :SUMS] /= count
         _note_means(these, notes, speed, some, out)
-        out.max_excursion[these] = np.sqrt(np.maximum(live.far[i], notes[:, fixed_steps.EXCURSION]))
-        last = notes[:, fixed_steps.LAST_ENTRY]
+        out.max_excursion[these] = np.sqrt(np.maximum(live.far[i], notes[:, EXCURSION]))
+        last = notes[:, LAST_ENTRY]
         inside = np.where(last >= 0, time[i] + last * LAST / count, live.came[i])
-        low, high = notes[:, fixed_steps.ANGLE_LOW], notes[:, fixed_steps.ANGLE_HIGH]
+        low, high = notes[:, ANGLE_LOW], notes[:, ANGLE_HIGH]
         fast = (speed >= CAPTURED_BELOW * some.synchronous_speed).all(axis=1)
         locked = np.flatnonzero(fast & (high - low < _LOCKED))
         if not final:
             part_of, at = some.take(locked), these[locked]
             again[i[locked]] = learn(part_of, here[locked], at, known, settings)
         locked = locked[~again[i[locked]]]
-        where, mean = these[locked], wrapped(notes[locked, fixed_steps.ANGLE])
+        where, mean = these[locked], wrapped(notes[locked, ANGLE])
         target = known.disphasing[where]
         with np.errstate(invalid="ignore"):
             off = [
@@ -151,13 +165,13 @@ def _note_means(
         return (notes[:, low + 1] - notes[:, low]) / 2
 
     out.power_1[rows], out.power_2[rows] = (
-        notes[:, fixed_steps.POWER_1],
-        notes[:, fixed_steps.POWER_2],
+        notes[:, POWER_1],
+        notes[:, POWER_2],
     )
-    out.angular_amplitude[rows] = half(fixed_steps.ALPHA_LOW)
+    out.angular_amplitude[rows] = half(ALPHA_LOW)
     out.stroke_left[rows], out.stroke_right[rows] = (
-        half(fixed_steps.LEFT_LOW),
-        half(fixed_steps.RIGHT_LOW),
+        half(LEFT_LOW),
+        half(RIGHT_LOW),
     )
     out.speed[rows] = speed.mean(axis=1)
     out.synchronisation_time[rows] = np.inf

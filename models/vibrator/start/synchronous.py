@@ -6,58 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics import elementary
-from models.vibrator.equations.system import System, systems
-from models.vibrator.equations.time_scales import fastest_rates
+from models.vibrator.equations.rigid import Rigid
 from models.vibrator.exact.measures import kloss
 from models.vibrator.lanes import fixed_steps
-from models.vibrator.lanes.fixed_steps import Array
+from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.orbit import Orbits, find_orbits, follow
-from models.vibrator.parameters import Params, Rows
+from models.vibrator.lanes.packed import STATE, Array
+from models.vibrator.parameters import Rows
 from models.vibrator.start.regimes import CAPTURED_BELOW, Outcome, wrapped
 from models.vibrator.theory import averaged
 
 STEPS = 24  # of the orbit, unless the machine is stiff
 LADDER = tuple(base << k for k in range(7) for base in (24, 36))
 _FINE = 16  # points per step at which extremes are looked for
-
-
-class Machines(NamedTuple):
-    """n rigid machines, prepared.
-
-    Attributes
-    ----------
-    p : Params
-    system : System
-    constants : ndarray, shape (n, CONSTANTS)
-        Of `models.vibrator.lanes.fixed_steps.pack`.
-    fastest : ndarray, shape (n,)
-        See `models.vibrator.equations.time_scales.fastest_rates`.
-    synchronous_speed : ndarray, shape (n, 2)
-        [rad s-1]
-    """
-
-    p: Rows
-    system: System
-    constants: Array
-    fastest: Array
-    synchronous_speed: Array
-
-    @staticmethod
-    def prepared(p: Rows) -> "Machines":
-        """Prepare n machines."""
-        m = systems(p)
-        speeds = np.stack([p.synchronous_speed_1, p.synchronous_speed_2], axis=1)
-        return Machines(p, m, fixed_steps.pack(m), fastest_rates(m), speeds)
-
-    def take(self, rows: Any) -> "Machines":
-        """Return some of the machines."""
-        return Machines(
-            Params._make(field[rows] for field in self.p),
-            System._make(field[rows] for field in self.system),
-            self.constants[rows],
-            self.fastest[rows],
-            self.synchronous_speed[rows],
-        )
 
 
 class Known(NamedTuple):
@@ -158,7 +119,7 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
 def _harmonic(p: Rows, speed: Array, angle: Array) -> Array:
     """Return the state at psi_1 = 0 of harmonic motion at constant speed."""
     motion = averaged.steady_motion(p, speed, angle)
-    state = np.zeros((len(speed), fixed_steps.STATE))
+    state = np.zeros((len(speed), STATE))
     for i, amplitude in enumerate((motion.x, motion.y, motion.alpha)):
         state[:, i], state[:, 5 + i] = amplitude.real, -speed * amplitude.imag
     state[:, 4] = -angle
@@ -189,10 +150,10 @@ def describe(machines: Machines, known: Known, out: Outcome, rows: NDArray[np.in
         out.multiplier[some] = orbits.multiplier
         harmonic = 2 * (alpha * phase).mean(axis=1)
         out.angular_amplitude[some] = np.hypot(harmonic.real, harmonic.imag)
-        left, right = deck_ends(part.system, trace)
+        left, right = deck_ends(part.rigid, trace)
         out.stroke_left[some], out.stroke_right[some] = _half_range(left), _half_range(right)
         out.speed[some] = 2 * np.pi / orbits.period
-        m = part.system
+        m = part.rigid
         for power, torque, slip, top, w in (
             (out.power_1, m.torque_1, m.slip_1, m.synchronous_speed_1, speed[:, :, 0]),
             (out.power_2, m.torque_2, m.slip_2, m.synchronous_speed_2, speed[:, :, 1]),
@@ -201,12 +162,12 @@ def describe(machines: Machines, known: Known, out: Outcome, rows: NDArray[np.in
             power[some] = (w * kloss(torque[:, None], slip[:, None], lag)).mean(axis=1)
 
 
-def deck_ends(m: System, trace: Array) -> tuple[Array, Array]:
+def deck_ends(m: Rigid, trace: Array) -> tuple[Array, Array]:
     """Return the displacements along xi of the left and the right end of the deck [m].
 
     Parameters
     ----------
-    m : System
+    m : Rigid
         n machines.
     trace : ndarray, shape (n, k, 10)
         States.

@@ -1,5 +1,10 @@
-"""The averaged theory: at which angle and speed the vibrators run together, by formula.
+"""The averaged theory: at which angle and speed the vibrators run together.
 
-Read `averaged` first; it solves the torques of `balance`, whose moments come from the `receptance`
-of the `linear_machine`, on which `feed` acts as an apparent mass.
+Reading order; a module imports only those above it:
+
+    feed              the mass that a feed thrown by the deck adds to it
+    linear_machine    what the response of a machine needs
+    receptance        how it moves when its vibrators turn at one speed
+    balance           torques of motors and of the shaking body
+    averaged          the speed and the angle at which they balance
 """

@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from models.numerics.jit import kernel
 from models.vibrator.parameters import Params, Rows
-from models.vibrator.theory.balance import balance, is_stable, kloss, moments, motors
+from models.vibrator.theory.balance import balance, is_stable, kloss, motors
 from models.vibrator.theory.linear_machine import machines
 from models.vibrator.theory.receptance import respond
 
@@ -178,16 +178,7 @@ def _move(bodies, speed, angle, out):
         out[4, i] = one * g.turn_1 + two * g.turn_2
 
 
-@kernel
-def _brake(bodies, speed, angle, out):
-    for i in range(len(bodies)):
-        a = bodies[i]
-        g = respond(a, speed[i])
-        l1, l2, _, _ = moments(a, g, speed[i], math.cos(angle[i]), math.sin(angle[i]))
-        out[0, i], out[1, i] = l1, l2
-
-
-def _rows(p: Rows, *more: ArrayLike) -> tuple[Params, list[NDArray[np.float64]]]:
+def broadcast(p: Rows, *more: ArrayLike) -> tuple[Params, list[NDArray[np.float64]]]:
     """Return Params of equally long contiguous arrays, and whatever goes with them."""
     columns = np.array(np.broadcast_arrays(*np.atleast_1d(*p, *more)), float)
     return Params._make(columns[: len(p)]), list(columns[len(p) :])
@@ -214,7 +205,7 @@ def disphasing(p: Rows) -> Disphasing:
     Below 0.9 of the larger synchronous speed states are looked for between 200 speeds, so two that
     lie closer than 1.5 % of the speed, at a narrow resonance, may be missed.
     """
-    p, _ = _rows(p)
+    p, _ = broadcast(p)
     n = len(p.body_mass)
     numbers, flags = np.empty((5, n)), np.empty((2, n), np.bool_)
     _disphase(machines(p), motors(p), numbers, flags)
@@ -240,35 +231,10 @@ def steady_motion(p: Rows, speed: ArrayLike, angle: ArrayLike) -> Motion:
         With psi_1 = w t and psi_2 = w t - dphi: x(t) = Re(x e^(jwt)), x'(t) = Re(jw x e^(jwt)).
         psi_1 is counted from the working axis, counter-clockwise.
     """
-    p, (speed, angle) = _rows(p, speed, angle)
+    p, (speed, angle) = broadcast(p, speed, angle)
     out = np.empty((5, len(speed)), complex)
     _move(machines(p), speed, angle, out)
     return Motion._make(out)
-
-
-def vibratory_moments(
-    p: Rows, speed: ArrayLike, angle: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the mean moments by which the shaking body drives the two rotors.
-
-    Parameters
-    ----------
-    p : Params
-        Each field a number or an ndarray of shape (n,).
-    speed : array_like, shape (n,)
-        Of both vibrators [rad s-1].
-    angle : array_like, shape (n,)
-        dphi = psi_1 - psi_2 [rad].
-
-    Returns
-    -------
-    moment_1, moment_2 : ndarray, shape (n,)
-        L_i in the direction of rotation of vibrator i [N m].
-    """
-    p, (speed, angle) = _rows(p, speed, angle)
-    out = np.empty((2, len(speed)))
-    _brake(machines(p), speed, angle, out)
-    return out[0], out[1]
 
 
 def feed_gravity(p: Rows) -> NDArray[np.float64]:
@@ -286,7 +252,7 @@ def feed_gravity(p: Rows) -> NDArray[np.float64]:
         vibrators in phase, at the mean w of the two synchronous speeds: defined whether or not
         the vibrators synchronise.
     """
-    p, _ = _rows(p)
+    p, _ = broadcast(p)
     speed = (p.synchronous_speed_1 + p.synchronous_speed_2) / 2
     deck = steady_motion(p._replace(feed_mass=0.0), speed, 0.0)
     moved = deck.y + p.feed_position * deck.alpha

@@ -11,7 +11,7 @@ from models.beam.explore import (
     wear_history,
     work_rate_against_gap,
 )
-from models.beam.explore.sweeps import upcrossing_rates
+from models.beam.explore.diagram import upcrossing_rates
 from models.beam.parameters import Params, Settings
 
 X0 = 2.5e-4

@@ -7,7 +7,8 @@ import pytest
 from incremental import incremental_lives
 
 from models.beam.parameters import Params, Settings
-from models.beam.structure.modal import Record, beams
+from models.beam.structure.modal import beams
+from models.beam.structure.propagation import Record
 
 W0 = beams(Params(*(np.array([value]) for value in Params())), Settings()).frequency[0, 0]
 

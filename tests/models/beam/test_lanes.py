@@ -9,7 +9,8 @@ import pytest
 from scipy.linalg import expm
 
 from models.beam import exact, lanes
-from models.beam.lanes import systems
+from models.beam.lanes.recurrence import mode_step
+from models.beam.lanes.systems import COMPLIANCE
 from models.beam.parameters import Params, Settings
 from models.beam.response.settling import settle
 from models.beam.structure.modal import beams
@@ -47,7 +48,7 @@ def test_a_mode_is_propagated_exactly_under_a_force_linear_in_the_step(frequency
     a = np.zeros((4, 4))
     a[0, 1], a[1, 0], a[1, 1], a[1, 2], a[2, 3] = w, -w, -2 * d, 1 / w, 1 / h
     flow = expm(a * h)
-    p11, p12, p21, p22, a1, a2, b1, b2 = systems._mode_step(w, d, h)
+    p11, p12, p21, p22, a1, a2, b1, b2 = mode_step(w, d, h)
     assert np.allclose([[p11, p12], [p21, p22]], flow[:2, :2], rtol=1e-10, atol=1e-13)
     # a force that falls from 1 to 0 is a constant 1 less a rise from 0 to 1
     rise = flow[:2, 3]
@@ -157,7 +158,7 @@ def test_steps_are_as_long_as_contact_allows_and_set_by_the_row_alone():
     s = Settings()
     chosen = {}
     for rows, system in lanes.groups(beams(p, s), s):
-        assert (np.abs(system.sigma) <= systems.COMPLIANCE).all()
+        assert (np.abs(system.sigma) <= COMPLIANCE).all()
         chosen.update(dict.fromkeys(rows.tolist(), system.steps))
     assert chosen[0] < chosen[1] < chosen[2]
 

@@ -10,8 +10,10 @@ from models.beam import MODEL, exact, lanes
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
 from models.beam.response.settling import settle
 from models.beam.structure.modal import beams, reach
-from models.beam.structure.random_load import COUNT, force, tip_deviation
-from models.beam.wear.random_lives import _fit, _step, _Wear
+from models.beam.structure.random_lines import COUNT, force
+from models.beam.structure.random_response import tip_deviation
+from models.beam.wear.fitted_wear import FittedWear, fit
+from models.beam.wear.random_lives import _step
 from models.numerics.blocks import LANES
 from uq import simulate
 from uq.contract import Status
@@ -329,7 +331,7 @@ def test_a_noisy_rate_is_fitted_without_bias_and_with_its_error():
     true = 1.0 - 2.0 * t + 0.5 * t**3
     found = []
     for _ in range(400):
-        coefficient, covariance = _fit(t, np.exp(true) * rng.gamma(5.0, 0.2, 13))
+        coefficient, covariance = fit(t, np.exp(true) * rng.gamma(5.0, 0.2, 13))
         found.append((coefficient.sum() - true[-1], np.sqrt(covariance.sum())))
     off, error = np.array(found).T
     assert abs(np.exp(off).mean() - 1) < 0.15
@@ -339,7 +341,7 @@ def test_a_noisy_rate_is_fitted_without_bias_and_with_its_error():
 def test_a_fit_of_next_to_nothing_is_no_overflow():
     """A site that wears by fits and starts, over thirty powers of ten."""
     rate = np.array([1e-300, 1e-3, 1e-250, 1.0, 1e-200, 1e3, 1e-300, 1e-300, 1e-280, 1e-300])
-    wear = _Wear(np.linspace(0.0, 1.0, 10), rate, rate)
+    wear = FittedWear(np.linspace(0.0, 1.0, 10), rate, rate)
     assert np.isposinf(wear.life(1.0)[0]) or wear.life(1.0)[0] > 0
 
 

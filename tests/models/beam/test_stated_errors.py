@@ -7,11 +7,11 @@ import pytest
 from hard_rows import DELAYED, GRAZING, LIGHT, STEPPED, SWITCHING, TRANSIENT
 
 from models.beam import MODEL, lanes
-from models.beam.batch import initial_gaps
 from models.beam.parameters import REGIMES, Params, Settings
 from models.beam.response.settling import settle
+from models.beam.start import initial_gaps
 from models.beam.structure.modal import beams
-from models.beam.wear.accelerated_life import run
+from models.beam.wear.accelerated_life import run_life
 from uq.contract import Status
 from uq.rows.sampling import row_block
 from uq.study.definition import load_study
@@ -75,7 +75,7 @@ def test_an_orbit_that_wear_makes_unstable_is_left_at_once():
     gaps, state = initial_gaps(p), lanes.start(system, np.zeros(1), np.zeros(1))
     work = settle(lanes, system, state, gaps).work
     growths = 2.5e-4 / p.initial_gap[:, None]
-    one = run(lanes, system, state, gaps, work, np.ones((1, 2)), growths, 2048)
+    one = run_life(lanes, system, state, gaps, work, np.ones((1, 2)), growths, 2048)
     per_period = p.wear_coefficient / p.contact_area * p.contact_stiffness * p.initial_gap
     life = one.time.min() / (per_period * p.forcing_frequency)[0]
     assert one.lost[0]

@@ -6,7 +6,7 @@ from incremental import incremental_lives
 
 from models.beam import MODEL
 from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
-from models.beam.wear.lives import extrapolate, extrapolate_smooth
+from models.beam.wear.extrapolation import extrapolate, extrapolate_smooth
 from models.beam.wear.regimes import changes_of, confirmed_regimes, regime_of
 from uq.contract import Status
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from models.mole.exact import propagation as exact
+from models.mole import exact
+from models.mole.exact import events, propagator
 from models.mole.parameters import FORMULATIONS, Params
 from models.mole.theory import equations
 from models.mole.theory.system import mole
@@ -252,8 +253,8 @@ def test_a_budget_ends_and_what_is_not_finite_is_found_out(monkeypatch):
     q, state = begun(Params())
     broken = state._replace(y=np.full(equations.SIZE, np.nan))
     assert exact.propagate(q, broken, 1.0, 1e-8).status == STUCK
-    monkeypatch.setattr(exact, "STEPS_PER_RADIAN", 0)
-    monkeypatch.setattr(exact, "_SPARE_STEPS", 50)
+    monkeypatch.setattr(propagator, "STEPS_PER_RADIAN", 0)
+    monkeypatch.setattr(propagator, "_SPARE_STEPS", 50)
     motion = exact.propagate(q, state, 1.0, 1e-8, times=[0.0, 1.0])
     assert (motion.status, motion.steps) == (OUT_OF_BUDGET, 50)
     assert 0 < motion.state.time < 1
@@ -272,7 +273,7 @@ def short():
 
 
 def misses():
-    return getattr(getattr(exact.run, "stats", None), "cache_misses", ())
+    return getattr(getattr(events.run, "stats", None), "cache_misses", ())
 
 
 def test_compiled_code_is_kept_on_disk_and_agrees_with_plain_python():

@@ -5,8 +5,8 @@ from math import tau
 import numpy as np
 import pytest
 
+from models.mole import exact
 from models.mole.batch import batch
-from models.mole.exact import propagation as exact
 from models.mole.explore import bifurcation_diagram, history, poincare_section
 from models.mole.parameters import FORMULATIONS, Params, Settings
 from models.mole.theory.system import mole
@@ -105,7 +105,7 @@ def test_two_starts_of_the_paper_lead_to_two_closed_curves():
 
 
 def test_points_that_a_run_does_not_reach_are_unknown(monkeypatch):
-    monkeypatch.setattr("models.mole.response.settling.BUDGET", 2000)
+    monkeypatch.setattr("models.mole.lanes.propagator.BUDGET", 2000)
     ds = poincare_section(Params(), SETTINGS, periods=40, dropped=0)
     known = np.isfinite(ds["displacement"].values)
     assert known[0]

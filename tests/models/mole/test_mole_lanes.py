@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from models.mole import MODEL
-from models.mole.exact import propagation as exact
+from models.mole import MODEL, exact
 from models.mole.lanes.block import MEASURED
 from models.mole.lanes.rows import (
     CONTACTS,
@@ -18,27 +17,22 @@ from models.mole.lanes.rows import (
     OUTCOME,
     PROGRESS,
     REACHED_END,
-    table_of,
 )
-from models.mole.parameters import FORMULATIONS, Params
-from models.mole.response.settling import Machines, Response, follow_repeating, settle
+from models.mole.parameters import FORMULATIONS, Params, Settings
+from models.mole.response.following import follow_repeating
+from models.mole.response.machines import Machines
+from models.mole.response.measured import Response
+from models.mole.response.settling import settle
 from models.mole.theory import equations
-from models.mole.theory.periods import common_periods
 from models.mole.theory.system import mole
 
 RNG = np.random.default_rng(11)
 SIZES = np.array([1e-2, 1.0, 0.1, 1.0])  # of u, v, x, i
 
 
-def machines(rows, formulation="physical"):
+def machines(rows, tolerance, formulation="physical"):
     p = Params._make(np.array(rows, float).T)
-    return Machines.started(
-        table_of(mole(p, formulation), len(rows)),
-        p.control_frequency,
-        common_periods(p.control_frequency, p.supply_frequency),
-        p.initial_displacement,
-        p.initial_velocity,
-    )
+    return Machines.started(p, Settings(formulation=formulation, tolerance=tolerance))
 
 
 def scattered(n):
@@ -50,12 +44,12 @@ def scattered(n):
     return rows
 
 
-def go(some, periods, tolerance, columns=0):
+def go(some, periods, columns=0):
     """Propagate all rows so many control periods; return records and tangents."""
-    n = len(some.table)
+    n = len(some.record)
     tangents = np.tile(np.eye(MEASURED)[:columns].ravel(), (n, 1))
     limit = some.periods(np.arange(n)) + np.broadcast_to(periods, n)
-    reached = some.run(np.arange(n), limit, tolerance, False, tangents)
+    reached = some.run(np.arange(n), limit, tangents)
     assert len(reached) == n
     assert np.all(some.record[:, OUTCOME] == REACHED_END)
     return some.record, tangents
@@ -67,7 +61,7 @@ def test_it_moves_as_the_exact_propagator(formulation, frequency):
     p = Params(control_frequency=frequency)
     q = mole(p, formulation)
     periods = int(2 * frequency)
-    record, _ = go(machines([p], formulation), periods, 1e-11)
+    record, _ = go(machines([p], 1e-11, formulation), periods)
     motion = exact.propagate(q, exact.start(p, q), periods * q.control_period, 1e-13)
     y = motion.state.y
     np.testing.assert_allclose(record[0, :4] / SIZES, y[:4] / SIZES, atol=1e-8)
@@ -87,9 +81,9 @@ def test_moles_anywhere_within_the_bounds_move_as_the_exact_propagator():
     rows = np.random.default_rng(5).uniform(low, high, (120, len(low)))
     rows[::2, Params._fields.index("inductance_width")] *= 0.01
     rows[:, Params._fields.index("control_frequency")] += 5.0
-    some = machines(rows)
+    some = machines(rows, 1e-10)
     periods = np.ceil(0.2 * rows[:, Params._fields.index("control_frequency")]).astype(int)
-    record, _ = go(some, periods, 1e-10)
+    record, _ = go(some, periods)
     far = []
     for row, count, got in zip(rows, periods, record, strict=True):
         p = Params._make(row)
@@ -109,21 +103,21 @@ def test_rows_do_not_see_their_neighbours():
     rows[::2, Params._fields.index("initial_displacement")] = -2.002e-3
     rows[::2, Params._fields.index("stop_gap")] = -2e-3
     rows[::2, Params._fields.index("initial_velocity")] = 1.0
-    together, _ = go(machines(rows), 20, 1e-8)
+    together, _ = go(machines(rows, 1e-8), 20)
     order = RNG.permutation(40)
-    mixed, _ = go(machines(rows[order]), 20, 1e-8)
+    mixed, _ = go(machines(rows[order], 1e-8), 20)
     np.testing.assert_array_equal(mixed, together[order])
     for i in (0, 17, 39):
-        alone, _ = go(machines(rows[[i]]), 20, 1e-8)
+        alone, _ = go(machines(rows[[i]], 1e-8), 20)
         np.testing.assert_array_equal(alone[0], together[i])
 
 
 def test_an_interruption_changes_little():
     rows = scattered(16)
-    through, _ = go(machines(rows), 30, 1e-10)
-    some = machines(rows)
-    first = go(some, 13, 1e-10)[0].copy()
-    second, _ = go(some, 17, 1e-10)
+    through, _ = go(machines(rows, 1e-10), 30)
+    some = machines(rows, 1e-10)
+    first = go(some, 13)[0].copy()
+    second, _ = go(some, 17)
     close = abs(second[:, :3] - through[:, :3]) / SIZES[:3] < 1e-6
     assert close.all(axis=1).sum() >= 14  # one or two may be chaotic
     still = close.all(axis=1)
@@ -136,9 +130,9 @@ def test_tangents_go_through_events_as_neighbouring_motions_do():
     """Central differences of the exact propagator, over four control periods at 8 Hz."""
     p = Params()
     q = mole(p, "physical")
-    some = machines([p])
-    begin = go(some, 40, 1e-12)[0][0].copy()
-    record, tangents = go(some, 4, 1e-12, MEASURED)
+    some = machines([p], 1e-12)
+    begin = go(some, 40)[0][0].copy()
+    record, tangents = go(some, 4, MEASURED)
     assert np.abs(tangents).max() == 1
     flow = np.exp(record[0, GROWTH]) * tangents[0].reshape(MEASURED, MEASURED).T
     state = exact.propagate(q, exact.start(p, q), 40 * q.control_period, 1e-13).state
@@ -165,8 +159,8 @@ def test_tangents_go_through_events_as_neighbouring_motions_do():
 def test_the_exponent_is_how_fast_neighbours_part():
     """At 9 Hz, with the distance brought back after every control period."""
     parted, tangent = np.zeros(400), np.zeros(400)
-    some = machines([Params(control_frequency=9.0)] * 2)
-    go(some, 100, 1e-10)
+    some = machines([Params(control_frequency=9.0)] * 2, 1e-12)
+    go(some, 100)
     sizes = np.array([1e-2, 1.0, 0.1, 1.0, 80.0])
     apart = np.array([1e-9, 0.0, 0.0, 0.0, 0.0])
     flow = np.ones((2, MEASURED))
@@ -174,7 +168,7 @@ def test_the_exponent_is_how_fast_neighbours_part():
         some.record[1] = some.record[0]
         some.record[1, :5] += apart
         limit = some.periods(np.arange(2)) + 1
-        some.run(np.arange(2), limit, 1e-12, False, flow)
+        some.run(np.arange(2), limit, flow)
         flow[1] = flow[0]
         tangent[period] = some.record[0, GROWTH]
         apart = some.record[1, :5] - some.record[0, :5]
@@ -189,17 +183,17 @@ def test_the_exponent_is_how_fast_neighbours_part():
 
 
 def test_a_row_that_cannot_end_is_stopped(monkeypatch):
-    monkeypatch.setattr("models.mole.response.settling.BUDGET", 1000)
-    some = machines([Params()])
-    reached = some.run(np.array([0]), np.array([100]), 1e-8, False, np.empty((1, 0)))
+    monkeypatch.setattr("models.mole.lanes.propagator.BUDGET", 1000)
+    some = machines([Params()], 1e-8)
+    reached = some.run(np.array([0]), np.array([100]))
     assert len(reached) == 0
     assert some.record[0, HALF] < 200
 
 
 def test_motion_that_repeats_is_averaged_over_whole_periods_of_it():
     """Ten control periods at 7 Hz, where it takes seven to repeat, are rounded up."""
-    some, out = machines([Params(control_frequency=7.0)]), Response.nothing(1)
-    repeating, _ = settle(some, 0, 1e-8)
-    follow_repeating(some, repeating, 10, 1e-8, out)
+    some, out = machines([Params(control_frequency=7.0)], 1e-8), Response.nothing(1)
+    repeating, _ = settle(some, 0)
+    follow_repeating(some, repeating, 10, out)
     np.testing.assert_allclose(out.time, [14 / 7.0])
     assert out.contacts == 14

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson
 
-from models.mole.exact import propagation as exact
+from models.mole import exact
 from models.mole.parameters import FORMULATIONS, Params, Settings
 from models.mole.theory.system import mole
 from models.mole.trajectory import MOST_SAMPLES, simulate
@@ -65,8 +65,8 @@ def test_slow_control_is_shown_for_ten_periods_with_no_more_samples_than_allowed
 
 
 def test_it_ends_with_the_budget(monkeypatch):
-    monkeypatch.setattr(exact, "STEPS_PER_RADIAN", 0)
-    monkeypatch.setattr(exact, "_SPARE_STEPS", 50)
+    monkeypatch.setattr("models.mole.exact.propagator.STEPS_PER_RADIAN", 0)
+    monkeypatch.setattr("models.mole.exact.propagator._SPARE_STEPS", 50)
     time, got = shown(P, Settings())
     assert 0 < time[-1] < 1
     assert np.isfinite(got["current"]).all()

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from models.numerics import jit
+from models.numerics import cache
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -90,9 +90,8 @@ def test_a_kernel_is_cached_by_what_it_can_import(tmp_path, monkeypatch, caller,
     file = written(tmp_path, helper, "a = 1\n")
     (tmp_path / "site-packages" / "__init__.py").unlink(missing_ok=True)
     function = importlib.import_module(caller).function
-    before = jit._folder_of(function)
+    before = cache.folder_of(function)
     file.write_text("a = 2\n")
-    after = jit._folder_of(function)
+    after = cache.folder_of(function)
     assert after.is_dir()
     assert (after != before) == counts
-    assert jit._folder_of(jit.kernel) == jit.CACHE_FOLDER

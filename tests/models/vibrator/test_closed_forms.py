@@ -5,14 +5,16 @@ import pytest
 from machines import SYMMETRIC, UNDAMPED, net_torques
 
 from models.vibrator.paper import closed_forms as cf
+from models.vibrator.paper.centre import combined_centre, reduced_inertia, reduced_mass
+from models.vibrator.paper.moments import vibratory_moments
 from models.vibrator.parameters import Params
-from models.vibrator.theory.averaged import disphasing, feed_gravity, vibratory_moments
+from models.vibrator.theory.averaged import disphasing, feed_gravity
 from models.vibrator.theory.feed import contact_coefficient
 
 
 def quantities(p, w):
     """Return combined centre, J', M_xi', M_eta' and B of one machine."""
-    c = cf.combined_centre(
+    c = combined_centre(
         p.body_mass,
         p.body_inertia,
         p.unbalanced_mass,
@@ -21,9 +23,9 @@ def quantities(p, w):
         p.axis_offset,
     )
     cos2, sin2 = np.cos(p.working_angle) ** 2, np.sin(p.working_angle) ** 2
-    j = cf.reduced_inertia(c.inertia, p.stiffness_y, p.support_half_spacing, w)
-    m_xi = cf.reduced_mass(c.mass, p.stiffness_x * cos2 + p.stiffness_y * sin2, w)
-    m_eta = cf.reduced_mass(c.mass, p.stiffness_x * sin2 + p.stiffness_y * cos2, w)
+    j = reduced_inertia(c.inertia, p.stiffness_y, p.support_half_spacing, w)
+    m_xi = reduced_mass(c.mass, p.stiffness_x * cos2 + p.stiffness_y * sin2, w)
+    m_eta = reduced_mass(c.mass, p.stiffness_x * sin2 + p.stiffness_y * cos2, w)
     return c, j, m_xi, m_eta, cf.synchronising_coefficient(c.distance, j, m_xi, m_eta)
 
 

@@ -4,8 +4,10 @@ import numpy as np
 from machines import SYMMETRIC, UNDAMPED, plausible
 
 from models.vibrator.paper import closed_forms as cf
+from models.vibrator.paper.centre import combined_centre, reduced_inertia, reduced_mass
 from models.vibrator.paper.criterion import integral, minimising_angle
-from models.vibrator.theory.averaged import disphasing, vibratory_moments
+from models.vibrator.paper.moments import vibratory_moments
+from models.vibrator.theory.averaged import disphasing
 
 CONSERVATIVE = {"damping_ratio": 0.0, "mount_damping_ratio": 0.0, "feed_mass": 0.0}
 
@@ -45,15 +47,15 @@ def test_it_agrees_with_the_coefficient_of_equation_5():
     for inertia in (500.0, 2667.0, 1e5):
         for stiffness in (2.07e6, 9e7):  # above and below the speed of the springs
             q = p._replace(body_inertia=inertia, stiffness_x=stiffness)
-            c = cf.combined_centre(q.body_mass, inertia, 100.0, 0.8, q.shaft_half_angle)
+            c = combined_centre(q.body_mass, inertia, 100.0, 0.8, q.shaft_half_angle)
             along = np.cos(q.working_angle) ** 2
             k_xi = stiffness * along + q.stiffness_y * (1 - along)
             k_eta = stiffness * (1 - along) + q.stiffness_y * along
             b = cf.synchronising_coefficient(
                 c.distance,
-                cf.reduced_inertia(c.inertia, q.stiffness_y, 1.0, w),
-                cf.reduced_mass(c.mass, k_xi, w),
-                cf.reduced_mass(c.mass, k_eta, w),
+                reduced_inertia(c.inertia, q.stiffness_y, 1.0, w),
+                reduced_mass(c.mass, k_xi, w),
+                reduced_mass(c.mass, k_eta, w),
             )
             near_zero = np.cos(minimising_angle(q, w)[0]) > 0
             assert near_zero == (b > 0), (inertia, stiffness)

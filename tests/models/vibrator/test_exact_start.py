@@ -10,8 +10,8 @@ from models.vibrator.exact import propagator
 from models.vibrator.exact.budgeted import prepare
 from models.vibrator.exact.measures import measure
 from models.vibrator.exact.orbit import find_orbit, proposal
-from models.vibrator.lanes import fixed_steps
 from models.vibrator.lanes.orbit import find_orbits
+from models.vibrator.lanes.packed import pack
 from models.vibrator.parameters import Params, Settings
 from models.vibrator.start import exact
 from models.vibrator.start.exact import outcomes
@@ -82,7 +82,7 @@ def test_orbit_and_multiplier_are_those_of_the_variational_equations(table):
     machines = rows(TABLE)
     guesses = [proposal(prepare(p, "small", 0)) for p in TABLE]
     period = 2 * np.pi / averaged.disphasing(machines).speed
-    orbits = find_orbits(fixed_steps.pack(systems(machines)), np.array(guesses), period, 96)
+    orbits = find_orbits(pack(systems(machines).rigid), np.array(guesses), period, 96)
     assert orbits.found.all()
     np.testing.assert_allclose(out.multiplier, orbits.multiplier, rtol=0, atol=1e-6)
     np.testing.assert_allclose(2 * np.pi / out.speed, orbits.period, rtol=1e-9)
@@ -129,10 +129,11 @@ def test_a_run_of_a_minute_ends_on_the_orbit(p, settings):
         np.testing.assert_allclose(
             stroke, np.ptp((x + end * shrink) * cos + (y + end * lift) * sin) / 2, rtol=1e-5
         )
-    rate = states.shape[1] // 2
+    rigid, rate = m.rigid, states.shape[1] // 2
+    w_1, w_2 = states[:-1, rate + 3], states[:-1, rate + 4]
     for power, torque, slip, top, w in (
-        (out.power_1, m.torque_1, m.slip_1, m.synchronous_speed_1, states[:-1, rate + 3]),
-        (out.power_2, m.torque_2, m.slip_2, m.synchronous_speed_2, states[:-1, rate + 4]),
+        (out.power_1, rigid.torque_1, rigid.slip_1, rigid.synchronous_speed_1, w_1),
+        (out.power_2, rigid.torque_2, rigid.slip_2, rigid.synchronous_speed_2, w_2),
     ):
         mean = np.mean(w * torque * (top - w) / (slip**2 + (top - w) ** 2))
         np.testing.assert_allclose(power, mean, rtol=1e-4 if p.feed_mass else 1e-7)

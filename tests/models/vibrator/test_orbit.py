@@ -14,7 +14,7 @@ from models.vibrator.equations import rigid_motion
 from models.vibrator.equations.system import systems
 from models.vibrator.exact import propagator
 from models.vibrator.lanes import orbit, tangents
-from models.vibrator.lanes.fixed_steps import pack
+from models.vibrator.lanes.packed import pack
 from models.vibrator.parameters import Params
 from models.vibrator.theory.averaged import disphasing, steady_motion
 
@@ -36,11 +36,11 @@ def guess(p, off=0.0):
 
 
 def find(p, steps, off=0.0):
-    return orbit.find_orbits(pack(systems(p)), *guess(p, off), steps)
+    return orbit.find_orbits(pack(systems(p).rigid), *guess(p, off), steps)
 
 
 def mean_angle(p, orbits, steps):
-    trace = orbit.follow(pack(systems(p)), orbits.state, orbits.period, steps)
+    trace = orbit.follow(pack(systems(p).rigid), orbits.state, orbits.period, steps)
     return (trace[:, :, 3] - trace[:, :, 4]).mean(axis=1)
 
 
@@ -96,7 +96,7 @@ def test_the_disphasing_angle_converges_with_order_5():
 
 
 def test_derivatives_of_a_revolution_are_those_of_nearby_ones():
-    (state, period), constants = guess(MACHINES), pack(systems(MACHINES))
+    (state, period), constants = guess(MACHINES), pack(systems(MACHINES).rigid)
     end = tangents.revolve(constants, state, period, 24)
     np.testing.assert_allclose(
         end[:, :, 0], orbit.follow(constants, state, period, 24)[:, -1], rtol=1e-12, atol=1e-13
@@ -140,7 +140,7 @@ def test_coming_close_spares_derivatives(monkeypatch):
 
 def test_following_ends_where_the_orbit_does():
     orbits = find(MACHINES, 48)
-    trace = orbit.follow(pack(systems(MACHINES)), orbits.state, orbits.period, 48)
+    trace = orbit.follow(pack(systems(MACHINES).rigid), orbits.state, orbits.period, 48)
     np.testing.assert_allclose(trace[:, -1] - TURN, orbits.state, rtol=0, atol=1e-9)
     for i in (0, 7):
         m, times = systems(MACHINES).row(i), orbits.period[i] * np.arange(1, 49) / 48
@@ -152,7 +152,7 @@ def test_following_ends_where_the_orbit_does():
 def assert_found_or_said(p, state, period):
     """Try guesses; what is found must be an orbit."""
     m = systems(p)
-    orbits = orbit.find_orbits(pack(m), state, period, 48)
+    orbits = orbit.find_orbits(pack(m.rigid), state, period, 48)
     for i in np.flatnonzero(orbits.found):
         assert gap(m.row(i), orbits.state[i], orbits.period[i]) < 1e-6
     return orbits
@@ -170,7 +170,7 @@ def test_from_a_guess_far_away_an_orbit_is_found_or_none():
 
 
 def test_guesses_that_are_no_numbers_harm_nobody():
-    constants = pack(systems(MACHINES))
+    constants = pack(systems(MACHINES).rigid)
     expected = find(MACHINES, 24)
     state, period = guess(MACHINES)
     state[2], state[4, 8], period[6] = np.nan, np.inf, np.nan
@@ -191,7 +191,7 @@ def test_motors_that_cannot_synchronise_have_no_orbit():
 
 def test_a_machine_has_the_same_bits_in_any_company():
     p = plausible(37, seed=3, **RIGID)
-    constants, (state, period) = pack(systems(p)), guess(p)
+    constants, (state, period) = pack(systems(p).rigid), guess(p)
     found = np.isfinite(period)
     together = orbit.find_orbits(constants, state, period, 24)
     assert together.found[found].sum() > 30
@@ -217,7 +217,7 @@ import numpy as np
 import test_orbit
 p = test_orbit.Params._make(field[:1] for field in test_orbit.MACHINES)
 found, state, period, multiplier = test_orbit.find(p, 8)
-trace = test_orbit.orbit.follow(test_orbit.pack(test_orbit.systems(p)), state, period, 8)
+trace = test_orbit.orbit.follow(test_orbit.pack(test_orbit.systems(p).rigid), state, period, 8)
 print(np.concatenate([found, state[0], period, multiplier, trace[0, 3]]).tolist())
 """
 

@@ -5,12 +5,14 @@ import pytest
 
 from models.vibrator.equations.system import systems
 from models.vibrator.exact import propagator
+from models.vibrator.lanes.machines import prepared
 from models.vibrator.paper import closed_forms
+from models.vibrator.paper.centre import combined_centre, reduced_inertia, reduced_mass
 from models.vibrator.paper.table1 import machines
 from models.vibrator.parameters import REGIMES, Params, Settings
 from models.vibrator.start import fast
 from models.vibrator.start.regimes import ASYNCHRONOUS, CAPTURED, LOCKED_0, LOCKED_PI, wrapped
-from models.vibrator.start.synchronous import Machines, search
+from models.vibrator.start.synchronous import search
 from models.vibrator.theory import averaged
 from uq.contract import Status
 
@@ -96,9 +98,10 @@ def test_the_orbit_is_where_a_long_run_ends():
         lever = sin * p.support_half_spacing[i] * states[:, 2]
         assert out.stroke_left[i] == pytest.approx(np.ptp(along - lever) / 2, rel=3e-3)
         assert out.stroke_right[i] == pytest.approx(np.ptp(along + lever) / 2, rel=3e-3)
+        rigid = one.rigid
         for power, torque, slip, top, w in (
-            (out.power_1, one.torque_1, one.slip_1, one.synchronous_speed_1, states[:, 8]),
-            (out.power_2, one.torque_2, one.slip_2, one.synchronous_speed_2, states[:, 9]),
+            (out.power_1, rigid.torque_1, rigid.slip_1, rigid.synchronous_speed_1, states[:, 8]),
+            (out.power_2, rigid.torque_2, rigid.slip_2, rigid.synchronous_speed_2, states[:, 9]),
         ):
             lag = top - w
             assert power[i] == pytest.approx((w * torque * lag / (slip**2 + lag**2)).mean(), 1e-6)
@@ -199,7 +202,7 @@ def fold_of_synchronous_orbits(p):
             breakdown_speed_1=trial.synchronous_speed_1 - 31.0,
             breakdown_speed_2=trial.synchronous_speed_2 - 31.0,
         )
-        known = search(Machines.prepared(trial), speed, angle, np.ones(1, bool), 0)
+        known = search(prepared(trial), speed, angle, np.ones(1, bool), 0)
         if known.found[0]:
             apart += step
             angle, speed = known.disphasing, 2 * np.pi / known.orbits.period
@@ -210,11 +213,11 @@ def fold_of_synchronous_orbits(p):
 
 def moment_and_slope(p, w):
     """Return K of eq. (5) and a_el + a_o of eq. (3) for isotropic centred supports."""
-    at = closed_forms.combined_centre(
+    at = combined_centre(
         p.body_mass, p.body_inertia, p.unbalanced_mass, p.shaft_distance, p.shaft_half_angle
     )
-    mass = closed_forms.reduced_mass(at.mass, p.stiffness_x, w)
-    inertia = closed_forms.reduced_inertia(at.inertia, p.stiffness_y, p.support_half_spacing, w)
+    mass = reduced_mass(at.mass, p.stiffness_x, w)
+    inertia = reduced_inertia(at.inertia, p.stiffness_y, p.support_half_spacing, w)
     b = closed_forms.synchronising_coefficient(at.distance, inertia, mass, mass)
     slope = closed_forms.speed_coefficient(
         p.rated_torque_1,
@@ -230,7 +233,7 @@ def moment_and_slope(p, w):
 
 def centre_and_inertia(p, w):
     """Return the combined centre, J', and the isotropic M' of eqs (5) to (8)."""
-    at = closed_forms.combined_centre(
+    at = combined_centre(
         p.body_mass,
         p.body_inertia,
         p.unbalanced_mass,
@@ -238,8 +241,8 @@ def centre_and_inertia(p, w):
         p.shaft_half_angle,
         p.axis_offset,
     )
-    inertia = closed_forms.reduced_inertia(at.inertia, p.stiffness_y, p.support_half_spacing, w)
-    return at, inertia, closed_forms.reduced_mass(at.mass, p.stiffness_x, w)
+    inertia = reduced_inertia(at.inertia, p.stiffness_y, p.support_half_spacing, w)
+    return at, inertia, reduced_mass(at.mass, p.stiffness_x, w)
 
 
 SOFT = {"stiffness_x": 1e5, "stiffness_y": 1e5, "support_offset": 0.0, "damping_ratio": 1e-3}

@@ -6,13 +6,9 @@ import numpy as np
 import pytest
 from machines import SYMMETRIC, UNDAMPED, at, net_torques, over_the_bounds, plausible, twin
 
+from models.vibrator.paper.moments import vibratory_moments
 from models.vibrator.parameters import Params
-from models.vibrator.theory.averaged import (
-    disphasing,
-    feed_gravity,
-    steady_motion,
-    vibratory_moments,
-)
+from models.vibrator.theory.averaged import disphasing, feed_gravity, steady_motion
 
 RIGID = {"mount_stiffness": np.inf, "mount_rotational_stiffness": np.inf}
 

@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 from machines import plausible
 
+from models.numerics.blocks import LANES
+from models.vibrator import lanes
 from models.vibrator.equations import rigid_motion
 from models.vibrator.equations.system import systems
 from models.vibrator.exact import propagator
-from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes import notes as noted
+from models.vibrator.lanes.machines import prepared
 from models.vibrator.theory.averaged import disphasing
 
 ROWS, TURNS, DURATION = 6, 25, 1.0
@@ -18,8 +21,15 @@ RIGID = {
     "feed_mass": 0.0,
 }
 MACHINES = plausible(ROWS, seed=1, **RIGID)
+LOWS = [noted.ALPHA_LOW, noted.LEFT_LOW, noted.RIGHT_LOW, noted.ANGLE_LOW]
+HIGHS = [
+    noted.ALPHA_HIGH,
+    noted.LEFT_HIGH,
+    noted.RIGHT_HIGH,
+    noted.ANGLE_HIGH,
+]
 SYSTEMS = systems(MACHINES)
-CONSTANTS = fixed_steps.pack(SYSTEMS)
+PREPARED = prepared(MACHINES)
 TARGET = disphasing(MACHINES).angle
 
 
@@ -42,7 +52,7 @@ def advance(start, steps, target=TARGET, accurate=False):
     """Return the states after a second, and the notes."""
     state = start.copy()
     h = np.full(len(state), DURATION / steps)
-    return state, fixed_steps.advance(CONSTANTS, h, state, target, steps, BAND, accurate)
+    return state, lanes.advance(PREPARED, state, h, target, steps, BAND, accurate)
 
 
 @pytest.fixture(scope="module", params=STARTS)
@@ -88,25 +98,26 @@ def some(rows):
     state[:, 3:5] += rng.uniform(-4, 4, size=(rows, 2))
     state[:, 8:] = rng.uniform(100, 160, size=(rows, 2))
     h = rng.uniform(5e-4, 1e-3, rows)
-    return fixed_steps.pack(systems(p)), h, state, rng.uniform(-1, 1, rows)
+    return prepared(p), h, state, rng.uniform(-1, 1, rows)
 
 
-def bits(constants, h, state, target, accurate, rows):
+def bits(machines, h, state, target, accurate, rows):
     """Return states and notes of those rows, run together."""
     out = state[rows]
-    notes = fixed_steps.advance(constants[rows], h[rows], out, target[rows], 60, 0.3, accurate)
+    notes = lanes.advance(machines.take(rows), out, h[rows], target[rows], 60, 0.3, accurate)
     return np.concatenate([out, notes], axis=1)
 
 
 @pytest.mark.parametrize("accurate", [False, True])
 def test_a_row_has_the_same_bits_in_any_company(accurate):
-    count = 2 * fixed_steps.LANES + 5
+    count = 2 * LANES + 5
     case = *some(count), accurate
     sound = np.array([i for i in range(count) if i not in (3, 20, 36)])
     together = bits(*case, np.arange(count))
     assert np.isfinite(together).all() and (together[:, -1] >= 0).any()
-    for column, row in ((0, 3), (1, 20), (2, 36)):  # constants, step, state
-        case[column][row] = np.nan
+    machines, h, state = case[:3]
+    for numbers, row in ((machines.constants, 3), (h, 20), (state, 36)):
+        numbers[row] = np.nan
     order = np.random.default_rng(6).permutation(count)
     np.testing.assert_array_equal(bits(*case, np.arange(count))[sound], together[sound])
     shuffled = bits(*case, order)[np.argsort(order)]
@@ -119,34 +130,22 @@ def test_a_run_in_two_parts_is_the_run_in_one():
     parts, steps, start = (700, 500), 1200, STARTS["under way"]
     whole, notes = advance(start, steps)
     state, h = start.copy(), np.full(ROWS, DURATION / steps)
-    first, second = (
-        fixed_steps.advance(CONSTANTS, h, state, TARGET, n, BAND, False) for n in parts
-    )
+    first, second = (lanes.advance(PREPARED, state, h, TARGET, n, BAND, False) for n in parts)
     np.testing.assert_array_equal(state, whole)
-    for i in (fixed_steps.POWER_1, fixed_steps.POWER_2):
+    for i in (noted.POWER_1, noted.POWER_2):
         np.testing.assert_allclose(first[:, i] + second[:, i], notes[:, i], rtol=1e-13)
-    for i in (
-        fixed_steps.ALPHA_LOW,
-        fixed_steps.LEFT_LOW,
-        fixed_steps.RIGHT_LOW,
-        fixed_steps.ANGLE_LOW,
-    ):
+    for i in LOWS:
         lower = np.minimum(first[:, i], second[:, i])
         np.testing.assert_array_equal(lower, notes[:, i])
-    for i in (
-        fixed_steps.ALPHA_HIGH,
-        fixed_steps.LEFT_HIGH,
-        fixed_steps.RIGHT_HIGH,
-        fixed_steps.ANGLE_HIGH,
-    ):
+    for i in HIGHS:
         higher = np.maximum(first[:, i], second[:, i])
         np.testing.assert_array_equal(higher, notes[:, i])
-    peak = np.maximum(first[:, fixed_steps.EXCURSION], second[:, fixed_steps.EXCURSION])
-    np.testing.assert_array_equal(peak, notes[:, fixed_steps.EXCURSION])
-    early, late = first[:, fixed_steps.LAST_ENTRY], second[:, fixed_steps.LAST_ENTRY]
+    peak = np.maximum(first[:, noted.EXCURSION], second[:, noted.EXCURSION])
+    np.testing.assert_array_equal(peak, notes[:, noted.EXCURSION])
+    early, late = first[:, noted.LAST_ENTRY], second[:, noted.LAST_ENTRY]
     assert (early >= 0).any() and (late >= 0).any()
     last = np.where(late >= 0, late + parts[0], early)
-    np.testing.assert_allclose(last, notes[:, fixed_steps.LAST_ENTRY], rtol=1e-14)
+    np.testing.assert_allclose(last, notes[:, noted.LAST_ENTRY], rtol=1e-14)
 
 
 @pytest.fixture(scope="module")
@@ -177,15 +176,6 @@ def seen(path):
     return np.array([alpha, left, right, psi_1 - psi_2])
 
 
-LOWS = [fixed_steps.ALPHA_LOW, fixed_steps.LEFT_LOW, fixed_steps.RIGHT_LOW, fixed_steps.ANGLE_LOW]
-HIGHS = [
-    fixed_steps.ALPHA_HIGH,
-    fixed_steps.LEFT_HIGH,
-    fixed_steps.RIGHT_HIGH,
-    fixed_steps.ANGLE_HIGH,
-]
-
-
 def test_extremes_are_those_of_the_steps_and_near_those_of_the_motion(path, notes):
     lows, highs = notes[:, LOWS].T, notes[:, HIGHS].T
     at_steps, always = seen(path[:, DENSER::DENSER]), seen(path)
@@ -199,7 +189,7 @@ def test_extremes_are_those_of_the_steps_and_near_those_of_the_motion(path, note
 
 def test_powers_are_those_of_the_motors(path, notes):
     p, steps = MACHINES, 48 * TURNS
-    for i, note in ((1, fixed_steps.POWER_1), (2, fixed_steps.POWER_2)):
+    for i, note in ((1, noted.POWER_1), (2, noted.POWER_2)):
         speed = path[:, :, 7 + i]
         w_s = getattr(p, f"synchronous_speed_{i}")[:, None]
         slip, lag = w_s - getattr(p, f"breakdown_speed_{i}")[:, None], w_s - speed
@@ -213,7 +203,7 @@ def test_powers_are_those_of_the_motors(path, notes):
 
 def test_the_largest_displacement_is_found_between_steps(path, notes):
     squared = path[:, :, 0] ** 2 + path[:, :, 1] ** 2
-    np.testing.assert_allclose(notes[:, fixed_steps.EXCURSION], squared.max(axis=1), rtol=1e-5)
+    np.testing.assert_allclose(notes[:, noted.EXCURSION], squared.max(axis=1), rtol=1e-5)
 
 
 def test_the_last_time_into_the_band(path, notes):
@@ -225,10 +215,10 @@ def test_the_last_time_into_the_band(path, notes):
         if came[i].any():
             j = np.flatnonzero(came[i])[-1]
             last = (j + (off[i, j] - BAND) / (off[i, j] - off[i, j + 1])) / DENSER
-        np.testing.assert_allclose(notes[i, fixed_steps.LAST_ENTRY], last, rtol=0, atol=0.2)
+        np.testing.assert_allclose(notes[i, noted.LAST_ENTRY], last, rtol=0, atol=0.2)
 
 
 def test_without_a_target_there_is_no_band():
     _, notes = advance(STARTS["under way"], 48 * TURNS, np.full(ROWS, np.nan))
-    assert np.all(notes[:, fixed_steps.LAST_ENTRY] == -1)
+    assert np.all(notes[:, noted.LAST_ENTRY] == -1)
     assert np.isfinite(notes).all()

@@ -1,0 +1,63 @@
+"""One beam over whole periods of the force, from event to event."""
+
+import math
+
+from models.beam.exact.events import (
+    EVALUATIONS_PER_PERIOD,
+    NOWHERE,
+    next_event,
+    scratch,
+    site_of,
+)
+from models.beam.exact.tip_bounds import tip_at
+from models.beam.exact.within_phase import join
+from models.numerics.jit import kernel
+
+
+@kernel
+def _sample(phase, weight, power, theta, until, trace):
+    """Set what of a period's trace falls after theta, up to `until`."""
+    step = 2 * math.pi / len(trace)
+    for k in range(len(trace)):
+        at = min((k + 1) * step, 2 * math.pi)
+        if theta < at <= until:
+            trace[k] = tip_at(phase, weight, at - theta, power)
+
+
+@kernel
+def advance_beam(free, contact, state, gaps, growth, record):
+    """Advance one beam over the periods of its record."""
+    work, strobe, peak, trace = record
+    size = len(state) - 3
+    m = size // 2
+    y, owed = state[:size], state[size + 1 :]
+    room = scratch(free, contact)
+    steps = len(trace) // len(work)
+    for period in range(len(work)):
+        site = site_of(y[:m].sum(), gaps)
+        theta = 0.0
+        evaluations = 0
+        while theta < 2 * math.pi:
+            to_end = 2 * math.pi - theta
+            phase = free if site == NOWHERE else contact
+            event = next_event(phase, y, gaps, site, theta, to_end, room)
+            if site != NOWHERE:
+                work[period, site] += event.work
+                owed[site] += event.work
+                peak[site] = max(peak[site], event.deepest)
+                if event.has_left:
+                    gaps[site] += growth[site] * owed[site]
+                    owed[site] = 0.0
+            evaluations += event.effort
+            if evaluations >= EVALUATIONS_PER_PERIOD:
+                state[:] = work[period:] = strobe[period:] = trace[period * steps :] = math.nan
+                return
+            until = theta + event.after if event.after < to_end else 2 * math.pi
+            if steps:
+                _sample(
+                    phase, room.weight, room.power, theta, until, trace[period * steps :][:steps]
+                )
+            join(phase, room.coefficient, event.after, room.power, y)
+            theta, site = until, event.site
+        strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()
+        state[size] += 1

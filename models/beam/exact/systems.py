@@ -1,0 +1,58 @@
+"""Beams prepared for the exact propagator: their phases."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.exact.phases import Phase, phases
+from models.beam.parameters import Settings
+from models.beam.structure.modal import Array, Beams, reach, steady_response
+from models.beam.structure.propagation import LONGEST
+
+TRACE_STEPS = 200
+
+
+class System(NamedTuple):
+    """n beams with their phases, see `models.beam.structure.propagation.System`.
+
+    Attributes
+    ----------
+    phases : tuple of (Phase, Phase)
+        Free flight and contact of each beam.
+    modal : ndarray, shape (n, m), complex
+        Steady amplitude of each mode without contact.
+    reach, beams, steps
+        As there; the steps are those of a trace.
+    """
+
+    phases: tuple[tuple[Phase, Phase], ...]
+    modal: NDArray[np.complex128]
+    reach: Array
+    beams: Beams
+    steps: int
+
+    @property
+    def longest(self) -> int:
+        """As the budget of events allows any number: `LONGEST`."""
+        return LONGEST
+
+    def take(self, rows: NDArray[np.intp]) -> "System":
+        """Return the systems of some rows."""
+        chosen = tuple(self.phases[i] for i in rows)
+        return System(chosen, self.modal[rows], self.reach[rows], self.beams.take(rows), self.steps)
+
+
+def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Find the modes of n beams out of contact and in contact, in one group of them all."""
+    rows = np.arange(len(beams.forcing))
+    each = tuple(phases(beams, i) for i in range(len(rows)))
+    steps = settings.steps_per_period or TRACE_STEPS
+    modal = steady_response(beams)
+    yield rows, System(each, modal, reach(beams), beams, steps)
+
+
+def finer(system: System, state: Array) -> Iterator[tuple[NDArray[np.intp], System, Array]]:
+    """Return nothing: there are no steps to be made smaller."""
+    return iter(())

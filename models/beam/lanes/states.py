@@ -1,0 +1,92 @@
+"""The state of beams in lanes: at the start, and the same in steps of half the size."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.lanes.recurrence import is_static, mode_step
+from models.beam.lanes.systems import System, gains, systems
+from models.beam.structure.modal import Array
+from models.beam.structure.random_lines import COUNT, draw
+from models.beam.structure.random_response import add_modes
+from models.numerics.jit import kernel
+
+
+@kernel
+def _open(load, forcing, oscillators, opening):
+    """Add the modes' steady response to the random load at t = 0."""
+    lines = np.empty((COUNT, 3))
+    for n in range(load.size):
+        if load[n]["power"] > 0:
+            frequency, decay, mobility = oscillators[n]
+            draw(load[n], 0, lines)
+            add_modes(lines, 0, 1.0, forcing[n], frequency, decay, mobility, opening[n])
+
+
+def start(system: System, displacement: Array, velocity: Array) -> Array:
+    """Return y and r of each mode, penetration, two displacements a step apart, and the clock.
+
+    The shape is (n, 2 m + 4), the newer displacement first. A contact that exists at the start acts
+    from the end of the first step.
+    """
+    n, _, m = system.modes.shape
+    to_displacement, to_velocity, moving = system.begin.transpose(1, 0, 2)
+    modal = system.modal[:, :m]
+    z = -modal.real * moving
+    v = modal.imag * system.beams.forcing[:, None]
+    if system.beams.is_random.any():
+        opening = np.zeros((n, 2, system.oscillators.shape[2]))
+        _open(system.beams.load, system.beams.forcing, system.oscillators, opening)
+        z -= opening[:, 0, :m] * moving
+        v -= opening[:, 1, :m]
+    z[:, 0] += displacement
+    v[:, 0] += velocity
+    state = np.zeros((n, 2 * m + 4))
+    state[:, :m] = z
+    state[:, m : 2 * m] = to_displacement * z + to_velocity * v - system.modes[:, 0] * z
+    state[:, 2 * m + 1] = displacement
+    state[:, 2 * m + 2] = displacement
+    return state
+
+
+def finer(system: System, state: Array) -> Iterator[tuple[NDArray[np.intp], System, Array]]:
+    """Halve the steps; the displacement a step before is interpolated, with the tip's velocity."""
+    for rows, fine in systems(system.beams, 2 * system.steps):
+        yield rows, fine, _in_half_steps(system.take(rows), state[rows], fine)
+
+
+def _in_half_steps(system: System, state: Array, fine: System) -> Array:
+    """Return nearly the same state, shape (n, 2 m' + 4)."""
+    b = system.beams
+    out = np.zeros((len(state), 2 * fine.modes.shape[2] + 4))
+    step = 2 * np.pi / (system.beams.forcing * system.steps)
+    modal = (system.modal * system.beams.forcing[:, None]).imag.sum(axis=1)
+    _refine(b.frequency, b.decay, gains(b), b.moving, step, -modal, state, out)
+    return out
+
+
+@kernel
+def _refine(frequency, decay, gain, moving, step, velocity, state, out):
+    """Set out to state in half steps; velocity is that of the tip without contact."""
+    m, size = (state.shape[1] - 4) // 2, (out.shape[1] - 4) // 2
+    for n in range(len(state)):
+        p, x1, x2 = state[n, 2 * m], state[n, 2 * m + 1], state[n, 2 * m + 2]
+        h = step[n]
+        speed = velocity[n]
+        for i in range(min(size, moving[n])):
+            w, d, g = frequency[n, i], decay[n, i], gain[n, i]
+            if i >= m or is_static(w, d, h):
+                z, v = g / (w * w) * p, 0.0
+            else:
+                y, r = state[n, i], state[n, m + i]
+                _, p12, _, p22, _, _, b1, b2 = mode_step(w, d, h)
+                z, v = y + g * b1 * p, (r + p22 * y) / p12 + g * b2 * p
+            speed += w * v
+            if not is_static(w, d, h / 2):
+                _, p12, _, p22, _, _, b1, b2 = mode_step(w, d, h / 2)
+                y = z - g * b1 * p
+                out[n, i], out[n, size + i] = y, p12 * (v - g * b2 * p) - p22 * y
+        out[n, 2 * size], out[n, 2 * size + 1] = p, x1
+        out[n, 2 * size + 2] = 0.75 * x1 + 0.25 * x2 - 0.25 * h * speed
+        out[n, 2 * size + 3] = state[n, 2 * m + 3]

@@ -1,0 +1,212 @@
+"""The hot loop: sixteen beams abreast, fixed steps, exact between the samples of the force.
+
+Each mode is propagated exactly under a contact force that is linear within a step; the harmonic
+force enters through the exact steady response, so modes carry only what contact does to them, and
+so does a random one, see `models.beam.lanes.lines`. A damped mode under a sampled force obeys a
+two-term recurrence, kept here in transposed direct form:
+
+    y_i <- t_i y_i + r_i + alpha_i p,    r_i <- beta_i p - d_i y_i,
+
+where t_i and d_i are trace and determinant of its propagator. The new penetration enters at once
+(sigma = sum of the modes' share of it), so that x = X + sigma p(x) is solved for x without
+iteration: p is piecewise linear. Everything is free of branches, so lanes never diverge, and a
+row's bits do not depend on its neighbours.
+
+A force that is linear within a step misses part of the impulse where it is curved, and where it
+has its kink at the beginning and the end of a contact. Both parts are known to leading order and
+are added to the sampled penetration; measured, that makes the error of a work-rate four to ten
+times smaller.
+"""
+
+import numpy as np
+
+from models.beam.lanes.lines import draw_lines, redraw_lines, sum_lines
+from models.beam.structure.modal import Array
+from models.numerics.blocks import LANES, aligned
+from models.numerics.fma import fma
+from models.numerics.jit import kernel
+
+_NOTHING = 1e-150  # of the gap
+_UNROLL = 4  # modes in the straight-line body of the inner loop
+_MODE = 6  # slots of a mode: y, r, t, d, alpha, beta
+# slots of a lane beside its modes
+_P, _RIGHT, _LEFT, _RE, _IM, _STIFF, _SIGMA, _X1, _X2 = range(9)
+_WORK_R, _WORK_L, _PEAK_R, _PEAK_L, _SUM, _RANDOM, _HEAD = range(9, 16)
+
+
+def room(modes: int) -> tuple[Array, Array]:
+    """Return room for the modes of a block of lanes, and for what else a lane holds."""
+    padded = -(-modes // _UNROLL) * _UNROLL
+    return aligned(padded * _MODE * LANES), aligned(_HEAD * LANES)
+
+
+@kernel
+def _load(system_modes, sigma, response, state, gaps, first, w, head):
+    """Bring up to LANES rows from `first` on into lanes; spare lanes repeat the last row."""
+    last = state.shape[0] - 1
+    m = system_modes.shape[2]
+    w[:] = 0.0
+    head[:] = 0.0
+    for lane in range(LANES):
+        n = min(first + lane, last)
+        for i in range(m):
+            k = i * _MODE * LANES + lane
+            w[k] = state[n, i]
+            w[k + LANES] = state[n, m + i]
+            for c in range(4):
+                w[k + (2 + c) * LANES] = system_modes[n, c, i]
+        head[_P * LANES + lane] = state[n, 2 * m]
+        head[_X1 * LANES + lane] = state[n, 2 * m + 1]
+        head[_X2 * LANES + lane] = state[n, 2 * m + 2]
+        head[_RIGHT * LANES + lane] = gaps[n, 0]
+        head[_LEFT * LANES + lane] = gaps[n, 1]
+        head[_RE * LANES + lane] = response[n].real
+        head[_IM * LANES + lane] = response[n].imag
+        head[_SIGMA * LANES + lane] = sigma[n]
+        head[_STIFF * LANES + lane] = 1 / (1 - sigma[n])
+
+
+@kernel
+def _store(w, head, first, state, gaps, peak):
+    """Bring lanes back into their rows."""
+    m = (state.shape[1] - 4) // 2
+    for n in range(first, min(first + LANES, state.shape[0])):
+        lane = n - first
+        for i in range(m):
+            k = i * _MODE * LANES + lane
+            state[n, i] = w[k]
+            state[n, m + i] = w[k + LANES]
+        state[n, 2 * m] = head[_P * LANES + lane]
+        state[n, 2 * m + 1] = head[_X1 * LANES + lane]
+        state[n, 2 * m + 2] = head[_X2 * LANES + lane]
+        gaps[n, 0] = head[_RIGHT * LANES + lane]
+        gaps[n, 1] = head[_LEFT * LANES + lane]
+        peak[n, 0] = head[_PEAK_R * LANES + lane]
+        peak[n, 1] = head[_PEAK_L * LANES + lane]
+
+
+@kernel
+def _step(w, head, groups, cosine, sine):
+    """Advance all lanes by one step: the hot loop."""
+    for lane in range(LANES):
+        head[_SUM * LANES + lane] = 0.0
+    for g in range(groups):
+        for lane in range(LANES):
+            p = head[_P * LANES + lane]
+            k = g * (_UNROLL * _MODE * LANES) + lane
+            y = w[k]
+            y0 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
+            w[k] = y0
+            k += _MODE * LANES
+            y = w[k]
+            y1 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
+            w[k] = y1
+            k += _MODE * LANES
+            y = w[k]
+            y2 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
+            w[k] = y2
+            k += _MODE * LANES
+            y = w[k]
+            y3 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
+            w[k] = y3
+            head[_SUM * LANES + lane] += (y0 + y1) + (y2 + y3)
+    for lane in range(LANES):
+        right, left = head[_RIGHT * LANES + lane], head[_LEFT * LANES + lane]
+        free = fma(head[_RE * LANES + lane], cosine, head[_SUM * LANES + lane])
+        free = fma(-head[_IM * LANES + lane], sine, free) + head[_RANDOM * LANES + lane]
+        over, under = free - right, -free - left
+        p = ((over if over > 0.0 else 0.0) - (under if under > 0.0 else 0.0)) * head[
+            _STIFF * LANES + lane
+        ]
+        x = fma(head[_SIGMA * LANES + lane], p, free)
+        x1 = head[_X1 * LANES + lane]
+        before, after = x1 - head[_X2 * LANES + lane], x - x1
+        # The corrections below leave something in p after contact: p does not indicate contact.
+        in_right, in_left = x1 > right, x1 < -left
+        # Two divisions in one: of the turning point's parabola, and of the crossing's position.
+        turned = (before * after < 0.0) & (in_right | in_left)
+        side, gap = (1.0, right) if x > 0.0 else (-1.0, left)
+        d0, d = fma(side, x1, -gap), fma(side, x, -gap)
+        crossed = d0 * d < 0.0
+        curvature = after - before if turned else 1.0
+        travel = abs(d - d0) if crossed else 1.0
+        inverse = 1 / (curvature * travel)
+        # Work (eq 8) is the sum of d^2 over the extrema of the penetration d, signed outward.
+        swing = before + after
+        vertex = fma(-0.125 * swing * swing, inverse * travel, x1)
+        d_right = vertex - right if turned & in_right else 0.0
+        d_left = -vertex - left if turned & in_left else 0.0
+        outward = 1.0 if before > 0.0 else -1.0
+        head[_WORK_R * LANES + lane] = fma(outward * d_right, d_right, head[_WORK_R * LANES + lane])
+        head[_WORK_L * LANES + lane] = fma(-outward * d_left, d_left, head[_WORK_L * LANES + lane])
+        peak_r, peak_l = head[_PEAK_R * LANES + lane], head[_PEAK_L * LANES + lane]
+        head[_PEAK_R * LANES + lane] = d_right if d_right > peak_r else peak_r
+        head[_PEAK_L * LANES + lane] = d_left if d_left > peak_l else peak_l
+        # The impulse of a force with a kink inside the step, and that of a curved one.
+        p += 0.5 * side * d0 * d * (inverse * curvature) if crossed else 0.0
+        p -= (after - before) / 12 if d > 0.0 else 0.0
+        head[_X2 * LANES + lane] = x1
+        head[_X1 * LANES + lane] = x
+        head[_P * LANES + lane] = p
+
+
+@kernel
+def _forget(w):
+    """Let motion that has died out be zero: numbers next to zero are slow."""
+    for k in range(0, w.size, _MODE * LANES):
+        for slot in range(2 * LANES):
+            w[k + slot] = 0.0 if abs(w[k + slot]) <= _NOTHING else w[k + slot]
+
+
+@kernel
+def advance_blocks(
+    system_modes, sigma, response, load, state, gaps, growth, cosine, sine, w, head, lines, record
+):
+    """Advance all beams over the periods of their record, a block of lanes at a time."""
+    work, strobe, peak, trace = record
+    n, periods, _ = work.shape
+    steps = cosine.size
+    groups = w.size // (_UNROLL * _MODE * LANES)
+    for first in range(0, n, LANES):
+        _load(system_modes, sigma, response, state, gaps, first, w, head)
+        rows = min(LANES, n - first)
+        is_random = draw_lines(load, state, first, steps, lines)
+        for period in range(periods):
+            for lane in range(LANES):
+                head[_WORK_R * LANES + lane] = 0.0
+                head[_WORK_L * LANES + lane] = 0.0
+            if is_random:
+                redraw_lines(load, state, first, period, steps, lines, w, _MODE * LANES)
+                sum_lines(load, state, first, period, lines)
+            last_but_two = np.zeros(LANES)
+            for s in range(steps):
+                if s == steps - 1:
+                    for lane in range(LANES):
+                        last_but_two[lane] = head[_X2 * LANES + lane]
+                if is_random:
+                    for lane in range(LANES):
+                        head[_RANDOM * LANES + lane] = lines.total[s * LANES + lane]
+                _step(w, head, groups, cosine[s], sine[s])
+                if trace.size:
+                    for lane in range(rows):
+                        trace[first + lane, period * steps + s] = head[_X1 * LANES + lane]
+            _forget(w)
+            for lane in range(rows):
+                row = first + lane
+                work[row, period, 0] = head[_WORK_R * LANES + lane]
+                work[row, period, 1] = head[_WORK_L * LANES + lane]
+                x = head[_X1 * LANES + lane]
+                strobe[row, period, 0] = x
+                strobe[row, period, 1] = (
+                    (3 * x - 4 * head[_X2 * LANES + lane] + last_but_two[lane])
+                    * steps
+                    / (4 * np.pi)
+                )
+                head[_RIGHT * LANES + lane] += growth[row, 0] * work[row, period, 0]
+                head[_LEFT * LANES + lane] += growth[row, 1] * work[row, period, 1]
+        _store(w, head, first, state, gaps, peak)
+    state[:, state.shape[1] - 1] += periods

@@ -1,0 +1,32 @@
+"""Where a beam starts: its propagator, its gaps and its state."""
+
+import numpy as np
+
+from models.beam import exact, lanes
+from models.beam.parameters import Rows, Settings
+from models.beam.structure.modal import Array, Beams
+from models.beam.structure.propagation import Propagator, System
+
+PROPAGATORS: dict[str, Propagator] = {"fast": lanes, "exact": exact}
+
+
+def one_system(beams: Beams, settings: Settings) -> tuple[Propagator, System]:
+    """Return a propagator that can follow one beam, and the system it prepares.
+
+    The exact one where contact is too stiff, or a random force too fast, for fixed steps.
+    """
+    for propagator in (PROPAGATORS[settings.propagator], exact):
+        for _, system in propagator.groups(beams, settings):
+            return propagator, system
+    raise AssertionError("the exact propagator takes any beam")
+
+
+def initial_gaps(p: Rows) -> Array:
+    """Return the right and the left gap when new, in initial gaps, shape (n, 2)."""
+    return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
+
+
+def initial_state(propagator: Propagator, system: System, p: Rows) -> Array:
+    """Return the state of n beams at the start, as their propagator keeps it."""
+    x0 = p.initial_gap
+    return propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)

@@ -1,0 +1,97 @@
+"""The steady response to the random force, line by line, so that nothing is sampled."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.structure.random_lines import (
+    AMPLITUDE,
+    COUNT,
+    SPEED,
+    TURN,
+    Array,
+    turn_at,
+)
+from models.numerics.fma import fma
+from models.numerics.jit import kernel
+
+_SURE = 9.0  # standard deviations that no life ever sees: once in some 10^17 oscillations
+_NODES = 4  # of the quadrature of each sub-band
+
+
+@kernel
+def respond(lines, forcing, frequency, decay, mobility):
+    """Turn the lines of a beam's force into those of its steady tip displacement [initial gaps]."""
+    for j in range(COUNT):
+        w = lines[j, SPEED] * forcing
+        re = im = 0.0
+        for i in range(frequency.size):
+            stiff, damp = fma(-w, w, frequency[i] ** 2), 2 * decay[i] * w
+            per = mobility[i] / fma(stiff, stiff, damp * damp)
+            re = fma(stiff, per, re)
+            im = fma(-damp, per, im)
+        lines[j, AMPLITUDE] *= np.sqrt(re * re + im * im)
+        lines[j, TURN] += np.arctan2(im, re) / (2 * np.pi)
+
+
+@kernel
+def add_modes(lines, period, sign, forcing, frequency, decay, mobility, modes):
+    """Add to modes (2, m), or take away, the modes' steady response to the lines of a force.
+
+    Rows: displacements and velocities, in initial gaps (per second), as a period of the epoch
+    begins.
+    """
+    for j in range(COUNT):
+        w = lines[j, SPEED] * forcing
+        angle = 2 * np.pi * turn_at(lines[j, SPEED], lines[j, TURN], period)
+        c = sign * lines[j, AMPLITUDE] * np.cos(angle)
+        s = sign * lines[j, AMPLITUDE] * np.sin(angle)
+        for i in range(frequency.size):
+            stiff, damp = fma(-w, w, frequency[i] ** 2), 2 * decay[i] * w
+            per = mobility[i] / fma(stiff, stiff, damp * damp)
+            modes[0, i] = fma(per, fma(stiff, c, damp * s), modes[0, i])
+            modes[1, i] = fma(per * w, fma(damp, c, -stiff * s), modes[1, i])
+
+
+@kernel
+def _spread(load, forcing, frequency, decay, mobility, node, weight, variance):
+    for n in range(load.size):
+        variance[n] = 0.0
+        if load[n]["power"] == 0:
+            continue
+        lines = np.empty((COUNT, 3))
+        for k in range(node.size):
+            for j in range(COUNT):
+                begin, end = load[n]["edges"][j], load[n]["edges"][j + 1]
+                lines[j] = 0.0
+                lines[j, SPEED] = begin + node[k] * (end - begin)
+                lines[j, AMPLITUDE] = np.sqrt(0.5 * weight[k] * load[n]["power"] * (end - begin))
+            respond(lines, forcing[n], frequency[n], decay[n], mobility[n])
+            for j in range(COUNT):
+                variance[n] += lines[j, AMPLITUDE] ** 2
+
+
+def tip_deviation(
+    load: NDArray[np.void], forcing: Array, frequency: Array, decay: Array, mobility: Array
+) -> Array:
+    """Return the standard deviation of the tip under the random load alone, without contact.
+
+    Parameters
+    ----------
+    load : ndarray of LOAD, shape (n,)
+    forcing, frequency, decay, mobility : ndarray
+        As in `models.beam.structure.modal.Beams`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In initial gaps: the root of the integral of S_F |H|^2.
+    """
+    node, weight = np.polynomial.legendre.leggauss(_NODES)
+    variance = np.empty(len(load))
+    _spread(load, forcing, frequency, decay, mobility, (1 + node) / 2, weight / 2, variance)
+    return np.sqrt(variance)
+
+
+def sure_reach(deviation: Array) -> Array:
+    """Return what the random part of the tip's displacement never exceeds in a life."""
+    return _SURE * deviation

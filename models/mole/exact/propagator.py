@@ -1,0 +1,117 @@
+"""One mole over any time, by `models.numerics.propagator.Yardstick`."""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from models.mole.exact.events import run
+from models.mole.exact.states import Motion, State
+from models.mole.parameters import Params
+from models.mole.theory import equations
+from models.mole.theory.friction import decide
+from models.mole.theory.system import Mole
+
+STEPS_PER_RADIAN = 10
+_SPARE_STEPS = 10_000
+
+
+def start(params: Params, q: Mole) -> State:
+    """Return the state of one mole before its relay first closes.
+
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    q : Mole
+        The same mole, prepared.
+
+    Returns
+    -------
+    State
+    """
+    y = np.zeros(equations.SIZE)
+    y[0], y[1] = u, v = params.initial_displacement, params.initial_velocity
+    contact = u > q.stop_gap
+    bar, mole = decide(q, v, 0.0, equations.force(q, contact, u, v, 0.0))
+    return State(0.0, y, contact, bar, mole, 0)
+
+
+def propagate(q: Mole, state: State, end: float, tolerance: float, times: ArrayLike = ()) -> Motion:
+    """Follow one mole.
+
+    Parameters
+    ----------
+    q : Mole
+        Each field a number.
+    state : State
+        It is left as it is.
+    end : float
+        Time at which to stop [s].
+    tolerance : float
+        Error allowed in a step, relative to each component of the state, or to its size in
+        `scales` if that is greater.
+    times : array_like, shape (k,)
+        Ascending, when to sample the state [s].
+
+    Returns
+    -------
+    Motion
+        Propagated from its last state, the mole moves on as if it had never stopped, to rounding.
+    """
+    q = Mole._make([*(float(field) for field in q[:-1]), int(q.formulation)])
+    times = np.ascontiguousarray(times, float)
+    samples = np.full((len(times), equations.SIZE), np.nan)
+    y = np.array(state.y, float)
+    ended = run(
+        q,
+        float(state.time),
+        y,
+        bool(state.contact),
+        int(state.bar),
+        int(state.mole),
+        int(state.switched),
+        float(end),
+        float(tolerance),
+        tolerance * scales(q),
+        int(STEPS_PER_RADIAN * _fastest(q) * max(end - state.time, 0.0)) + _SPARE_STEPS,
+        times,
+        samples,
+    )
+    return Motion(
+        ended.status,
+        State(ended.time, y, ended.contact, ended.bar, ended.mole, ended.switched),
+        ended.contacts,
+        ended.events,
+        ended.lowest,
+        ended.highest,
+        ended.steps,
+        samples,
+    )
+
+
+def _fastest(q: Mole) -> float:
+    """Return the sum of the rates at which something happens [s-1]."""
+    return (
+        math.sqrt((q.contact_stiffness + q.spring_stiffness) / q.mass)
+        + q.damping / q.mass
+        + q.resistance / q.coil_inductance
+        + math.sqrt(q.elastance / q.coil_inductance)
+        + q.supply_speed
+        + 2 * math.pi / q.control_period
+    )
+
+
+def scales(q: Mole) -> NDArray[np.float64]:
+    """Return the size of each component of the state.
+
+    Of voltage and displacement by the data; of the current by the resistance; of energy by what
+    such a current has in the coil on behalf of the bar; of velocity and impulse by a bar with that
+    energy.
+    """
+    current = q.voltage / q.resistance
+    energy = 0.5 * q.bar_inductance * current**2
+    velocity = math.sqrt(2 * energy / q.mass)
+    length = 1 / math.sqrt(q.sharpness)
+    motion = [length, velocity, velocity * q.mass / q.mole_mass, current, q.voltage, length]
+    return np.array([*motion, *[energy] * 5, velocity * q.mass])

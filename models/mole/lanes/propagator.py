@@ -1,0 +1,164 @@
+"""n moles over whole control periods, by `models.numerics.propagator.Propagator`."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.mole.lanes.block import MEASURED
+from models.mole.lanes.loop import run
+from models.mole.lanes.rows import (
+    GROWTH,
+    OUTCOME,
+    REACHED_END,
+    RECORD,
+    REPEATING,
+    Task,
+    begin,
+    table_of,
+)
+from models.mole.parameters import Rows, Settings
+from models.mole.theory.periods import common_periods
+from models.mole.theory.system import mole
+from models.numerics import elementary
+
+Array = NDArray[np.float64]
+Counts = NDArray[np.int64]
+
+BUDGET = 2_000_000  # trial steps of a mole; more where averages are long
+
+
+class System(NamedTuple):
+    """n moles, prepared.
+
+    Attributes
+    ----------
+    table : ndarray, shape (n, 20)
+        Of `models.mole.lanes.rows.table_of`.
+    control_frequency : ndarray, shape (n,)
+        [Hz]
+    common : ndarray of int, shape (n,)
+        Common period of control and mains [control periods], 0 if there is none.
+    tolerance : float
+        Of a step.
+    budget : int
+        Trial steps of each mole.
+    """
+
+    table: Array
+    control_frequency: Array
+    common: Counts
+    tolerance: float
+    budget: int
+
+    def take(self, rows: NDArray[np.intp]) -> "System":
+        """Return the systems of some rows."""
+        return System(
+            self.table[rows],
+            self.control_frequency[rows],
+            self.common[rows],
+            self.tolerance,
+            self.budget,
+        )
+
+
+def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
+    """Prepare n moles: all in one group, since lanes need nothing in common.
+
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,).
+    settings : Settings
+        Formulation and tolerance count.
+    """
+    n = len(p.control_frequency)
+    yield (
+        np.arange(n),
+        System(
+            table_of(mole(p, settings.formulation), n),
+            p.control_frequency,
+            common_periods(p.control_frequency, p.supply_frequency),
+            settings.tolerance,
+            BUDGET,
+        ),
+    )
+
+
+def start(system: System, displacement: Array, velocity: Array) -> Array:
+    """Return the records of moles at rest, bars thrown, relays just closed.
+
+    Parameters
+    ----------
+    system : System
+    displacement, velocity : ndarray, shape (n,)
+        Of the bar, u [m] and v [m s-1].
+
+    Returns
+    -------
+    ndarray, shape (n, RECORD)
+        See `models.mole.lanes.rows`: the state, and what the last run has seen.
+    """
+    record = np.empty((len(system.table), RECORD))
+    begin(system.table, displacement, velocity, record)
+    return record
+
+
+def advance(
+    system: System,
+    record: Array,
+    limit: Counts,
+    tangents: Array | None = None,
+    repeat: bool = False,
+) -> Counts:
+    """Advance n moles.
+
+    Parameters
+    ----------
+    system : System
+    record : ndarray, shape (n, RECORD)
+        Updated in place.
+    limit : ndarray of int, shape (n,)
+        Control periods since the start at which to end.
+    tangents : ndarray, shape (n, 5 columns), optional
+        0, 1 or 5 columns, updated in place; see `models.mole.lanes.rows.Task`.
+    repeat : bool
+        Whether to end where the motion repeats.
+
+    Returns
+    -------
+    ndarray of int
+        Moles that got where they should.
+    """
+    n = len(record)
+    if tangents is None:
+        tangents = np.empty((n, 0))
+    common = system.common if repeat else np.zeros(n, np.int64)
+    task = Task(system.table, record, tangents, limit, common, system.tolerance, system.budget)
+    run(task, tangents.shape[1] // MEASURED)
+    outcome = record[:, OUTCOME]
+    return np.flatnonzero((outcome == REACHED_END) | (outcome == REPEATING))
+
+
+def monodromy(system: System, record: Array, limit: Counts) -> Array:
+    """Return how (u, v, x, i, p) at the end depend on these now.
+
+    Parameters
+    ----------
+    system : System
+    record : ndarray, shape (n, RECORD)
+        Not changed.
+    limit : ndarray of int, shape (n,)
+        As in `advance`.
+
+    Returns
+    -------
+    ndarray, shape (n, 5, 5)
+        Zero by what sticks now, which has no freedom.
+    """
+    after = record.copy()
+    tangents = np.tile(np.eye(MEASURED).ravel(), (len(record), 1))
+    advance(system, after, limit, tangents)
+    columns = tangents.reshape(-1, MEASURED, MEASURED)
+    return elementary.exp(after[:, GROWTH])[:, None, None] * columns.transpose(0, 2, 1)

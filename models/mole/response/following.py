@@ -1,0 +1,126 @@
+"""Averages over the settled response.
+
+Motion that repeats is averaged over whole periods; other motion, and one that repeats by chance
+though its tangents grow, over batches of common periods, whose scatter tells the errors of the
+means.
+"""
+
+import numpy as np
+
+from models.mole.lanes.block import CURRENT, MEASURED, P
+from models.mole.lanes.rows import GROWTH, PERIOD, TOUCHING
+from models.mole.response.machines import APERIODIC, Machines
+from models.mole.response.measured import BATCHES, Array, Counts, Response
+from models.mole.response.verdict import SURE
+from models.mole.theory.system import Mole
+from models.numerics.batch_means import mean_and_error
+from models.numerics.exponents import log_multiplier
+
+LOOKS = 1, 4, 16
+"""How often as many it may take to tell the exponent from zero."""
+_UNSTABLE = 1e-3  # logarithm of a multiplier from which on a motion that repeats is no attractor
+_WARM_UP = 10  # control periods in which a tangent finds the direction that grows most
+
+
+def follow_repeating(machines: Machines, rows: Counts, duration: int, out: Response) -> Counts:
+    """Follow moles whose motion repeats through whole periods of the response.
+
+    Parameters
+    ----------
+    machines : Machines
+    rows : ndarray of int
+    duration : int
+        Control periods to be averaged at least.
+    out : Response
+        Updated in place; nothing is known of those whose motion repeats but is unstable.
+
+    Returns
+    -------
+    ndarray of int
+        Rows whose motion repeats but is unstable: it came by chance, and is no attractor.
+    """
+    common, frequency = machines.system.common, machines.system.control_frequency
+    half_cycles = machines.system.table[:, Mole._fields.index("supply_speed")] / np.pi
+    unstable = [np.empty(0, np.int64)]
+    periods = machines.record[rows, PERIOD].astype(np.int64)
+    whole = periods * common[rows]
+    left = periods * np.maximum(-(-duration // whole), 1)  # common periods
+    begun = machines.periods(rows)
+    out.touching[rows] = machines.record[rows, TOUCHING] == 1
+    tangents = np.tile(np.eye(MEASURED).ravel(), (len(rows), 1))
+    growth, step = np.zeros(len(rows)), 0
+    places = np.arange(len(rows))
+    while len(places):
+        step += 1
+        here, flow = rows[places], tangents[places]
+        reached = machines.run(here, begun[places] + step * common[here], flow)
+        places, flow = places[reached], flow[reached]
+        out.note(rows[places], 0, machines.record[rows[places]])
+        growth[places] += machines.record[rows[places], GROWTH]
+        tangents[places] = flow
+        ended = left[places] == step
+        done, flow = places[ended], flow[ended].reshape(-1, MEASURED, MEASURED)
+        here = rows[done]
+        time = left[done] * common[here] / frequency[here]
+        # After an odd number of half mains cycles current and voltage have the other sign.
+        odd = np.round(time * half_cycles[here]) % 2 == 1
+        flow[odd, :, CURRENT : P + 1] *= -1
+        out.growth[here, 0] = growth[done] + log_multiplier(flow)
+        out.time[here] = time
+        out.period[here] = periods[done]
+        chance = here[out.growth[here, 0] > _UNSTABLE]
+        out.forget(chance)
+        unstable.append(chance)
+        places = places[~ended]
+    return np.concatenate(unstable)
+
+
+def follow_other(machines: Machines, rows: Counts, duration: int, out: Response) -> None:
+    """Follow moles whose motion does not repeat through batches of control periods.
+
+    Where the exponent is indistinguishable from zero, a longer look replaces the one before.
+
+    Parameters
+    ----------
+    machines : Machines
+    rows : ndarray of int
+    duration : int
+        Control periods to be averaged at first, in `BATCHES` batches of whole common periods; 0:
+        `APERIODIC`.
+    out : Response
+        Updated in place.
+    """
+    tangents = np.ones((len(rows), MEASURED))
+    limit = machines.periods(rows) + _WARM_UP
+    reached = machines.run(rows, limit, tangents)
+    rows, tangents = rows[reached], tangents[reached]
+    for times in LOOKS:
+        common = np.maximum(machines.system.common[rows], 1)
+        each = -(-times * (duration or APERIODIC) // (BATCHES * common)) * common
+        places = _follow_batches(machines, rows, each, tangents, out)
+        rows, tangents = rows[places], tangents[places]
+        mean, error = mean_and_error(out.growth[rows])
+        near = np.abs(mean) < SURE * error
+        rows, tangents = rows[near], tangents[near]
+
+
+def _follow_batches(
+    machines: Machines, rows: Counts, each: Counts, tangents: Array, out: Response
+) -> Counts:
+    """Follow moles through batches, forgetting earlier ones; return places of those that got on."""
+    some = Response.nothing(len(rows))
+    some.touching[:] = machines.record[rows, TOUCHING] == 1
+    limit, places = machines.periods(rows), np.arange(len(rows))
+    for batch in range(BATCHES):
+        limit = limit + each
+        flow = tangents[places]
+        reached = machines.run(rows[places], limit[places], flow)
+        places, flow = places[reached], flow[reached]
+        some.note(places, batch, machines.record[rows[places]])
+        some.growth[places, batch] = machines.record[rows[places], GROWTH]
+        tangents[places] = flow
+    some.time[places] = BATCHES * each[places] / machines.system.control_frequency[rows[places]]
+    # Who did not get so far keeps what a shorter run has told.
+    for mine, new in zip(out, some, strict=True):
+        mine[rows[places]] = new[places]
+    return places

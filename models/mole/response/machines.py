@@ -1,0 +1,59 @@
+"""n moles, and where they stand: what the settled response is made with."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from models.mole.lanes import System, advance, groups, start
+from models.mole.lanes.rows import HALF
+from models.mole.parameters import Rows, Settings
+from models.mole.response.measured import Array, Counts
+
+APERIODIC = 200
+"""Control periods averaged at first where the motion does not repeat."""
+
+
+class Machines(NamedTuple):
+    """n moles.
+
+    Attributes
+    ----------
+    system : System
+    record : ndarray, shape (n, RECORD)
+        Where they stand, and what their last run has seen; see `models.mole.lanes.rows`.
+    """
+
+    system: System
+    record: Array
+
+    @staticmethod
+    def started(p: Rows, settings: Settings, periods: int = 0) -> "Machines":
+        """Return moles just switched on, with a budget for so many control periods and more."""
+        ((_, system),) = groups(p, settings)
+        system = system._replace(budget=system.budget * max(1, -(-periods // APERIODIC)))
+        return Machines(system, start(system, p.initial_displacement, p.initial_velocity))
+
+    def run(
+        self, rows: Counts, limit: Counts, tangents: Array | None = None, repeat: bool = False
+    ) -> Counts:
+        """Propagate some of them; return which of them got where they should.
+
+        Parameters
+        ----------
+        rows : ndarray of int, shape (k,)
+        limit, tangents, repeat
+            Of these rows; see `models.mole.lanes.propagator.advance`.
+
+        Returns
+        -------
+        ndarray of int
+            Places in `rows`.
+        """
+        record = self.record[rows]
+        reached = advance(self.system.take(rows), record, limit, tangents, repeat)
+        self.record[rows] = record
+        return reached
+
+    def periods(self, rows: Counts) -> Counts:
+        """Return how many control periods have passed."""
+        return (self.record[rows, HALF] / 2).astype(np.int64)

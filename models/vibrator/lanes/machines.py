@@ -1,0 +1,63 @@
+"""n rigid machines, prepared for the lanes, and where they start."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.vibrator.equations.rigid import Rigid
+from models.vibrator.equations.rigid_motion import initial_state
+from models.vibrator.equations.system import rigid_machines
+from models.vibrator.equations.time_scales import fastest_rates
+from models.vibrator.lanes.packed import Array, pack
+from models.vibrator.parameters import Params, Rows, Settings
+
+
+class Machines(NamedTuple):
+    """n rigid machines, prepared.
+
+    Attributes
+    ----------
+    p : Params
+    rigid : Rigid
+    constants : ndarray, shape (n, CONSTANTS)
+        Of `models.vibrator.lanes.packed.pack`.
+    fastest : ndarray, shape (n,)
+        See `models.vibrator.equations.time_scales.fastest_rates`.
+    synchronous_speed : ndarray, shape (n, 2)
+        [rad s-1]
+    """
+
+    p: Rows
+    rigid: Rigid
+    constants: Array
+    fastest: Array
+    synchronous_speed: Array
+
+    def take(self, rows: Any) -> "Machines":
+        """Return some of the machines."""
+        return Machines(
+            Params._make(field[rows] for field in self.p),
+            Rigid._make(field[rows] for field in self.rigid),
+            self.constants[rows],
+            self.fastest[rows],
+            self.synchronous_speed[rows],
+        )
+
+
+def prepared(p: Rows) -> Machines:
+    """Prepare n machines, each field of p of shape (n,): mounts rigid, no feed."""
+    m = rigid_machines(p)
+    speeds = np.stack([p.synchronous_speed_1, p.synchronous_speed_2], axis=1)
+    return Machines(p, m, pack(m), fastest_rates(m), speeds)
+
+
+def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], Machines]]:
+    """Prepare n machines: all in one group, since lanes need nothing in common."""
+    yield np.arange(len(p.body_mass)), prepared(p)
+
+
+def start(machines: Machines) -> Array:
+    """Return n machines at rest, shape (n, 10), at their initial phases."""
+    return initial_state(machines.p)

@@ -1,0 +1,85 @@
+"""What ``uq check`` shows."""
+
+from itertools import combinations
+
+from uq.cli.printing import grid, heading, number
+from uq.designs.registry import DESIGNS
+from uq.methods.registry import fed_by
+from uq.rows.sampling import group_size, rows
+from uq.running.existing import output_path
+from uq.study.definition import Study, load_study
+from uq.wording import law
+
+
+def check(path: str, model: str | None) -> None:
+    """Print what a study would run, if it is in order."""
+    study = load_study(path, model)
+    design = study.design
+    heading(f"{path}: in order", study.description)
+    factors = {"replicates": design.replicates, "rows each": group_size(study)}
+    parts = [f"{design.samples} samples"]
+    parts += [f"{number} {name}" for name, number in factors.items() if number > 1]
+    stated = ", stated to be independent" * design.independent
+    unsaid = DESIGNS[design.method].imported and not design.independent
+    dependent = study.dependence is not None or unsaid
+    feeds = ", ".join(fed_by(DESIGNS[design.method], dependent))
+    grid(
+        [
+            ("model", f"{study.model.name}, version {study.model.version}"),
+            ("design", f"{design.method}: {DESIGNS[design.method].meaning}{stated}"),
+            ("rows", f"{rows(study)} = {' x '.join(parts)}" if parts[1:] else str(rows(study))),
+            *_of_random(study),
+            ("outputs", ", ".join(study.analysis.outputs)),
+            ("sensitivity", f"{feeds} can be had from this design"),
+            ("result", str(output_path(study))),
+        ]
+    )
+    heading("\nUncertain inputs")
+    laws = [(name, law(stated), _unit(study, name)) for name, stated in study.uncertain.items()]
+    ties = [(name, f"equals {tied.equals}", "") for name, tied in study.tied.items()]
+    grid(laws + ties, header=("parameter", "distribution", "unit"))
+    _show_realised(study)
+
+
+def _of_random(study: Study) -> list[tuple[str, str]]:
+    design = DESIGNS[study.design.method]
+    if not study.random or not design.shares_seeds:
+        return []
+    more = "; one more row of each tells the share of noise" if design.crossed else ""
+    return [("seeds", f"the model is random: rows that are compared share a seed{more}")]
+
+
+def _unit(study: Study, name: str) -> str:
+    times = study.uncertain[name].times
+    return study.model.parameter(name).unit if times is None else f"x {times}"
+
+
+def _show_realised(study: Study) -> None:
+    """Print each input as stated and as the rows have it."""
+    from uq.analysis.sampled_inputs import MAX_ROWS, realised_inputs, realised_ranks
+
+    count = min(rows(study), MAX_ROWS)
+    found = realised_inputs(study)
+    if not found:
+        print(f"\nThe rows of a '{study.design.method}' design do not follow these laws.")
+        return
+    heading(
+        f"\nAs {count} rows have them",
+        f"(independent rows would be less than {1.36 / count**0.5:.2g} off in 19 of 20 cases)",
+    )
+    lines = []
+    for name, one in found.items():
+        lines.append((name, "stated", *map(number, one.stated), ""))
+        lines.append(("", "rows", *map(number, one.realised), f"{one.distance:.2g}"))
+    grid(lines, header=("parameter", "", "5 %", "50 %", "95 %", "largest distance"))
+    if study.dependence is not None:
+        heading("\nRank correlations")
+        ranks, names = realised_ranks(study), study.dependence.parameters
+        stated = study.dependence.rank_correlation
+        grid(
+            [
+                (f"{names[i]}, {names[j]}", number(stated[i][j]), f"{ranks[i, j]:.3f}")
+                for i, j in combinations(range(len(names)), 2)
+            ],
+            header=("", "stated", "rows"),
+        )

@@ -1,0 +1,50 @@
+"""What several verbs of ``uq`` are given: arguments and options, each with its help."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def complete_model(incomplete: str) -> list[str]:
+    """Return the names that a shell may complete to."""
+    from uq.study.registry import model_names
+
+    return [name for name in model_names() if name.startswith(incomplete)]
+
+
+ModelName = Annotated[
+    str,
+    typer.Argument(
+        metavar="MODEL", help="As 'uq models' lists them.", autocompletion=complete_model
+    ),
+]
+StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
+ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.")]
+Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
+ModelReference = Annotated[
+    str | None,
+    typer.Option("--model", metavar="PKG.MOD:ATTR", help="Use a model that is not installed."),
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(min=0, metavar="N", help="Worker processes; 0: compute in this process."),
+]
+Samples = Annotated[
+    int | None, typer.Option(min=1, metavar="N", help="Instead of the study's own.")
+]
+Scheduler = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Use a running dask cluster.")
+]
+RowLimit = Annotated[
+    float | None, typer.Option(metavar="S", help="Stop a row after so many seconds.")
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
+]
+Mixed = Annotated[
+    bool, typer.Option("--mixed", help="Keep rows that other code of the model computed.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
+Regime = Annotated[str | None, typer.Option(metavar="NAME", help="Only the rows in this regime.")]

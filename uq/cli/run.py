@@ -1,0 +1,113 @@
+"""What ``uq run`` does, and how any verb that computes rows shows it."""
+
+import shlex
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.cli import progress, say_when_interrupted, tables
+from uq.cli.printing import console
+from uq.contract import Status
+from uq.literals import plain_line
+from uq.rows import results
+from uq.running import runner
+from uq.running.existing import finished, made_elsewhere, output_path
+from uq.running.options import RunOptions
+from uq.running.progress import Progress
+from uq.store import folder_of
+from uq.study.definition import Study, load_study
+
+
+def run(
+    path: str,
+    output: Path | None,
+    model: str | None,
+    samples: int | None,
+    quiet: bool,
+    options: RunOptions,
+) -> int:
+    """Run a study and show its result; return the exit code."""
+    study = load_study(path, model)
+    if samples is not None:
+        study = study.with_samples(samples)
+    target = output_path(study, output)
+    if not options.fresh and (ds := finished(study, target)) is not None:
+        note = f"{target} is complete already; nothing was computed (--fresh computes it again)"
+    else:
+        ds, note = carried_out(target, quiet, options, partial(runner.run_study, study, target))
+    return end(study, ds, target, quiet, note, options.mixed)
+
+
+def carried_out(
+    target: Path, quiet: bool, options: RunOptions, action: Callable[[RunOptions], xr.Dataset]
+) -> tuple[xr.Dataset, str]:
+    """Show how a run goes on; return its result and a line on what was done."""
+    began = time.monotonic()
+    computed = found = 0
+    with progress.shown(quiet) as show:
+
+        def report(so_far: Progress) -> None:
+            nonlocal computed, found
+            computed, found = so_far.done - so_far.found, so_far.found
+            if so_far.done:
+                say_when_interrupted(
+                    f"interrupted after {so_far.done} of {so_far.total} rows, kept in "
+                    f"{folder_of(target)}; the same command goes on from there"
+                )
+            show(so_far)
+
+        def say(line: str) -> None:
+            if not quiet:
+                print(plain_line(line), file=sys.stderr)
+
+        say_when_interrupted("interrupted; nothing was written")
+        ds = action(replace(options, progress=report, say=say))
+    before = f"; {found} were there already" if found else ""
+    seconds = time.monotonic() - began
+    return ds, f"{target}: {computed} rows computed in {seconds:.1f} s{before}"
+
+
+def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixed: bool) -> int:
+    """Show the summary of a result; return the exit code.
+
+    Rows that other code computed are named, also where all else is to be quiet, unless they are
+    wanted.
+    """
+    say_when_interrupted(f"interrupted; the result is complete in {target}")
+    if not mixed and (line := made_elsewhere(study, target, ds)):
+        print(plain_line(line), file=sys.stderr)
+    if not quiet:
+        from uq.analysis.summary import summarise
+
+        tables.show_summary(ds, summarise(ds))
+        console.print()
+        console.print(note)
+        name = shlex.quote(str(target))
+        console.print(f"Next: uq report {name} --open", soft_wrap=True)
+        console.print(f"      uq sensitivity {name}", soft_wrap=True)
+    return _verdict(study, ds)
+
+
+def _verdict(study: Study, ds: Any) -> int:
+    failed = int(np.count_nonzero(results.failed(ds)))
+    share = failed / ds.sizes["sample"]
+    if share <= study.analysis.max_failed:
+        return 0
+    examples = [
+        f"{status.label}: {text}"
+        for status in Status
+        if (text := ds["status"].attrs.get(f"example_{status.name.lower()}"))
+    ]
+    print(
+        f"{failed} of {ds.sizes['sample']} rows failed, more than max_failed = "
+        f"{study.analysis.max_failed:g} allows ({plain_line('; '.join(examples))})",
+        file=sys.stderr,
+    )
+    return 1

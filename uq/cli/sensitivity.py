@@ -1,0 +1,67 @@
+"""What ``uq sensitivity`` shows: tables of 80 columns, or JSON."""
+
+from collections.abc import Iterator, Mapping
+from math import isfinite
+from typing import Any
+
+from uq.cli.printing import grid, heading, paragraph
+from uq.indices.ranked import Values, lines
+from uq.indices.sensitivities import Sensitivities, TargetIndices
+from uq.json_form import numbers
+from uq.methods.indices import S1, Kind, Null
+
+
+def plain(found: Sensitivities) -> dict[str, Any]:
+    """Return indices as plain data, ready for JSON."""
+    return {
+        "method": found.method,
+        "rows_used": found.rows_used,
+        "groups_dropped": found.groups_dropped,
+        "outputs": {name: _plain_target(one) for name, one in found.targets.items()},
+    }
+
+
+def _plain_target(one: TargetIndices) -> dict[str, Any]:
+    entry: dict[str, Any] = {"rows_used": one.rows_used, "groups_dropped": one.groups_dropped}
+    if one.refused:
+        return entry | {"refused": one.refused}
+    for kind, values in one.indices.values.items():
+        entry[kind.key] = {label: numbers(index) for label, index in values.items()}
+    if one.indices.noise is not None:
+        entry["noise"] = numbers(one.indices.noise)
+    if one.indices.nulls:
+        entry["dummy"] = {
+            key: number
+            for kind, null in one.indices.nulls.items()
+            for key, number in ((kind.key, null.one), (f"{kind.key}_any", null.largest))
+            if isfinite(number)
+        }
+    return entry | {"notes": list(one.indices.notes)}
+
+
+def show(found: Sensitivities) -> None:
+    """Print the indices of each target, or why it has none."""
+    dropped = found.groups_dropped
+    more = f"of {found.rows_used} rows" + (f", {dropped} groups dropped" if dropped else "")
+    heading(f"Sensitivity by {found.method}", more)
+    for name, one in found.targets.items():
+        heading(f"\n{name}")
+        if one.refused:
+            paragraph(one.refused, indent=2)
+            continue
+        for table in (one.kinds(), one.kinds(of_pairs=True)):
+            if table:
+                header = (text for kind in table for text in (kind.key, "95 % interval"))
+                grid(_lines(table, one.indices.nulls), header=("", *header))
+        if noise := one.indices.noise:
+            share = (S1.text(noise.value), S1.interval(noise))
+            grid([("noise", *share)], header=("", "share of variance", "95 % interval"))
+        for note in one.indices.notes:
+            paragraph(note, indent=2)
+
+
+def _lines(table: Values, nulls: Mapping[Kind, Null]) -> Iterator[list[str]]:
+    for label, estimates in lines(table, nulls):
+        pairs = zip(table, estimates, strict=True)
+        cells = ((kind.text(one.value), kind.interval(one)) for kind, one in pairs)
+        yield [label, *(text for pair in cells for text in pair)]

@@ -1,0 +1,113 @@
+"""The verbs that read a result."""
+
+import sys
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from uq.cli.options import Json, ModelReference, Regime, ResultFile
+from uq.literals import plain_line
+
+
+def summary(
+    result: ResultFile,
+    regime: Regime = None,
+    fits: Annotated[
+        bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Show how rows ended, and the statistics of each output."""
+    from uq.analysis.as_json import summary_json
+    from uq.analysis.summary import summarise
+    from uq.cli import tables
+    from uq.cli.printing import print_json
+    from uq.rows.results import open_result
+
+    ds = open_result(result)
+    found = summarise(ds, regime=regime, fits=fits)
+    print_json(summary_json(found)) if json else tables.show_summary(ds, found)
+
+
+def sensitivity(
+    result: ResultFile,
+    output: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Only this output, or of it log(NAME), rank(NAME), ..."),
+    ] = None,
+    method: Annotated[str | None, typer.Option(metavar="M", help="Default: the study's.")] = None,
+    regime: Regime = None,
+    json: Json = False,
+) -> None:
+    """Show which inputs the scatter comes from."""
+    from uq.cli.printing import print_json
+    from uq.cli.sensitivity import plain, show
+    from uq.indices.sensitivities import sensitivities
+    from uq.rows.results import open_result
+
+    found = sensitivities(open_result(result), method, output, regime)
+    print_json(plain(found)) if json else show(found)
+
+
+def convergence(
+    result: ResultFile,
+    output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    json: Json = False,
+) -> None:
+    """Show whether it is enough: running estimates."""
+    from uq.cli import estimates
+
+    estimates.convergence(result, output, json)
+
+
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A.nc", help="A result of 'uq run'.")],
+    second: Annotated[Path, typer.Argument(metavar="B.nc", help="Another, of the same model.")],
+    json: Json = False,
+) -> None:
+    """Show what two studies of one model have different."""
+    from uq.cli import comparing
+
+    comparing.compare(first, second, json)
+
+
+def twin(result: ResultFile, model: ModelReference = None, json: Json = False) -> None:
+    """Sharpen estimates by many rows of a cheap output."""
+    from uq.cli import estimates
+
+    estimates.twin(result, model, json)
+
+
+def plot(
+    result: ResultFile,
+    folder: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Default: OUT.nc without its ending."),
+    ] = None,
+) -> None:
+    """Draw the figures of a result into a folder."""
+    from uq.plots import save_all
+    from uq.rows.results import open_result
+
+    for path in save_all(open_result(result), folder or result.with_suffix("")):
+        print(path)
+
+
+def report(
+    result: ResultFile,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="Default: OUT.html beside OUT.nc."),
+    ] = None,
+    show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
+) -> None:
+    """Write all that a result says into one page for a browser."""
+    from uq.report import write_report
+
+    path = output or result.with_suffix(".html")
+    write_report(result, path)
+    print(plain_line(str(path)))
+    if show and not webbrowser.open(path.resolve().as_uri()):
+        print("no browser was found; open this file yourself", file=sys.stderr)

@@ -1,0 +1,136 @@
+"""A design: which points of the unit cube a study visits."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from uq.designs import seeds
+from uq.designs.layouts import CROSSED, PLAIN, Layout
+from uq.designs.streams import Points
+
+MAX_SAMPLES = 2**30
+"""Points of one replicate: what the 30 bits of a Sobol' sequence can tell apart."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """One way of choosing rows.
+
+    Attributes
+    ----------
+    meaning : str
+        One line for a reader of the study file.
+    draw : callable or None
+        ``draw(seed, replicates, d, samples, start, stop)`` -> points start..stop of each replicate,
+        shape (stop - start, replicates, [blocks,] d), the same bits for any start and stop.
+        Replicates are independent. A crossed design draws 2 d columns. None: the rows are
+        imported.
+    layout : Layout
+        How its rows belong together, which decides what sensitivity methods it feeds.
+    append_only : bool
+        Whether the first points stay as they are when more are asked for.
+    power_of_two : bool
+        Whether `samples` must be a power of two.
+    independent : bool
+        Whether rows are independent, which formulas for confidence and tolerance bounds need.
+    follows_laws : bool
+        Whether the rows of a replicate, A and B of a crossed design, are spread as the laws say.
+    least : int
+        The smallest number of samples.
+    caution : str
+        A sentence that stands beside every index from its rows, or "".
+    """
+
+    meaning: str
+    draw: Callable[[int, int, int, int, int, int], Points] | None
+    layout: Layout = PLAIN
+    append_only: bool = True
+    power_of_two: bool = False
+    independent: bool = False
+    follows_laws: bool = True
+    least: int = 1
+    caution: str = ""
+
+    @property
+    def imported(self) -> bool:
+        """Whether its rows come from a file."""
+        return self.draw is None
+
+    @property
+    def crossed(self) -> bool:
+        """Whether each point becomes a group of rows A, AB_1 .. AB_d, (BA_1 .. BA_d,) B."""
+        return self.layout is CROSSED
+
+    @property
+    def shares_seeds(self) -> bool:
+        """Whether rows of a random model share seeds."""
+        return self.layout.shared_seeds is not seeds.own
+
+    def blocks(self, d: int, second_order: bool, random: bool = False) -> int:
+        """Return the number of rows in a group."""
+        return len(self.layout.labels(("",) * d, second_order, random))
+
+    def unit_rows(
+        self,
+        *,
+        seed: int,
+        replicates: int,
+        d: int,
+        samples: int,
+        second_order: bool,
+        start: int,
+        stop: int,
+        random: bool = False,
+    ) -> Points:
+        """Draw the groups start..stop of every replicate.
+
+        Returns
+        -------
+        ndarray, shape (stop - start, replicates, blocks, d)
+            Inside the open unit cube.
+        """
+        assert self.draw is not None, "imported rows are not drawn"
+        if not self.crossed:
+            points = self.draw(seed, replicates, d, samples, start, stop)
+            return points.reshape(stop - start, replicates, self.blocks(d, False), d)
+        points = self.draw(seed, replicates, 2 * d, samples, start, stop)
+        return cross(points[..., :d], points[..., d:], second_order, random)
+
+    def size_problem(self, samples: int) -> str | None:
+        """Say why `samples` is not a legal size, or return None."""
+        if not self.least <= samples <= MAX_SAMPLES:
+            return f"must be between {self.least} and {MAX_SAMPLES}"
+        legal = 1 << (samples - 1).bit_length()
+        if self.power_of_two and samples != legal:
+            return f"must be a power of two; the next is {legal}"
+        return None
+
+
+def cross(a: Points, b: Points, second_order: bool, random: bool = False) -> Points:
+    """Exchange the columns of two samples one at a time (Saltelli 2002), in SALib's order.
+
+    Parameters
+    ----------
+    a, b : ndarray, shape (..., d)
+    second_order : bool
+        Whether to add the blocks BA_i.
+    random : bool
+        Whether to add A once more, for the noise of a random model.
+
+    Returns
+    -------
+    ndarray, shape (..., blocks, d)
+        A; AB_i, which is A with column i of B; BA_i, the converse; B; A.
+
+    References
+    ----------
+    A. Saltelli, "Making best use of model evaluations to compute sensitivity indices",
+    Comput. Phys. Commun. 145, 280-297 (2002).
+    """
+    one_column = np.eye(a.shape[-1], dtype=bool)
+    a, b = a[..., None, :], b[..., None, :]
+    blocks = [a, np.where(one_column, b, a)]
+    if second_order:
+        blocks.append(np.where(one_column, a, b))
+    return np.concatenate([*blocks, b, *([a] * random)], axis=-2)

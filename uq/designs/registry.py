@@ -1,0 +1,72 @@
+"""The designs by name.
+
+To add one: a function that draws its points, and an entry here that says what it may be asked for
+and how its rows belong together; what sensitivity methods it feeds follows from that.
+"""
+
+from uq.designs.curves import LEAST_POINTS, fast_curves, random_balance
+from uq.designs.design import Design
+from uq.designs.layouts import CROSSED, CURVES, PATHS, TRAJECTORIES
+from uq.designs.sequences import halton, latin_hypercube, monte_carlo, paths, sobol
+from uq.designs.trajectories import morris_trajectories, optimised_trajectories
+
+DESIGNS = {
+    "monte-carlo": Design("independent rows", monte_carlo, independent=True),
+    "latin-hypercube": Design(
+        "each input stratified into as many slices as samples",
+        latin_hypercube,
+        append_only=False,
+    ),
+    "sobol": Design("scrambled Sobol' sequence, samples a power of two", sobol, power_of_two=True),
+    "halton": Design("scrambled Halton sequence", halton),
+    "saltelli": Design(
+        "scrambled Sobol' sequence crossed for Sobol' indices, samples a power of two",
+        sobol,
+        CROSSED,
+        power_of_two=True,
+    ),
+    "morris": Design(
+        "trajectories that change one input at a time, for screening with few rows",
+        morris_trajectories,
+        TRAJECTORIES,
+        append_only=False,
+        follows_laws=False,
+        least=2,
+    ),
+    "morris-optimised": Design(
+        "trajectories chosen far apart, which favours the corners of the inputs",
+        optimised_trajectories,
+        TRAJECTORIES,
+        append_only=False,
+        follows_laws=False,
+        least=2,
+        caution="trajectories chosen far apart favour the corners of the inputs: the effects are"
+        " theirs, tens of per cent off those of all trajectories, which the design 'morris'"
+        " estimates",
+    ),
+    "shapley": Design(
+        "paths from one independent row to another, for Shapley effects",
+        paths,
+        PATHS,
+    ),
+    "fast": Design(
+        "a curve through the inputs for each of them, for extended FAST",
+        fast_curves,
+        CURVES,
+        append_only=False,
+        least=LEAST_POINTS,
+    ),
+    "rbd-fast": Design(
+        "one curve shuffled for each input, for RBD-FAST",
+        random_balance,
+        append_only=False,
+    ),
+    "imported": Design(
+        "the rows of a CSV or netCDF file, in the parameters' units",
+        None,
+        append_only=False,
+    ),
+}
+
+IMPORTED = tuple(name for name, design in DESIGNS.items() if design.imported)
+"""Designs whose rows come from a file."""

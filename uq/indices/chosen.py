@@ -1,0 +1,91 @@
+"""Which targets a user means: those that suit a method, or those of some names."""
+
+from collections.abc import Sequence
+
+import xarray as xr
+
+from uq.errors import InputError, nearest
+from uq.indices.targets import (
+    Target,
+    all_targets,
+    category_targets,
+    lightened,
+    split_name,
+    targets,
+    with_tail_note,
+)
+from uq.methods.registry import METHODS
+from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
+from uq.rows.variables import is_category
+
+
+def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> list[Target]:
+    """Return the targets that a user means.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    method : str
+    output : str or sequence of str, optional
+        Names; by default all that suit the method, of the outputs that the study wants to see.
+
+    Returns
+    -------
+    list of Target
+        Of several names those are left out that mean nothing here.
+
+    Raises
+    ------
+    InputError
+        When there is none.
+    """
+    asked = METHODS[method]
+    if output is None:
+        found = [
+            target if asked.scale_free else lightened(target)
+            for name in shown_outputs(ds, analysis_of(ds))
+            for target in _targets(ds, name)
+            if (asked.takes_events if target.event else asked.takes_numbers)
+        ]
+        if not found and not asked.takes_numbers:
+            raise InputError(
+                f"'{method}' needs an event: a category, or a time of a lifetime in"
+                " [analysis] thresholds"
+            )
+        if not found:
+            raise InputError("none of the outputs is a number: there is nothing to apportion")
+        return found
+    names = [output] if isinstance(output, str) else output
+    found = [target for name in names for target in _named(ds, name)]
+    if not found and isinstance(output, str):
+        _, inside, _ = split_name(output)
+        if output == inside:
+            raise InputError(f"no row has a {output}: there is nothing to apportion")
+        names = [target.name for target in _targets(ds, _output_in(inside), every=True)]
+        raise InputError(f"no such output '{output}'{nearest(output, names)}")
+    return found if asked.scale_free else [with_tail_note(target) for target in found]
+
+
+def _named(ds: xr.Dataset, name: str) -> list[Target]:
+    """Return the targets that a user means by a name; none where it means nothing."""
+    form, inside, _ = split_name(name)
+    found = _targets(ds, _output_in(inside), every=True)
+    if form:
+        return [target for target in found if target.name == name]
+    own = [target for target in found if split_name(target.name)[0] == ""]
+    return own or _targets(ds, name)
+
+
+def _output_in(inside: str) -> str:
+    """Return the output or element that the name of a target is about."""
+    return inside if "[" in inside else inside.partition("=")[0]
+
+
+def _targets(ds: xr.Dataset, name: str, every: bool = False) -> list[Target]:
+    """Return the targets of an output or of one element of it."""
+    if is_category(ds, name) and ds[name].ndim == 1:
+        return list(category_targets(ds, name))
+    known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
+    make = all_targets if every else targets
+    return list(make(known, analysis_of(ds).thresholds))

@@ -1,0 +1,73 @@
+"""Sensitivity indices as arrays."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.estimate import NOTHING, Estimate
+from uq.indices.sensitivities import TargetIndices, sensitivities
+from uq.methods.indices import Kind, Null
+
+
+def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
+    """Estimate sensitivity indices as arrays.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    method : str, optional
+        By default the first of `methods`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Each index over ``output`` and ``parameter`` (``S2`` over ``pair``), with ``_low`` and
+        ``_high``; NaN where there is none. ``dummy_<index>``, ``groups_dropped`` and ``refused``
+        (why there are no indices, or "") over ``output``; so is ``noise``, with ``_low`` and
+        ``_high``, where a model is random.
+
+    Raises
+    ------
+    InputError
+        When the design cannot feed the method.
+
+    Examples
+    --------
+    >>> found = uq.sensitivity(uq.run("studies/ishigami.toml"))
+    >>> found["ST"].sel(output="y").to_series().round(2).to_dict()  # 0.558, 0.442, 0.244
+    {'x1': 0.56, 'x2': 0.45, 'x3': 0.25}
+    """
+    found = sensitivities(ds, method)
+    targets = list(found.targets.values())
+    data: dict[str, Any] = {
+        "groups_dropped": ("output", [one.groups_dropped for one in targets]),
+        "refused": ("output", [one.refused for one in targets]),
+    }
+    coords: dict[str, Any] = {"output": list(found.targets)}
+    # Those of a quantile have other names for a lifetime.
+    kinds = {kind: list(own) for one in targets for kind, own in one.indices.values.items()}
+    for kind, labels in kinds.items():
+        dim = "pair" if kind.of_pairs else "parameter"
+        coords[dim] = labels
+        table = [[_index(one, kind, label).numbers for label in labels] for one in targets]
+        for end, numbers in zip(_ENDS, np.moveaxis(np.array(table), -1, 0), strict=True):
+            data[f"{kind.key}{end}"] = (("output", dim), numbers)
+    if any(one.indices.noise for one in targets):
+        shares = np.array([(one.indices.noise or NOTHING).numbers for one in targets])
+        for end, numbers in zip(_ENDS, shares.T, strict=True):
+            data[f"noise{end}"] = ("output", numbers)
+    for kind in {kind: None for one in targets for kind in one.indices.nulls}:
+        nulls = [one.indices.nulls.get(kind, Null(np.nan)) for one in targets]
+        data[f"dummy_{kind.key}"] = ("output", [null.one for null in nulls])
+        if np.isfinite([null.largest for null in nulls]).any():
+            data[f"dummy_{kind.key}_any"] = ("output", [null.largest for null in nulls])
+    return xr.Dataset(data, coords, {"method": found.method})
+
+
+_ENDS = ("", "_low", "_high")
+
+
+def _index(one: TargetIndices, kind: Kind, label: str) -> Estimate:
+    return one.indices.values.get(kind, {}).get(label, NOTHING)

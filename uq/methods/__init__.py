@@ -1,0 +1,1 @@
+"""Sensitivity methods: what each needs, what it gives, and its arithmetic."""

@@ -1,0 +1,96 @@
+"""What comes out of a sensitivity method: kinds of indices, each an estimate for every input."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isfinite, nan
+from typing import Literal
+
+from uq.estimate import Estimate
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind of index.
+
+    Attributes
+    ----------
+    key : str
+        Its name in tables and JSON.
+    words : str
+        What the legend of a figure calls it.
+    unit : {"variance", "1", "output"}
+        A share of the variance, another number without a unit, or a number in the output's unit.
+    of_pairs : bool
+        Whether it belongs to pairs of inputs, named ``"first,second"``.
+    """
+
+    key: str
+    words: str
+    unit: Literal["variance", "1", "output"] = "1"
+    of_pairs: bool = False
+
+    def text(self, value: float) -> str:
+        """Return a value for a table: to three decimals, or digits in the unit of the output."""
+        if not isfinite(value):
+            return "-"
+        if self.unit == "output":
+            return f"{value:.3g}"
+        return f"{round(value, 3) + 0.0:.3f}"  # no minus sign before what is zero
+
+    def interval(self, estimate: Estimate) -> str:
+        """Return the ends of an interval for a table; nothing where there is none."""
+        ends = [self.text(end) for end in (estimate.low, estimate.high)]
+        return "" if ends == ["-", "-"] else " to ".join(ends)
+
+
+S1 = Kind("S1", "alone (S1)", "variance")
+ST = Kind("ST", "with all interactions (ST)", "variance")
+S2 = Kind("S2", "in pairs (S2)", "variance", of_pairs=True)
+SHAPLEY = Kind("shapley", "Shapley effect", "variance")
+
+
+@dataclass(frozen=True)
+class Null:
+    """What an estimate makes of inputs that play no part.
+
+    Attributes
+    ----------
+    one : float
+        What one input in twenty without effect passes.
+    largest : float
+        What the largest of as many inputs as there are passes once in twenty; NaN if not known.
+    """
+
+    one: float
+    largest: float = nan
+
+
+@dataclass(frozen=True)
+class Indices:
+    """All indices of one output.
+
+    Attributes
+    ----------
+    values : dict of Kind to dict
+        Input (``"first,second"`` for a pair) -> Estimate; the kind that inputs are ranked by last
+        of those that are not of pairs.
+    notes : tuple of str
+        Sentences on what could not be given.
+    nulls : dict of Kind to Null
+        Where the method has no intervals.
+    noise : Estimate or None
+        Share of the variance that remains once all inputs are known, where rows tell it.
+    """
+
+    values: Mapping[Kind, Mapping[str, Estimate]]
+    notes: tuple[str, ...] = ()
+    nulls: Mapping[Kind, Null] = field(default_factory=dict)
+    noise: Estimate | None = None
+
+
+class RefusedError(Exception):
+    """An output has no indices; the message is the sentence that says why."""
+
+
+ALL_NOISE = "no input changes it at one seed: all of its variance is noise"
+"""Why an output of a random model has no shares where rows that are compared share a seed."""

@@ -1,0 +1,111 @@
+"""A sensitivity method: what rows it needs, what it makes of them, and what that means."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from uq.designs.layouts import PLAIN, Layout
+from uq.intervals import is_constant
+from uq.methods.indices import Indices, Kind, RefusedError
+from uq.methods.sample import Sample
+
+NO_EFFECT = "the same value in all rows: nothing depends on the inputs"
+NO_VARIANCE = "the same value in all rows: there is no variance to apportion"
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way of telling which inputs matter.
+
+    Attributes
+    ----------
+    question : str
+        What it answers, in one line.
+    layout : Layout
+        How the rows of a design must belong together for it.
+    estimate : callable
+        ``estimate(sample)`` -> `Indices`, or `RefusedError`. Groups with a row without a value are
+        its own to leave out (`Sample.whole`); a plain sample comes with a value in every row.
+    kinds : tuple of Kind
+        What it estimates; none where that depends on the study.
+    gives : str
+        The same in words.
+    source : str
+        Whose estimator it is.
+    intervals : str
+        What its intervals come from; "" where it has none.
+    has_null : bool
+        Whether beside its indices stands what inputs without effect reach.
+    least : int
+        Fewer whole groups give no indices.
+    most_rows : int or None
+        Of more rows of a plain sample, this many are chosen: all would take long.
+    assumes_independence : bool
+        Whether the inputs must be independent of each other.
+    takes_events, takes_numbers : bool
+        Whether it is for outputs that say if something happens, and for others.
+    scale_free : bool
+        Whether it compares distributions: no increasing function of an output changes its indices.
+    noise : str
+        What it makes of the noise of a random model, where rows share seeds.
+    pilot : callable or None
+        ``pilot(sample)`` -> Kind -> the largest standard deviation, over inputs, of what one group
+        adds to the mean that an index is; where ``uq plan`` and ``uq convergence`` show indices.
+    """
+
+    question: str
+    layout: Layout
+    estimate: Callable[[Sample], Indices]
+    kinds: tuple[Kind, ...]
+    gives: str = ""
+    source: str = ""
+    intervals: str = ""
+    has_null: bool = False
+    least: int = 1
+    most_rows: int | None = None
+    assumes_independence: bool = True
+    takes_events: bool = True
+    takes_numbers: bool = True
+    scale_free: bool = False
+    noise: str = ""
+    pilot: Callable[[Sample], dict[Kind, float]] | None = None
+
+    @property
+    def of_variance(self) -> bool:
+        """Whether its indices are shares of the variance."""
+        return any(kind.unit == "variance" for kind in self.kinds)
+
+    def indices(self, sample: Sample) -> Indices:
+        """Estimate the indices of one output.
+
+        Parameters
+        ----------
+        sample : Sample
+            Its rows laid out as the method needs them.
+
+        Returns
+        -------
+        Indices
+
+        Raises
+        ------
+        RefusedError
+            Too few groups have a value in each row, or the method finds no indices in them.
+        """
+        whole = sample.whole
+        kept = int(whole.sum())
+        if kept < self.least:
+            told = f"only {kept} of {whole.size} {self.layout.needs}"
+            raise RefusedError(f"{told}; {self.least} are needed")
+        if self.layout is not PLAIN:
+            return self.estimate(sample)
+        rows, note = np.flatnonzero(whole), ""
+        if is_constant(sample.values[rows]):
+            raise RefusedError(NO_EFFECT)
+        if self.most_rows is not None and kept > self.most_rows:
+            # At random: imported rows may come in an order that means something.
+            rows = np.sort(np.random.default_rng(0).choice(rows, self.most_rows, replace=False))
+            note = f"from {self.most_rows} of {kept} rows, chosen at random: all would take long"
+        found = self.estimate(sample.rows(rows))
+        return replace(found, notes=(note, *found.notes) if note else found.notes)

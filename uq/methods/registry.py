@@ -1,0 +1,180 @@
+"""The sensitivity methods by name, and which of them a design feeds.
+
+To add one: a file with the function that estimates, and an entry here. Study files then accept it
+where a design feeds it; tables, JSON, figures, reports and documentation show what it gives.
+"""
+
+from uq.designs.design import Design
+from uq.designs.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
+from uq.designs.registry import DESIGNS
+from uq.methods.fast import fast_indices
+from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
+from uq.methods.hdmr import hdmr_indices
+from uq.methods.indices import S1, S2, SHAPLEY, ST, Kind
+from uq.methods.method import Method
+from uq.methods.morris import MIN_TRAJECTORIES, MU, MU_STAR, SIGMA, morris_indices
+from uq.methods.quantile_oriented import quantile_indices, without_optimism
+from uq.methods.rbd_fast import rbd_fast
+from uq.methods.regional import ks_distances
+from uq.methods.shapley import MIN_PATHS, shapley_indices
+from uq.methods.slices import delta, pawn
+from uq.methods.sobol import MIN_GROUPS, pilot, sobol_indices
+
+DELTA = Kind("delta", "Borgonovo's delta")
+PAWN = Kind("pawn", "PAWN, median")
+KS = Kind("KS", "Kolmogorov's distance of the rows where it happens")
+
+_AT_ONE_SEED = (
+    "shares of the variance at one seed, to which noise that does not depend on the inputs adds"
+    " nothing"
+)
+
+METHODS = {
+    "rbd-fast": Method(
+        "how much of the variance, alone",
+        PLAIN,
+        beside_nulls(one_kind(S1, rbd_fast), sorts_rows=True),
+        (S1,),
+        source="random balance, bias corrected",
+        has_null=True,
+        least=MIN_ROWS,
+        most_rows=200_000,
+    ),
+    "delta": Method(
+        "how much the whole distribution moves",
+        PLAIN,
+        beside_nulls(one_kind(DELTA, delta)),
+        (DELTA,),
+        source="Plischke et al. (2013), on normal scores of the output",
+        has_null=True,
+        least=MIN_ROWS,
+        most_rows=10_000,
+        assumes_independence=False,
+        scale_free=True,
+    ),
+    "pawn": Method(
+        "how much the whole distribution moves, by its largest shift",
+        PLAIN,
+        beside_nulls(one_kind(PAWN, pawn)),
+        (PAWN,),
+        source="Pianosi & Wagener (2018)",
+        has_null=True,
+        least=MIN_ROWS,
+        most_rows=20_000,
+        assumes_independence=False,
+        scale_free=True,
+    ),
+    "hdmr": Method(
+        "how much of the variance, alone, in pairs and in total",
+        PLAIN,
+        hdmr_indices,
+        (S1, ST, SHAPLEY, S2),
+        source="polynomials in one and in two inputs (Li et al. 2010); refused where they explain"
+        " less than 80 % of rows held out",
+        has_null=True,
+        least=MIN_ROWS,
+    ),
+    "quantile": Method(
+        "which inputs move a quantile, or B10 of a life",
+        PLAIN,
+        beside_nulls(quantile_indices, without_optimism),
+        (),
+        gives="share of a quantile's contrast that an input explains",
+        source="Fort et al. (2016), corrected by inputs without effect",
+        has_null=True,
+        least=MIN_ROWS,
+        most_rows=200_000,
+        assumes_independence=False,
+        takes_events=False,
+    ),
+    "regional": Method(
+        "which inputs decide a regime or an event",
+        PLAIN,
+        beside_nulls(one_kind(KS, ks_distances)),
+        (KS,),
+        source="Spear & Hornberger (1980)",
+        has_null=True,
+        least=MIN_ROWS,
+        assumes_independence=False,
+        takes_numbers=False,
+        scale_free=True,
+    ),
+    "sobol": Method(
+        "how much of the variance, alone and with others",
+        CROSSED,
+        sobol_indices,
+        (S1, ST, S2),
+        source="Saltelli et al. (2010), on standardised outputs",
+        intervals="Student's t from replicates",
+        least=MIN_GROUPS,
+        noise="the model is random, and the rows of a group share a seed: S1 holds no noise, ST"
+        " holds what noise does together with the input, and 'noise' is the share of the variance"
+        " that remains once all inputs are known",
+        pilot=pilot,
+    ),
+    "morris": Method(
+        "which inputs matter at all",
+        TRAJECTORIES,
+        morris_indices,
+        (MU, SIGMA, MU_STAR),
+        source="Campolongo et al. (2007)",
+        intervals="Student's t from replicates",
+        least=MIN_TRAJECTORIES,
+        noise="the model is random, and the rows of a trajectory share a seed: no effect is noise",
+    ),
+    "shapley": Method(
+        "how much of the variance, in shares that sum to one",
+        PATHS,
+        shapley_indices,
+        (SHAPLEY,),
+        source="Goda (2021)",
+        intervals="Student's t of independent paths",
+        least=MIN_PATHS,
+        noise=f"the model is random, and the rows of a path share a seed: {_AT_ONE_SEED}",
+    ),
+    "fast": Method(
+        "how much of the variance, alone and with others, without intervals",
+        CURVES,
+        fast_indices,
+        (S1, ST),
+        source="extended FAST, Saltelli et al. (1999)",
+        least=0,  # it asks for a whole curve of each input
+        noise=f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
+    ),
+}
+"""In the order in which they are named; of those that a design feeds the first is its own."""
+
+
+def fed_by(design: Design, dependent: bool = False) -> tuple[str, ...]:
+    """Return the methods that a design feeds.
+
+    Parameters
+    ----------
+    design : Design
+    dependent : bool, optional
+        Whether the inputs depend on each other.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return tuple(
+        name
+        for name, method in METHODS.items()
+        if method.layout is design.layout and not (dependent and method.assumes_independence)
+    )
+
+
+def piloted_by(design: Design) -> str | None:
+    """Return the method whose indices a few groups of a design forecast, if there is one."""
+    return next((name for name in fed_by(design) if METHODS[name].pilot), None)
+
+
+def designs_for(method: str) -> tuple[str, ...]:
+    """Return the designs that feed a method; none where there is no such method."""
+    return tuple(name for name, design in DESIGNS.items() if method in fed_by(design))
+
+
+def for_dependent_inputs() -> tuple[str, ...]:
+    """Return the methods that do not assume independent inputs."""
+    return tuple(name for name, method in METHODS.items() if not method.assumes_independence)

@@ -1,0 +1,72 @@
+"""What goes into a sensitivity method: one output, and the rows that it is known of."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sample:
+    """The rows of a result and one number for each.
+
+    Attributes
+    ----------
+    values : ndarray, shape (n,)
+        The output, NaN where a row has none.
+    inputs : dict of str to ndarray, shape (n,)
+        The inputs that vary by a law of their own.
+    groups : ndarray of int, shape (R, N, k)
+        The rows of each replicate and group; of a plain sample each row is a group.
+    blocks : tuple of str
+        What the design calls the rows of a group, or, where the rows of a block are a group, the
+        groups.
+    direction : ndarray, shape (R, N, k - 1, d)
+        Where inputs change one at a time: whether a step (third axis) raises an input (last axis),
+        1, lowers it, -1, or neither, 0, in probability. Empty elsewhere.
+    random : bool
+        Whether the model's rows depend on their seeds.
+    quantiles : dict of str to float
+        Name -> probability of each quantile that indices of quantiles are about.
+    """
+
+    values: Floats
+    inputs: Mapping[str, Floats]
+    groups: NDArray[np.intp]
+    blocks: tuple[str, ...] = ("sample",)
+    direction: Floats = field(default_factory=lambda: np.empty(0))
+    random: bool = False
+    quantiles: Mapping[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def plain(
+        cls,
+        values: Floats,
+        inputs: Mapping[str, Floats],
+        quantiles: Mapping[str, float] | None = None,
+    ) -> Self:
+        """Return a sample without groups."""
+        return cls(values, inputs, alone(len(values)), quantiles=quantiles or {})
+
+    @property
+    def whole(self) -> NDArray[np.bool_]:
+        """Which groups have a value in each of their rows, shape (R, N)."""
+        return np.asarray(np.isfinite(self.values[self.groups]).all(axis=-1))
+
+    def rows(self, kept: NDArray[np.intp]) -> Self:
+        """Return some rows of a plain sample."""
+        return replace(
+            self,
+            values=self.values[kept],
+            inputs={name: column[kept] for name, column in self.inputs.items()},
+            groups=alone(len(kept)),
+        )
+
+
+def alone(rows: int) -> NDArray[np.intp]:
+    """Return the groups of a plain sample, shape (1, n, 1)."""
+    return np.arange(rows)[None, :, None]

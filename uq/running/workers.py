@@ -1,0 +1,79 @@
+"""Dask workers as a run sees them, whoever started them."""
+
+import gc
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+
+from distributed import Client
+from distributed.utils import silence_logging_cmgr
+
+
+class Workers:
+    """Workers that are connected, or about to be.
+
+    Attributes
+    ----------
+    client : distributed.Client
+    own : int
+        Processes that this process started, 0 on somebody's cluster.
+    """
+
+    def __init__(self, client: Client, watch: Callable[[int, bool], None], own: int = 0) -> None:
+        self.client = client
+        self.own = own
+        self._watch = watch
+
+    @property
+    def connected(self) -> bool:
+        """Whether the scheduler can be reached."""
+        return bool(self.client.status == "running")
+
+    @property
+    def dashboard(self) -> str:
+        """Address of the page on which somebody's cluster shows what it does, or ""."""
+        if self.own:  # nothing is behind the address that dask tells
+            return ""
+        try:
+            return str(self.client.dashboard_link or "")
+        except (KeyError, OSError):  # a scheduler without one, or just gone
+            return ""
+
+    @property
+    def threads(self) -> int:
+        """Tasks that can run at the same time, as long as no worker is connected none."""
+        try:
+            return sum(self.client.nthreads().values()) if self.connected else 0
+        except OSError:  # the scheduler went away just now
+            return 0
+
+    def watch(self, progress: bool = False) -> None:
+        """Replace workers that died, if they are ours; to be called now and then.
+
+        Parameters
+        ----------
+        progress : bool
+            Whether a worker has delivered something since the last call.
+
+        Raises
+        ------
+        RunError
+            When there will be no workers: they cannot start, keep dying, or stay away.
+        """
+        self._watch(self.threads, progress)
+
+
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep dask's log off the terminal: workers that come and go are no news to the user."""
+    log = logging.getLogger("asyncio")
+    level = log.level
+    log.setLevel(logging.CRITICAL)
+    try:
+        with ExitStack() as stack:
+            for logger in ("distributed", "distributed.client", "distributed.gc"):
+                stack.enter_context(silence_logging_cmgr(logging.CRITICAL, logger))
+            yield
+    finally:
+        gc.collect()  # what nobody waited for, after an interruption, says so when it is collected
+        log.setLevel(level)
