@@ -8,6 +8,7 @@ from scipy import stats
 import uq
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.overview import summary
+from uq.analysis.summary import summarise
 from uq.estimate import Estimate
 from uq.intervals import share_interval
 from uq.wording import failed_interval, percent_with_interval
@@ -79,9 +80,11 @@ def test_values_and_angles_have_bounds_too():
     value = found["y"]["quantiles"]
     assert value["0.05"]["failed_low"] is None and value["0.05"]["failed_high"] > 2.0
     assert value["0.5"]["failed_low"] < 5.0 < value["0.5"]["failed_high"]
-    assert failed_interval(value["0.05"]).startswith("up to")
+    bounds = summarise(ds).outputs["y"].find("quantiles", "0.05").failed
+    assert failed_interval(bounds).startswith("up to")
     highest = summarised(asking(ds, quantiles=[0.95]))["outputs"]["y"]["quantiles"]["0.95"]
     assert highest["failed_high"] is None and "failed_high_never" not in highest
+    highest = summarise(asking(ds, quantiles=[0.95])).outputs["y"].find("quantiles", "0.95").failed
     assert failed_interval(highest).startswith("from")
     truth = (whole := linear(samples=100_000)["y"].values > 7.0).mean()
     assert len(whole) and found["y"]["thresholds"]["7.0"]["above"]["failed_high"] > truth

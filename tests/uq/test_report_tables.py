@@ -63,7 +63,7 @@ def test_statistics_are_in_the_unit_of_their_line():
 
 def test_tolerance_bounds_say_what_is_covered_and_how_surely():
     bounds = {"coverage": 0.8, "confidence": 0.95}
-    _, table = results_of(lives(tolerance=bounds), (0.8, 0.95))
+    _, table = results_of(lives(tolerance=bounds))
     assert table.caption == (
         "Tolerance bounds: with 95 % confidence each, 80 % of all lie above the lower, and 80 %"
         " below the upper"
