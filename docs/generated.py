@@ -16,8 +16,10 @@ from pydantic import BaseModel
 
 from uq.cli.app import app
 from uq.contract import Status
+from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
-from uq.methods.registry import METHODS, fed_by
+from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
+from uq.plots import FIGURES
 from uq.study.file import (
     LAWS,
     AnalysisTable,
@@ -270,6 +272,47 @@ def designs() -> str:
     return table(("`method`", "rows", "extend", "sensitivity methods, the default first"), lines)
 
 
+def methods() -> str:
+    """Tabulate the sensitivity methods: what they give, and how."""
+    lines = []
+    for name, method in METHODS.items():
+        gives = method.gives or ", ".join(kind.words for kind in method.kinds)
+        null = "; a null beside it" if method.has_null else ""
+        most = "" if method.most_rows is None else f"{method.most_rows:,}"
+        how = method.intervals or f"none{null}"
+        lines.append((f"`{name}`", gives.replace("*", "\\*"), method.source, how, most))
+    return table(("method", "index", "estimator", "interval", "rows at most"), lines)
+
+
+def questions() -> str:
+    """Tabulate what each sensitivity method answers, and what it needs."""
+    lines = []
+    for name, method in METHODS.items():
+        able = " or ".join(f"`{design}`" for design in designs_for(name))
+        needs = "a plain sample" if method.layout is PLAIN else f"design {able}"
+        lines.append((method.question, f"`{name}`", needs))
+    plain = [f"`{name}`" for name, one in DESIGNS.items() if one.layout is PLAIN]
+    dependent = [f"`{name}`" for name in for_dependent_inputs()]
+    return table(("question", "method", "needs"), lines) + (
+        f"\n\nA plain sample is of design {', '.join(plain)}. {', '.join(dependent)} also take"
+        " dependent inputs, and imported rows that are not stated to be independent."
+    )
+
+
+def figures() -> str:
+    """Tabulate the figures of a result."""
+    lines = [
+        (f"`{name}`", _first_line(entry.of, "Yield"), _first_line(entry.draw, "Draw"))
+        for name, entry in FIGURES.items()
+    ]
+    return table(("figure", "of", "shows"), lines)
+
+
+def _first_line(function: Any, verb: str) -> str:
+    """Return the first line of a docstring without its verb and full stop."""
+    return (function.__doc__ or "").splitlines()[0].removeprefix(f"{verb} ").removesuffix(".")
+
+
 def verbs() -> str:
     """Describe every verb of the command line."""
     return "\n\n".join(_verb(name, command) for name, command in commands().items())
@@ -316,5 +359,6 @@ def functions(name: str) -> str:
 
 
 def _is_own(found: Any, module: ModuleType) -> bool:
-    own = isfunction(found) and found.__module__ == module.__name__
-    return own and not found.__name__.startswith("_")
+    if not isfunction(found) or found.__name__.startswith("_"):
+        return False
+    return found.__module__ == module.__name__ or found.__module__.endswith("_plot")

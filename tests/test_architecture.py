@@ -12,9 +12,7 @@ import pytest
 HOUSE = Path(__file__).parents[1]
 
 GROUND = {
-    "columns",
     "compilation",
-    "environment",
     "errors",
     "estimate",
     "exact_shares",
@@ -64,6 +62,7 @@ STOREYS = {
         {"start"},
         {"response"},
         {"wear"},
+        {"units"},
         {"batch", "trajectory"},
         {"branches"},
         {"explore"},
@@ -174,6 +173,10 @@ def test_one_machine_does_not_import_another():
             if parts[0] == "models" and len(parts) > 1 and parts[1:2] not in (own, [shared]):
                 guilty.add((name, other))
     assert not guilty
+
+
+def test_every_machine_has_its_storeys_here():
+    assert {path.parent.name for path in HOUSE.glob("models/*/parameters.py")} == set(STOREYS)
 
 
 @pytest.mark.parametrize("machine", STOREYS)

@@ -1,14 +1,162 @@
-"""Additions from outside: one entry in a table, and every reader of the table shows it."""
+"""What is added from outside by one entry of a table appears everywhere it should."""
 
 import json
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-import uq as api
-from uq.analysis.statistics.statistic import Statistic
-from uq.analysis.statistics.table import STATISTICS
-from uq.estimate import Estimate
+HOUSE = Path(__file__).parents[1]
+sys.path[:0] = [str(HOUSE / "docs"), str(HOUSE / "tests" / "uq")]
+
+import generated  # noqa: E402
+from computed import kinds  # noqa: E402
+
+from uq import open_result, plots, sensitivity, summary  # noqa: E402
+from uq.analysis.statistics.statistic import Statistic  # noqa: E402
+from uq.analysis.statistics.table import STATISTICS  # noqa: E402
+from uq.designs.design import Design  # noqa: E402
+from uq.designs.registry import DESIGNS  # noqa: E402
+from uq.designs.sequences import monte_carlo  # noqa: E402
+from uq.drawing import subjects  # noqa: E402
+from uq.drawing.catalogue import Entry  # noqa: E402
+from uq.drawing.panel import column, figure_of  # noqa: E402
+from uq.estimate import Estimate  # noqa: E402
+from uq.methods.indices import Indices, Kind  # noqa: E402
+from uq.methods.method import Method  # noqa: E402
+from uq.methods.registry import METHODS  # noqa: E402
+from uq.report import page  # noqa: E402
+from uq.study.schema import json_schema  # noqa: E402
+
+# A figure
+
+
+def rows_in_order(ds, output, *, axes=None):
+    """Draw the values of an output as the rows came in."""
+    (panel,) = column(axes, 2.0)
+    panel.plot(ds[output].values.reshape(ds.sizes["sample"], -1)[:, 0], ".")
+    panel.set_xlabel("Row")
+    return figure_of(panel)
+
+
+@pytest.fixture
+def toy_figure(monkeypatch):
+    entry = Entry(rows_in_order, subjects.outputs, "{name} row by row: {meaning}")
+    monkeypatch.setitem(plots.FIGURES, "rows-in-order", entry)
+
+
+def test_a_figure_is_drawn_reported_and_documented(toy_figure, tmp_path):
+    ds = kinds(samples=32, analysis={"outputs": ["work", "life"]})
+    stems = {path.stem for path in plots.save_all(ds, tmp_path)}
+    assert {"rows-in-order-work", "rows-in-order-life"} < stems
+    text = page(ds, "toy.nc")
+    for output in ("work", "life"):
+        assert f"<figcaption>{output} row by row: {ds[output].long_name}</figcaption>" in text
+    assert "| `rows-in-order` | each output with numbers |" in generated.figures()
+    assert "the values of an output as the rows came in" in generated.figures()
+
+
+# A design, and a sensitivity method
+
+
+def mirrored(seed, replicates, d, samples, start, stop):
+    """Draw every second point opposite to the one before."""
+    first, last = start - start % 2, stop + stop % 2
+    points = monte_carlo(seed, replicates, d, samples, first, last)
+    points[1::2] = 1 - points[::2]
+    return points[start - first : stop - first]
+
+
+@pytest.fixture
+def toy_design(monkeypatch):
+    monkeypatch.setitem(DESIGNS, "mirrored", Design("pairs of opposite points", mirrored))
+
+
+R2 = Kind("R2", "squared correlation (R2)", "variance")
+
+
+def squared_correlation(sample):
+    r = {name: np.corrcoef(x, sample.values)[0, 1] for name, x in sample.inputs.items()}
+    return Indices({R2: {name: Estimate(one**2, 0.0, 1.0) for name, one in r.items()}})
+
+
+@pytest.fixture
+def toy_method(monkeypatch):
+    method = Method(
+        "how well a straight line fits",
+        DESIGNS["monte-carlo"].layout,
+        squared_correlation,
+        (R2,),
+        source="Pearson (1895)",
+        intervals="from 0 to 1",
+    )
+    monkeypatch.setitem(METHODS, "correlation", method)
+
+
+def asking(write_study, design, method):
+    return write_study(
+        "linear",
+        design,
+        uncertain=("x1", "x2", "x3", "x4"),
+        more=f'[analysis]\nsensitivity = ["{method}"]',
+    )
+
+
+def offered(design):
+    """Return the sensitivity methods that the schema offers an editor for a design."""
+    for rule in json_schema()["allOf"]:
+        named = rule["if"]["properties"].get("design", {}).get("properties")
+        if named == {"method": {"const": design}}:
+            asked = rule["then"]["properties"]["analysis"]["properties"]["sensitivity"]
+    return asked["items"]["enum"]
+
+
+def test_a_design_is_accepted_explained_and_documented(toy_design, uq, write_study):
+    table = json_schema()["definitions"]["DesignTable"]["properties"]
+    assert "mirrored" in table["method"]["enum"]
+    assert offered("mirrored") == offered("monte-carlo")
+    assert "# mirrored: pairs of opposite points\n" in uq("init", "linear").out
+    checked = uq("check", asking(write_study, "mirrored", "rbd-fast")).out
+    assert "mirrored: pairs of opposite points" in " ".join(checked.split())
+    refused = uq("check", asking(write_study, "mirrored", "sobol"))
+    assert "'mirrored' feeds 'rbd-fast' or" in refused.err
+    assert '| `"mirrored"` | pairs of opposite points | yes | rbd-fast' in generated.designs()
+    assert "`mirrored`" in generated.questions()
+
+
+def test_a_sensitivity_method_is_accepted_explained_and_documented(toy_method, uq, write_study):
+    table = json_schema()["definitions"]["AnalysisTable"]["properties"]
+    assert "correlation" in table["sensitivity"]["items"]["enum"]
+    assert "correlation" in offered("halton") and "correlation" not in offered("saltelli")
+    assert "correlation" in uq("check", asking(write_study, "halton", "correlation")).out
+    refused = uq("check", asking(write_study, "saltelli", "correlation"))
+    assert refused.code == 2 and "method = 'monte-carlo' or 'latin-hypercube' or" in refused.err
+    misspelt = uq("check", asking(write_study, "halton", "corelation"))
+    assert "did you mean 'correlation'?" in misspelt.err
+    assert "correlation" in generated.designs()
+    assert "| `correlation` | squared correlation (R2) | Pearson (1895) |" in generated.methods()
+    assert "| how well a straight line fits | `correlation` | a plain" in generated.questions()
+
+
+def test_a_study_of_both_is_run_and_shown(toy_design, toy_method, uq, write_study):
+    path = asking(write_study, "mirrored", "correlation")
+    ended = uq("run", path, "-o", "out.nc", "--workers", "0", "--chunk-rows", "7")
+    assert ended.code == 0 and "mirrored, 64 rows" in ended.out
+    ds = open_result("out.nc")
+    np.testing.assert_allclose(ds["x1"][1::2], 1 - ds["x1"][::2])
+    values = sensitivity(ds)["R2"].sel(output="y").values
+    assert values == pytest.approx(np.arange(1, 5) ** 2 / 30, abs=0.2)
+    found = json.loads(uq("sensitivity", "out.nc", "--json").out)
+    assert found["method"] == "correlation"
+    assert [one["value"] for one in found["outputs"]["y"]["R2"].values()] == list(values)
+    assert f"x4  {values[3]:.3f}  0.000 to 1.000" in uq("sensitivity", "out.nc").out
+    text = page(ds, "out.nc")
+    assert "mirrored: pairs of opposite points" in text
+    assert "squared correlation (R2)" in text and f"{values[3]:.3f}" in text
+
+
+# A statistic
 
 
 def _geometric_mean(element, context):
@@ -30,7 +178,7 @@ def test_a_statistic_is_one_entry_of_a_table(uq, write_study, monkeypatch):
     assert entry["low"] < entry["value"] < entry["high"]
     (line,) = (x for x in uq("summary", "one.nc").out.splitlines() if "geometric mean" in x)
     assert f"{entry['value']:.5g}" in line and f"{entry['low']:.5g}" in line
-    table = api.summary(api.open_result("one.nc"))
+    table = summary(open_result("one.nc"))
     assert table.loc["y", "geometric mean"] == pytest.approx(entry["value"])
     assert table.loc["y", "geometric mean_high"] == pytest.approx(entry["high"])
 
@@ -41,6 +189,4 @@ def test_a_statistic_is_one_entry_of_a_table(uq, write_study, monkeypatch):
     assert apart["low"] < apart["value"] == pytest.approx(pair["b"]["value"] - entry["value"])
     assert "geometric mean" in uq("compare", "one.nc", "other.nc").out
 
-    assert uq("report", "one.nc", "-o", "one.html").code == 0
-    with open("one.html", encoding="utf-8") as page:
-        assert f">{entry['value']:.5g}<" in page.read()
+    assert f">{entry['value']:.5g}<" in page(open_result("one.nc"), "one.nc")

@@ -1,43 +1,90 @@
-"""All the figures that a study asks for, each of which can be had alone for a notebook."""
+"""All figures; those of a result stand in one table, which `uq plot` and the report read.
+
+A figure is a function ``f(ds, output, *, axes=None)`` that returns a matplotlib figure: a new one,
+or that of the axes given. To add one of a result: its file, and an entry of `FIGURES`.
+"""
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
-import pandas as pd
 import xarray as xr
-from matplotlib.figure import Figure
 
-from uq.analysis.convergence import running_estimates
-from uq.analysis.summary import summarise
-from uq.drawing.convergence_plot import convergence, index_convergence
-from uq.drawing.elements_plot import occurring_regimes
-from uq.drawing.figure import file_name, write
-from uq.drawing.histogram_plot import histogram, histogram_by_regime
-from uq.drawing.index_plot import bars, index_bars, subject
-from uq.drawing.input_plot import inputs
-from uq.drawing.lifetime_plot import lifetime
-from uq.drawing.quantile_plot import quantile_table
-from uq.drawing.scatter_plot import pairs, scatter
+from uq.analysis.findings import Findings
+from uq.drawing import subjects as of
+from uq.drawing.catalogue import Entry, drawables
+from uq.drawing.convergence_plot import convergence as convergence
+from uq.drawing.convergence_plot import index_convergence as index_convergence
+from uq.drawing.figure import write
+from uq.drawing.histogram_plot import histogram as histogram
+from uq.drawing.histogram_plot import histogram_by_regime as histogram_by_regime
+from uq.drawing.index_plot import index_bars as index_bars
+from uq.drawing.input_plot import inputs as inputs
+from uq.drawing.lifetime_plot import lifetime as lifetime
+from uq.drawing.motion_plot import history as history
+from uq.drawing.motion_plot import phase_portrait as phase_portrait
+from uq.drawing.motion_plot import section as section
+from uq.drawing.quantile_plot import quantile_table as quantile_table
+from uq.drawing.response_plot import basins as basins
+from uq.drawing.response_plot import bifurcation as bifurcation
+from uq.drawing.response_plot import curve as curve
+from uq.drawing.scatter_plot import pairs as pairs
+from uq.drawing.scatter_plot import scatter as scatter
 from uq.errors import InputError
-from uq.indices.independent_inputs import independent_inputs
-from uq.indices.sensitivities import methods, sensitivities
 from uq.places import refuse_standard_output
-from uq.rows.elements import analysis_of, independent_rows, shown_outputs
-from uq.rows.variables import outputs_of
 
-__all__ = [
-    "convergence",
-    "histogram",
-    "histogram_by_regime",
-    "index_bars",
-    "inputs",
-    "lifetime",
-    "pairs",
-    "quantile_table",
-    "save_all",
-    "scatter",
-]
+FIGURES: dict[str, Entry] = {
+    "lifetime": Entry(lifetime, of.outputs, "{name}: {meaning}", applies=(of.is_lifetime,)),
+    "histogram": Entry(
+        histogram,
+        of.outputs,
+        "{name}: {meaning}",
+        applies=(of.is_no_lifetime,),
+        in_report=(of.is_no_lifetime, of.in_one_regime),
+    ),
+    "regimes": Entry(histogram_by_regime, of.outputs, "{name} by regime", applies=(of.in_regimes,)),
+    "quantiles": Entry(
+        quantile_table, of.outputs, "Quantiles of {name}", section="", needs=("summary",)
+    ),
+    "scatter": Entry(scatter, of.outputs, "{name} against the inputs that move it most"),
+    "convergence": Entry(
+        convergence,
+        of.outputs,
+        "Convergence of {name}: {meaning}",
+        section="convergence",
+        applies=(of.settles,),
+        needs=("running",),
+    ),
+    "pairs": Entry(
+        pairs,
+        of.the_result,
+        "Rows by regime, over the inputs that decide it most",
+        section="rows",
+        applies=(of.in_regimes, of.has_several_inputs),
+    ),
+    "indices": Entry(
+        index_bars,
+        of.targets,
+        "Sensitivity indices of {name} by {method}",
+        section="sensitivities",
+        file=("method", "name"),
+    ),
+    "convergence-indices": Entry(
+        index_convergence,
+        of.crossed_targets,
+        "Convergence of the total indices of {name}",
+        section="convergence",
+        needs=("running",),
+    ),
+    "inputs": Entry(
+        inputs,
+        of.the_result,
+        "Inputs, as stated and as the rows have them",
+        section="inputs",
+        applies=(of.follows_laws, of.has_numbers),
+        in_report=(of.follows_laws,),
+    ),
+}
+"""Figures of a result, in the order of `uq plot`; a key is the first word of a file's name."""
 
 
 def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
@@ -69,51 +116,12 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
             f"{folder}: cannot make this folder: {error.strerror}; choose another with -o"
         ) from None
     try:
-        return [path for name, figure in _figures(ds) for path in write(figure, folder / name)]
+        return [
+            path
+            for one in drawables(FIGURES, Findings(ds))
+            for path in write(one.draw(), folder / one.file)
+        ]
     except OSError as error:
         raise InputError(
             f"{folder}: cannot write a figure: {error.strerror}; choose another folder with -o"
         ) from None
-
-
-def _figures(ds: xr.Dataset) -> Iterator[tuple[str, Figure]]:
-    declared = outputs_of(ds)
-    shown = shown_outputs(ds, analysis_of(ds))
-    numbers = [output for output in shown if not declared[output].is_category]
-    rows = independent_rows(ds)
-    drawn = numbers if rows.sizes["sample"] else []
-    several = len(occurring_regimes(rows)) > 1
-    entries = summarise(ds).outputs if drawn else {}
-    running = running_or_none(ds) if drawn else None
-    for output in drawn:
-        if declared[output].is_lifetime:
-            yield file_name("lifetime", output), lifetime(ds, output)
-        else:
-            yield file_name("histogram", output), histogram(ds, output)
-        if several:
-            yield file_name("regimes", output), histogram_by_regime(ds, output)
-        yield file_name("quantiles", output), quantile_table(ds, output, entries)
-        yield file_name("scatter", output), scatter(ds, output)
-        if running is not None and (figure := convergence(ds, output, running)) is not None:
-            yield file_name("convergence", output), figure
-    if several and len(independent_inputs(rows)) > 1:
-        yield "pairs", pairs(ds)
-    for method in methods(ds):
-        for name, found in sensitivities(ds, method).targets.items():
-            if not found.refused:
-                yield file_name(method, name), bars(ds, found)
-    if running is not None:
-        for name in running["output"].unique():
-            figure = index_convergence(ds, name, running, subject(ds, name))
-            if figure is not None:
-                yield file_name("convergence", "indices", name), figure
-    if numbers and (figure := inputs(ds)) is not None:
-        yield "inputs", figure
-
-
-def running_or_none(ds: xr.Dataset) -> pd.DataFrame | None:
-    """Return estimates as the rows came in; None where the first rows are no design."""
-    try:
-        return running_estimates(ds)
-    except InputError:
-        return None

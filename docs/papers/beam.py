@@ -7,7 +7,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 from shown import Shown, name_panels, sheet
 
-import uq
 from models.beam.explore import (
     bifurcation_diagram,
     continue_orbit,
@@ -16,6 +15,7 @@ from models.beam.explore import (
 )
 from models.beam.paper.facts import HIGH, LOW, lifetime_ratios, nominal
 from models.beam.parameters import Params, Settings
+from uq import plots
 
 X_0 = Params().initial_gap
 REACH = 0.2  # of omega, on either side of where a branch is begun
@@ -83,7 +83,7 @@ def pair(cases: dict[float, xr.Dataset], drawn: str, against: str, name: str = "
     """Draw one curve against another for each omega, side by side."""
     figure, panels = sheet(1, 2, 2.3)
     for axes, ds in zip(panels, cases.values(), strict=True):
-        uq.plot_curve(ds, drawn, against, axes)
+        plots.curve(ds, drawn, against=against, axes=axes)
     name_panels(panels, (f"{name} {omega:g}" for omega in cases))
     return figure
 
@@ -168,7 +168,7 @@ def portraits(low: xr.Dataset) -> Shown:
     figure, panels = sheet(1, 2, 2.6)
     seen = [ds.isel(case=case) for case in (-7, -1)]
     for axes, one in zip(panels, seen, strict=True):
-        uq.plot_phase_portrait(one, axes=axes)
+        plots.phase_portrait(one, axes=axes)
     change = float(low["change_gap"].sel(site="right")[0]) / X_0
     words = [
         f"x_1 = {float(one['gap'].sel(site='right')) / X_0:.3f}: {one['regime'].item()}"
@@ -193,7 +193,7 @@ def bifurcations() -> Shown:
     first = nominal(LOW).forcing_frequency / LOW
     ds = bifurcation_diagram(Params(), Settings(), omega * first)
     figure, (axes,) = sheet(1, 1, 2.6)
-    uq.plot_bifurcation(ds, "dimensionless_impact_velocity", "frequency_ratio", axes=axes)
+    plots.bifurcation(ds, "dimensionless_impact_velocity", against="frequency_ratio", axes=axes)
     kinds, counts = np.unique(ds["regime"], return_counts=True)
     shares = ", ".join(
         f"{kind} {count / len(omega):.0%}"

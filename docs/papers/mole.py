@@ -12,6 +12,7 @@ from models.mole.explore import history, poincare_section
 from models.mole.paper.table import CLAIMS, closed_curves, described, responses
 from models.mole.parameters import QUASI_PERIODIC, Params, Settings
 from models.mole.theory.periods import common_periods
+from uq import plots
 
 PRINTED, PHYSICAL = Settings(formulation="as-printed"), Settings(formulation="physical")
 LONG = 10.0  # s, of a whole time history
@@ -108,8 +109,8 @@ def time_histories(number: int, case: Case) -> Shown:
         combine_attrs="drop_conflicts",
     )
     figure, panels = sheet(2, 1, 2.0)
-    uq.plot_curve(whole, "displacement", "time", panels[0])
-    uq.plot_curve(both, "displacement", "time", panels[1])
+    plots.curve(whole, "displacement", against="time", axes=panels[0])
+    plots.curve(both, "displacement", against="time", axes=panels[1])
     name_panels(panels, ("as printed", "from the third to the fourth second"))
     hertz = f"{case.params.control_frequency:g}"
     return Shown(
@@ -127,8 +128,8 @@ def portrait(number: int, case: Case, dropped: int) -> Shown:
     orbit = history(case.params, PRINTED, dropped / frequency, (dropped + 40) / frequency, 40_000)
     section = poincare_section(case.params, PRINTED, POINTS, dropped)
     figure, panels = sheet(1, 2, 2.6)
-    uq.plot_phase_portrait(orbit, axes=panels[0])
-    uq.plot_section(section, axes=panels[1])
+    plots.phase_portrait(orbit, axes=panels[0])
+    plots.section(section, axes=panels[1])
     name_panels(panels, ("phase plane, 40 control periods", f"Poincaré section, {POINTS} periods"))
     return Shown(
         f"Figure {number}: phase plane and Poincaré section at {frequency:g} Hz",
@@ -152,7 +153,7 @@ def basins(told: dict[tuple[str, int], Case]) -> Shown:
     for panel, label in zip(panels, labels, strict=True):
         fixed = {"control_frequency": told[label, 0].params.control_frequency}
         ds = uq.basins("mole", axes, fixed, LOOK, by=["progression_rate"])
-        uq.plot_basins(ds, ["progression_rate"], panel)
+        plots.basins(ds, ["progression_rate"], axes=panel)
         each = zip(ds["representative_regime"].values, ds["share"].values, strict=True)
         shares.append(f"{label}: " + ", ".join(f"{name} {share:.0%}" for name, share in each))
     name_panels(panels, labels)
@@ -177,9 +178,9 @@ def two_orbits(told: dict[tuple[str, int], Case]) -> Shown:
     for i, case in enumerate(pair):
         begin, end = dropped / frequency, (dropped + 20) / frequency
         orbit = history(case.params, PRINTED, begin, end, 20_000)
-        uq.plot_phase_portrait(orbit, axes=panels[2 * i])
+        plots.phase_portrait(orbit, axes=panels[2 * i])
         section = poincare_section(case.params, PRINTED, 1000, dropped)
-        uq.plot_section(section, axes=panels[2 * i + 1])
+        plots.section(section, axes=panels[2 * i + 1])
         start = (
             f"from ({case.params.initial_displacement:g} m, {case.params.initial_velocity:g} m/s)"
         )

@@ -12,6 +12,7 @@ from models.vibrator.paper.table1 import machines
 from models.vibrator.parameters import Settings
 from models.vibrator.start import fast
 from models.vibrator.theory import averaged
+from uq import plots
 
 VARIED = ("damping_ratio", "stiffness_x", "support_offset")
 SYMMETRIC = (2, 6)  # rows of the table, from 0: equally stiff supports level with the centre
@@ -85,7 +86,7 @@ def run_up(p: Any, found: Any, row: int) -> Shown:
     """Draw the start of the machine in one row of Table 1, from 0."""
     given = {name: float(getattr(p, name)[row]) for name in VARIED}
     ds = uq.simulate("vibrator", given)
-    figure = uq.plot_history(ds, ["disphasing_angle", "alpha", ["speed_1", "speed_2"]])
+    figure = plots.history(ds, ["disphasing_angle", "alpha", ["speed_1", "speed_2"]])
     end = float(ds["time"][-1])
     last = ds["trajectory"].sel(time=slice(end - 0.2, None))
     unwrapped = float(last.sel(quantity="disphasing_angle").mean())

@@ -12,6 +12,7 @@ Reading order; a storey imports only those above it:
     start         the propagator, the gaps and the state to begin with
     response      the settled response at constant gaps
     wear          lives of beams whose gaps grow with the impact work
+    units         dimensionless results in units
     batch         from rows of parameters to outputs
     trajectory    one labelled time history
     branches      periodic orbits followed over frequency, gap and wear

@@ -14,6 +14,7 @@ from models.beam.start import PROPAGATORS, initial_gaps, initial_state
 from models.beam.structure.modal import Array, beams
 from models.beam.structure.propagation import Propagator, System
 from models.beam.structure.random_load import has_band
+from models.beam.units import newton, watt, wear_per_work
 from models.beam.wear.lives import Lives, find_lives
 from models.beam.wear.random_lives import find_random_lives
 from uq.contract import Status
@@ -137,10 +138,8 @@ def _in_units(
     p: Rows, s: Simulated, settings: Settings
 ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
     """Give the results their units, and apply the horizon."""
-    joule = p.contact_stiffness * p.initial_gap**2
-    to_watt = (joule * p.forcing_frequency)[:, None]
-    # Gap growth in X0 per dimensionless work at the right site (eq 9).
-    wear_rate = p.wear_coefficient / p.contact_area * p.contact_stiffness * p.initial_gap
+    to_watt = watt(p)[:, None]
+    wear_rate = wear_per_work(p)
     to_second = 1 / (p.forcing_frequency * wear_rate)[:, None, None]
     time, error = s.lives.time * to_second, s.lives.error * to_second
     reached = s.lives.reached & (time <= settings.horizon)
@@ -152,7 +151,6 @@ def _in_units(
     error = np.where(reached, error, np.nan)
 
     work = s.response.work
-    force = p.contact_stiffness * p.initial_gap
     share = np.stack([np.ones_like(wear_rate), p.wear_coefficient_ratio], axis=1)
     fastest = (work * share).max(axis=1) * wear_rate * p.forcing_frequency
     depths = np.asarray(settings.depths)
@@ -164,7 +162,7 @@ def _in_units(
         "work_rate_error": s.response.error * to_watt,
         "work_rate_heavy": work.max(axis=1) * to_watt[:, 0],
         "work_rate_light": work.min(axis=1) * to_watt[:, 0],
-        "peak_contact_force": s.response.peak * force[:, None],
+        "peak_contact_force": s.response.peak * newton(p)[:, None],
         "time_to_depth": time[:, :2],
         "time_to_depth_censored": censored[:, :2],
         "time_to_depth_error": error[:, :2],

@@ -7,6 +7,7 @@ from models.beam.start import initial_gaps, initial_state, one_system
 from models.beam.structure.modal import beams
 from models.beam.structure.random_lines import force as random_force
 from models.beam.structure.random_load import has_band
+from models.beam.units import newton
 from uq.contract import Trajectory
 
 PERIODS = 100
@@ -34,10 +35,9 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     record = propagator.advance(system, state, gaps, np.zeros_like(gaps), PERIODS, trace=True)
     x = np.concatenate([p.initial_displacement / p.initial_gap, record.trace[0]])
     time = np.arange(len(x)) / (params.forcing_frequency * (len(x) - 1) / PERIODS)
-    contact = params.contact_stiffness * params.initial_gap
     force = params.force_amplitude * np.cos(2 * np.pi * params.forcing_frequency * time)
     velocity = params.initial_gap * np.gradient(x, time)
-    right, left = (contact * np.maximum(d, 0.0) for d in (x - gaps[0, 0], -x - gaps[0, 1]))
+    right, left = (newton(params) * np.maximum(d, 0.0) for d in (x - gaps[0, 0], -x - gaps[0, 1]))
     quantities = {
         "displacement": ("m", "tip displacement", params.initial_gap * x),
         "velocity": ("m s-1", "tip velocity", velocity),

@@ -22,7 +22,7 @@ from functools import cache
 from pathlib import Path
 from shutil import rmtree
 from tempfile import gettempdir
-from typing import Any
+from typing import Any, NamedTuple
 
 from platformdirs import user_cache_path
 
@@ -32,7 +32,7 @@ _INSTALLED = ("site-packages", "dist-packages")
 _KEEP_SECONDS = 30 * 86400
 
 
-def folder_of(function: Callable[..., Any]) -> Path:
+def folder_of(function: Callable[..., Any]) -> Path | None:
     """Return the folder for the compiled code of a function that a file defines.
 
     Parameters
@@ -42,13 +42,17 @@ def folder_of(function: Callable[..., Any]) -> Path:
 
     Returns
     -------
-    Path
-        It exists.
+    Path or None
+        It exists. None where a source was edited since this process first asked: what it imported
+        before and what it imports now are of no one state of the sources.
     """
     roots = {_NUMERICS}.union(*(_roots(file) for file in _files(function, set())))
     whole = hashlib.sha256(repr(_versions()).encode())
     for root in sorted(roots):
-        whole.update(_kept_hash(root) if _is_ours(root) else _hash(root))
+        found = _snapshot(root)
+        if any(_stamp(path) != stamp for path, stamp in found.stamps.items()):
+            return None
+        whole.update(found.digest)
     names = sorted(root.stem for root in roots - {_NUMERICS}) or [_NUMERICS.name]
     name = f"{names[0]}-{whole.hexdigest()[:16]}"
     try:
@@ -80,9 +84,9 @@ def _roots(file: Path) -> set[Path]:
     if _is_ours(file):
         return {_MODELS / file.relative_to(_MODELS).parts[0]}
     own = _importable(file)
-    words = {word for root in own for one in _sources(root) for word in _words(one)}
-    named = (part for part in _MODELS.iterdir() if part.stem in words)
-    return {*own, *(named if _MODELS.name in words else ())}
+    words = frozenset().union(*(_snapshot(root).words for root in own))
+    named = (part for part in _MODELS.iterdir() if os.fsencode(part.stem) in words)
+    return {*own, *(named if os.fsencode(_MODELS.name) in words else ())}
 
 
 def _importable(file: Path) -> set[Path]:
@@ -99,25 +103,33 @@ def _is_ours(path: Path) -> bool:
     return path.is_relative_to(_MODELS)
 
 
-def _sources(root: Path) -> list[Path]:
-    return sorted(root.rglob("*.py")) if root.is_dir() else [root]
+class _Snapshot(NamedTuple):
+    """A source file, or all that lie in a folder, as this process first saw them."""
+
+    digest: bytes
+    words: frozenset[bytes]
+    stamps: dict[Path, tuple[int, int]]
 
 
-def _words(file: Path) -> list[str]:
-    return re.findall(r"\w+", file.read_text(errors="replace"))
-
-
-def _hash(root: Path) -> bytes:
-    """Return a hash of a source file, or of all that lie in a folder."""
-    whole = hashlib.sha256()
-    for path in _sources(root):
+@cache
+def _snapshot(root: Path) -> _Snapshot:
+    whole, words, stamps = hashlib.sha256(), set[bytes](), {}
+    for path in filter(Path.is_file, sorted(root.rglob("*.py")) if root.is_dir() else [root]):
+        stamps[path] = _stamp(path)
         source = path.read_bytes()
         whole.update(b"%s %d\n" % (os.fsencode(path.relative_to(root.parent)), len(source)))
         whole.update(source)
-    return whole.digest()
+        words.update(re.findall(rb"\w+", source))
+    return _Snapshot(whole.digest(), frozenset(words), stamps)
 
 
-_kept_hash = cache(_hash)
+def _stamp(path: Path) -> tuple[int, int]:
+    """Return what an edit changes: the time of a file and its size, or zeros if it is gone."""
+    try:
+        look = os.stat(path)
+    except FileNotFoundError:
+        return 0, 0
+    return look.st_mtime_ns, look.st_size
 
 
 @cache

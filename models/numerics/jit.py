@@ -100,7 +100,9 @@ def inlined(function: Function) -> Function:
 
 def _compiled(function: Function, inline: Literal["never", "always"], **more: bool) -> Function:
     decorate: Any = partial(numba.njit, nogil=True, error_model="numpy", inline=inline, **more)
-    if not Path(inspect.getfile(function)).is_file():  # typed in, so that nothing shows an edit
+    typed_in = not Path(inspect.getfile(function)).is_file()  # nothing would show an edit
+    folder = None if typed_in else folder_of(function)
+    if folder is None:
         return decorate()(function)
-    with _cache_folder(folder_of(function)):
+    with _cache_folder(folder):
         return decorate(cache=True)(function)

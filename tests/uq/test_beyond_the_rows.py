@@ -9,6 +9,7 @@ from scipy import stats
 
 import uq as api
 from uq import order_statistics
+from uq.analysis.life_fit import fitted_laws
 from uq.analysis.overview import summary
 from uq.analysis.summary import summarise
 from uq.analysis.widths import expected_widths
@@ -70,7 +71,7 @@ def test_every_reader_says_how_many_rows_it_takes(uq, folder):
     )
     assert cells["B1"].text == "needs 99 rows"
     assert compared(ds, ds)["outputs"]["life"]["b_lives"]["B1"]["difference"]["value"] is None
-    assert expected_widths(ds)["life"]["quantiles"]["0.001"] is None
+    assert expected_widths(ds)["life"].quantiles[0.001] is None
 
 
 def found(ds):
@@ -78,13 +79,13 @@ def found(ds):
 
 
 def test_a_fitted_life_beyond_the_rows_is_called_extrapolated():
-    fits = api.life_fits(lives(60), "life")["life"]
+    fits = fitted_laws(lives(60), "life")["life"]
     for law in ("weibull", "lognormal"):
         assert "refused" not in fits[law]
         assert fits[law]["B1"]["extrapolated"] is True
         assert not fits[law]["B10"]["extrapolated"]
         assert "no proof" in fits[law]["assumes"]
-    more = api.life_fits(lives(120), "life")["life"]["weibull"]
+    more = fitted_laws(lives(120), "life")["life"]["weibull"]
     assert more["B1"]["extrapolated"] is False
 
 

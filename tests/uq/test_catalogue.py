@@ -4,7 +4,7 @@ import pytest
 from command_line import strict_json
 
 from uq.cli import catalogue
-from uq.study.registry import model_names
+from uq.study.registry import find_model, model_names
 
 
 def test_models_are_listed(uq):
@@ -72,9 +72,10 @@ def test_every_model_can_be_told_as_json(uq, name):
 @pytest.mark.parametrize("width", [60, 80])
 def test_no_line_of_a_parameter_is_broken(name, width, monkeypatch, capsys):
     monkeypatch.setattr(catalogue.console, "_width", width)
-    catalogue.show(catalogue.describe(name))
+    model = find_model(name)
+    catalogue.show(model)
     told = capsys.readouterr().out.split("Settings")[0].splitlines()
-    for parameter in catalogue.find_model(name).nominal:
+    for parameter in model.nominal:
         start = next(i for i, line in enumerate(told) if line.split()[:1] == [parameter])
         assert told[start + 1].startswith("    ")  # what explains it, not the rest of its line
         assert ("admissible: " in told[start + 1]) == (width == 60)

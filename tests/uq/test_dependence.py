@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from input_studies import BELL, UNIFORM, inputs_of, refusal, tables
 from scipy import stats
 
-from uq.analysis.sampled_inputs import realised_inputs, realised_ranks
+from uq.analysis.sampled_inputs import sampled_inputs, sampled_ranks
 from uq.errors import InputError
 from uq.inputs.dependence import correlated, matrix_problem
 from uq.rows.sampling import row_block
@@ -30,9 +30,9 @@ def test_rows_have_the_rank_correlations_and_laws_that_were_stated():
     found = inputs_of(study)
     assert stats.spearmanr(found["x1"], found["x3"]).statistic == pytest.approx(-0.7, abs=2e-3)
     assert abs(stats.spearmanr(found["x1"], found["x2"]).statistic) < 2e-3
-    for one in realised_inputs(study).values():
+    for one in sampled_inputs(study).values():
         assert one.distance < 2e-3
-    assert realised_ranks(study)[0, 1] == pytest.approx(-0.7, abs=2e-3)
+    assert sampled_ranks(study)[0, 1] == pytest.approx(-0.7, abs=2e-3)
 
 
 def test_three_inputs_have_all_three_correlations():

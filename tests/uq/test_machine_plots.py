@@ -13,6 +13,7 @@ from models.beam.parameters import Params as Beam
 from models.beam.parameters import Settings as BeamSettings
 from models.mole.parameters import Params as Mole
 from models.mole.parameters import Settings as MoleSettings
+from uq import plots
 from uq.drawing.figure import COLOURS, lay_out
 from uq.errors import InputError
 from uq.wording import percent
@@ -54,15 +55,15 @@ def test_every_axis_of_a_machine_has_words_and_a_unit(swept, basins, worn):
     frequency, gaps = worn
     history = mole.history(Mole(), MoleSettings(), 0.0, 0.1, points=50)
     figures = [
-        uq.plot_history(uq.simulate("mole")),
-        uq.plot_history(history),
-        uq.plot_phase_portrait(history, section=swept.isel(control_frequency=0)),
-        uq.plot_section(swept),
-        uq.plot_bifurcation(swept, "displacement", "control_frequency", by="regime"),
-        uq.plot_bifurcation(frequency, "impact_velocity", "forcing_frequency"),
-        uq.plot_curve(gaps, "work_rate", "gap"),
-        uq.plot_curve(swept, "progression_rate", "control_frequency"),
-        uq.plot_basins(basins, ["progression_rate"]),
+        plots.history(uq.simulate("mole")),
+        plots.history(history),
+        plots.phase_portrait(history, section=swept.isel(control_frequency=0)),
+        plots.section(swept),
+        plots.bifurcation(swept, "displacement", against="control_frequency", by="regime"),
+        plots.bifurcation(frequency, "impact_velocity", against="forcing_frequency"),
+        plots.curve(gaps, "work_rate", against="gap"),
+        plots.curve(swept, "progression_rate", against="control_frequency"),
+        plots.basins(basins, ["progression_rate"]),
     ]
     for figure in figures:
         for label in labels(figure):
@@ -80,7 +81,7 @@ def test_every_axis_of_a_machine_has_words_and_a_unit(swept, basins, worn):
 
 
 def test_long_labels_of_low_panels_do_not_overlap():
-    figure = uq.plot_history(uq.simulate("mole"))
+    figure = plots.history(uq.simulate("mole"))
     figure.draw_without_rendering()
     boxes = [axes.yaxis.label.get_window_extent() for axes in figure.axes]
     assert len(boxes) == 11
@@ -91,7 +92,7 @@ def test_long_labels_of_low_panels_do_not_overlap():
 
 def test_a_history_in_panels_of_one_and_of_several_quantities():
     ds = uq.simulate(sample_models.KINDS)
-    figure = uq.plot_history(ds)
+    figure = plots.history(ds)
     assert labels(figure) == ["Place [m]", "Speed [m s⁻¹]", "Time [s]"]
     assert figure.axes[0].lines[0].get_ydata()[-1] == pytest.approx(0.25)
     run_up = xr.Dataset(
@@ -101,14 +102,14 @@ def test_a_history_in_panels_of_one_and_of_several_quantities():
         },
         {"time": ("time", [0.0, 7200.0], {"units": "s", "long_name": "time"})},
     )
-    figure = uq.plot_history(run_up, [["a", "b"]])
+    figure = plots.history(run_up, [["a", "b"]])
     assert labels(figure) == ["[m s⁻¹]", "Time [hours]"]
     assert figure.axes[0].lines[0].get_xdata().tolist() == [0.0, 2.0]
     assert [line.get_label() for line in figure.axes[0].lines] == ["First", "Second"]
     with pytest.raises(InputError, match=r"unlike units .*: x \[m\], v \[m s-1\]"):
-        uq.plot_history(ds, [["x", "v"]])
+        plots.history(ds, [["x", "v"]])
     with pytest.raises(InputError, match="no such quantity 'sped'; did you mean 'speed'?"):
-        uq.plot_history(xr.Dataset({"speed": ("time", [1.0])}, {"time": [0.0]}), ["sped"])
+        plots.history(xr.Dataset({"speed": ("time", [1.0])}, {"time": [0.0]}), ["sped"])
 
 
 def test_a_portrait_and_its_section_share_a_scale():
@@ -119,17 +120,17 @@ def test_a_portrait_and_its_section_share_a_scale():
             "velocity": ("phase", np.sin(around), {"units": "m s-1", "long_name": "v"}),
         }
     )
-    figure = uq.plot_phase_portrait(orbit, section=orbit.isel(phase=[0]))
+    figure = plots.phase_portrait(orbit, section=orbit.isel(phase=[0]))
     curve, point = figure.axes[0].lines
     assert curve.get_xdata()[0] == point.get_xdata()[0] == pytest.approx(2.0)
     assert labels(figure) == ["V [m s⁻¹]", "X [mm]"] and entries(figure) == ["Poincaré section"]
     two = xr.concat([orbit, 2 * orbit.assign_attrs()], "start", combine_attrs="override")
-    assert entries(uq.plot_section(two)) == ["start 1", "start 2"]
+    assert entries(plots.section(two)) == ["start 1", "start 2"]
 
 
 def test_a_bifurcation_diagram_shows_every_point_in_the_colour_of_its_kind(swept):
     told = swept.assign(regime=("control_frequency", ["calm", "wild"]))
-    figure = uq.plot_bifurcation(told, "displacement", "control_frequency", by="regime")
+    figure = plots.bifurcation(told, "displacement", against="control_frequency", by="regime")
     assert entries(figure) == ["calm", "wild"]
     for i, line in enumerate(figure.axes[0].lines):
         assert line.get_color() == COLOURS[i]
@@ -140,7 +141,7 @@ def test_a_bifurcation_diagram_shows_every_point_in_the_colour_of_its_kind(swept
 def test_curves_are_named_and_marked_where_the_regime_changes(worn):
     _, gaps = worn
     changing = gaps.assign(regime=("case", ["periodic", "aperiodic"]))
-    figure = uq.plot_curve(changing, "work_rate", "gap")
+    figure = plots.curve(changing, "work_rate", against="gap")
     assert entries(figure) == ["right", "left", "change of regime"]
     assert figure.axes[0].lines[-1].get_xdata()[0] == pytest.approx(300.0)
 
@@ -158,16 +159,16 @@ def wearing(regimes):
 
 def test_the_change_of_regime_is_marked_on_every_curve_unless_it_never_stops():
     once = wearing(["periodic"] * 10 + ["aperiodic"] * 10)
-    lines = uq.plot_curve(once, "rate", "gap").axes[0].lines
+    lines = plots.curve(once, "rate", against="gap").axes[0].lines
     assert [line.get_xdata()[0] for line in lines[2:]] == pytest.approx(
         1e3 * once["gap"].isel(look=10).values
     )
-    often = uq.plot_curve(wearing(["periodic", "quasi-periodic"] * 20), "rate", "gap")
+    often = plots.curve(wearing(["periodic", "quasi-periodic"] * 20), "rate", against="gap")
     assert entries(often) == ["right", "left"]
 
 
 def test_the_label_of_a_low_figure_is_whole():
-    figure = uq.plot_curve(wearing(["periodic"] * 10 + ["aperiodic"] * 10), "gap", "time")
+    figure = plots.curve(wearing(["periodic"] * 10 + ["aperiodic"] * 10), "gap", against="time")
     lay_out(figure)
     assert figure.axes[0].yaxis.label.get_window_extent().y1 <= figure.bbox.y1
 
@@ -175,7 +176,7 @@ def test_the_label_of_a_low_figure_is_whole():
 def test_basins_are_coloured_by_attractor_and_explained(basins):
     labelled = basins.copy(deep=True)
     labelled["attractor"].values[:] = [[0, 0], [1, -1], [0, 0]]
-    figure = uq.plot_basins(labelled.isel(basin=[0, 0]), ["progression_rate"])
+    figure = plots.basins(labelled.isel(basin=[0, 0]), ["progression_rate"])
     (mesh,) = figure.axes[0].collections
     mesh.update_scalarmappable()
     colours = [to_hex(colour).upper() for colour in mesh.get_facecolors()]
@@ -185,19 +186,19 @@ def test_basins_are_coloured_by_attractor_and_explained(basins):
     assert entries(figure)[-1] == "failed, 16.7 %"
     share = float(basins["share"][0])
     many = basins.isel(basin=[0] * (len(COLOURS) + 2))
-    assert entries(uq.plot_basins(many))[len(COLOURS)] == f"2 others, {percent(2 * share)}"
+    assert entries(plots.basins(many))[len(COLOURS)] == f"2 others, {percent(2 * share)}"
     with pytest.raises(InputError, match="over two parameters, not 1"):
-        uq.plot_basins(basins.isel(initial_velocity=0))
+        plots.basins(basins.isel(initial_velocity=0))
 
 
 def test_what_cannot_be_drawn_is_refused_in_words(worn):
     _, gaps = worn
     with pytest.raises(InputError, match="no such quantity 'work'; did you mean 'work_rate'?"):
-        uq.plot_curve(gaps, "work", "gap")
+        plots.curve(gaps, "work", against="gap")
     with pytest.raises(InputError, match="'regime' is not a number, and has no axis"):
-        uq.plot_curve(gaps, "regime", "gap")
+        plots.curve(gaps, "regime", against="gap")
     deep = gaps.assign(cube=gaps["gap"] * xr.DataArray([1.0, 2.0], dims="layer"))
     with pytest.raises(InputError, match="along case, site, layer: one or two dimensions"):
-        uq.plot_curve(deep, "cube", "gap")
+        plots.curve(deep, "cube", against="gap")
     with pytest.raises(InputError, match="nothing along time"):
-        uq.plot_history(gaps)
+        plots.history(gaps)

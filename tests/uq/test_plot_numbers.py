@@ -6,9 +6,7 @@ from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
 
 from uq import plots
-from uq.analysis.summary import summarise
 from uq.drawing.figure import COLOURS, thinned
-from uq.drawing.index_plot import index_bars
 
 DAY = 86400.0
 
@@ -50,14 +48,14 @@ def test_an_interval_is_spoken_of_where_there_is_one():
 
 def test_what_an_input_without_effect_has_is_a_line_across_the_bars():
     ds = linear(samples=100)
-    (axes,) = index_bars(ds, "y", "rbd-fast").axes
+    (axes,) = plots.index_bars(ds, "y", method="rbd-fast").axes
     idle = sensitivities(ds, "rbd-fast")["outputs"]["y"]["dummy"]["S1"]
     assert [line.get_xdata()[0] for line in axes.lines if line.get_linestyle() == "--"] == [idle]
 
 
 def test_a_table_has_one_unit():
     ds = lives(linear(samples=64))
-    told = words(plots.quantile_table(ds, "day_long", summarise(ds).outputs))
+    told = words(plots.quantile_table(ds, "day_long"))
     value, low, high = median(ds)
     assert "[days]" in told and f" {value:.5g} " in told and f"{low:.5g} to {high:.5g}" in told
 

@@ -2,6 +2,7 @@ import io
 import xml.etree.ElementTree as ElementTree
 from itertools import pairwise
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from asked_indices import sensitivities
@@ -11,11 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from uq import plots
-from uq.analysis.convergence import running_estimates
-from uq.analysis.summary import summarise
-from uq.drawing.convergence_plot import index_convergence
 from uq.drawing.figure import file_name, lay_out, powers, roomy, sentence
-from uq.drawing.index_plot import index_bars
 from uq.errors import InputError
 
 
@@ -45,6 +42,28 @@ def test_every_figure_of_a_study_is_written_as_png_svg_and_pdf(tmp_path):
             assert path.read_bytes().startswith(b"%PDF-")
 
 
+@pytest.mark.parametrize("figure", ["histogram", "scatter", "regimes", "quantiles", "inputs"])
+def test_figures_are_drawn_into_axes_that_are_given(figure):
+    ds, (whole, (left, right)) = kinds(samples=40), plt.subplots(1, 2, layout="constrained")
+    entry = plots.FIGURES[figure]
+    names = [] if figure == "inputs" else ["work"]
+    assert entry.draw(ds, *names, axes=right) is whole
+    whole.draw_without_rendering()
+    (alone,) = {len(entry.draw(ds, *names).axes)}
+    drawn = [axes for axes in whole.axes if axes is not left and axes.axison]
+    assert len(drawn) == alone or figure == "quantiles"
+    middle = whole.bbox.width / 2
+    assert all(axes.bbox.x0 >= middle for axes in drawn)
+    assert not left.lines and not left.texts and not whole.legends
+    plt.close(whole)
+
+
+def test_panels_need_axes_of_a_grid():
+    axes = Figure().add_axes((0, 0, 1, 1))
+    with pytest.raises(InputError, match="needs axes of a grid"):
+        plots.scatter(kinds(samples=40), "work", axes=axes)
+
+
 def test_the_same_result_gives_the_same_bytes(tmp_path):
     ds = linear(samples=32)
     once, again = (plots.save_all(ds, tmp_path / name) for name in ("once", "again"))
@@ -65,7 +84,7 @@ def test_a_figure_is_drawn_once_for_each_of_its_files(tmp_path, monkeypatch):
 def test_a_notebook_shows_figures_without_pyplot():
     ds = kinds(samples=40)
     drawn = [plots.lifetime(ds, "life"), plots.scatter(ds, "angle"), plots.pairs(ds)]
-    drawn += [plots.inputs(ds), plots.quantile_table(ds, "work", summarise(ds).outputs)]
+    drawn += [plots.inputs(ds), plots.quantile_table(ds, "work")]
     for figure in drawn:
         shown, _ = DisplayFormatter().format(figure)
         assert imread(io.BytesIO(shown["image/png"])).std() > 0.05
@@ -131,21 +150,21 @@ def test_histogram_shows_every_row_once():
 
 def test_index_bars_show_values_intervals_and_full_names():
     ds = linear("saltelli", samples=64, replicates=4)
-    figure = index_bars(ds, "y")
+    figure = plots.index_bars(ds, "y")
     (axes,) = figure.axes
     assert len(axes.patches) == 8 and len(axes.collections) == 2
     assert [label.get_text() for label in axes.get_yticklabels()] == [
         f"Independent input (x_{i})" for i in (1, 2, 3, 4)
     ]
     assert "Value of the function" in words(figure) and "95 % interval" in words(figure)
-    plain = words(index_bars(linear(samples=128), "y", "pawn"))
+    plain = words(plots.index_bars(linear(samples=128), "y", method="pawn"))
     assert "play no part" in plain and "PAWN" in plain and "95 %" not in plain
 
 
 def test_a_wide_interval_does_not_squeeze_the_bars():
     ds = linear("saltelli", 16, 2)
     rare = np.where(ds["y"].values > 8.3, 1000.0, ds["x2"].values)
-    axes = index_bars(with_output(ds, "rare", rare), "rare").axes[0]
+    axes = plots.index_bars(with_output(ds, "rare", rare), "rare").axes[0]
     assert max(patch.get_width() for patch in axes.patches) > 0.3
     low, high = axes.get_xlim()
     assert -0.25 <= low <= 0 and high <= 1.25
@@ -155,17 +174,17 @@ def test_titles_of_indices_are_in_words():
     ds = linear("saltelli", 32, 4)
     ds = with_output(ds, "life", 1440 * ds["y"].values, "lifetime")
     ds = asking(ds, outputs=["life"], thresholds={"life": [7200.0]})
-    assert "Logarithm of the meaning of life" in words(index_bars(ds, "log(life)"))
-    assert "Rank of the meaning of life" in words(index_bars(ds, "rank(life)"))
-    assert "Inverse of the meaning of life" in words(index_bars(ds, "rate(life)"))
+    assert "Logarithm of the meaning of life" in words(plots.index_bars(ds, "log(life)"))
+    assert "Rank of the meaning of life" in words(plots.index_bars(ds, "rank(life)"))
+    assert "Inverse of the meaning of life" in words(plots.index_bars(ds, "rate(life)"))
     assert "Whether it ends before 2 hours: meaning of life" in words(
-        index_bars(ds, "P(life<7200.0)")
+        plots.index_bars(ds, "P(life<7200.0)")
     )
     with pytest.raises(InputError, match=r"'life' stands for several; name one of: log\(life\), P"):
-        index_bars(ds, "life")
+        plots.index_bars(ds, "life")
     flat = with_output(ds, "flat", np.ones(ds.sizes["sample"]))
     with pytest.raises(InputError, match="flat: the same value"):
-        index_bars(flat, "flat")
+        plots.index_bars(flat, "flat")
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, 3.0])
@@ -173,11 +192,10 @@ def test_titles_of_indices_are_in_words():
 def test_degenerate_results_are_drawn_all_the_same(value, kind):
     ds = asking(with_output(linear(samples=64), "odd", np.full(64, value), kind), outputs=["odd"])
     drawn = [plots.lifetime if kind == "lifetime" else plots.histogram, plots.scatter]
-    figures = [draw(ds, "odd") for draw in drawn] + [plots.convergence(ds, "odd")]
-    figures.append(plots.quantile_table(ds, "odd", summarise(ds).outputs))
-    for figure in figures:
-        if figure is not None:
-            figure.draw_without_rendering()
+    for draw in (*drawn, plots.quantile_table):
+        draw(ds, "odd").draw_without_rendering()
+    if np.isfinite(value):
+        plots.convergence(ds, "odd").draw_without_rendering()
 
 
 def test_lifetime_figure_marks_b_lives_and_reads_both_ways():
@@ -277,7 +295,7 @@ def test_convergence_ends_with_all_rows_and_narrows():
 
 def test_total_indices_converge_in_a_figure():
     ds = linear("saltelli", samples=64, replicates=4)
-    figure = index_convergence(ds, "y", running_estimates(ds), "in words")
+    figure = plots.index_convergence(ds, "y")
     (axes,) = figure.axes
     assert len(axes.lines) == 4 and "Independent input (x_4)" in words(figure)
     assert axes.lines[0].get_xdata().tolist() == [16, 32, 64]
@@ -288,10 +306,10 @@ def test_total_indices_converge_in_a_figure():
 def test_quantiles_are_a_table_to_print():
     ds = kinds(samples=200)
     entries = summarised(ds)["outputs"]
-    told = words(plots.quantile_table(ds, "work", entries))
+    told = words(plots.quantile_table(ds, "work"))
     assert "Work rate [W]" in told and "left" in told and "95 % intervals" in told
     assert f"{entries['work[side=left]']['quantiles']['0.5']['value']:.5g}" in told
-    assert "never" in words(plots.quantile_table(ds, "life", entries))
+    assert "never" in words(plots.quantile_table(ds, "life"))
 
 
 def test_numbers_on_logarithmic_axes_are_plain():
@@ -333,7 +351,7 @@ def test_labels_of_three_lines_keep_apart():
         ds[name].attrs["long_name"] = (
             "bearing torque of the vibrator over its centrifugal force, mean"
         )
-    figure = index_bars(ds, "y")
+    figure = plots.index_bars(ds, "y")
     lay_out(figure)
     boxes = [label.get_window_extent() for label in figure.axes[0].get_yticklabels()]
     boxes.sort(key=lambda box: box.y0)

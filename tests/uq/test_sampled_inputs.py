@@ -6,7 +6,9 @@ from computed import computed, study_of
 from input_studies import BELL, UNIFORM, tables
 from scipy import stats
 
+from uq import plots
 from uq.analysis.sampled_inputs import compare
+from uq.errors import InputError
 from uq.study.file import LAW
 
 
@@ -39,10 +41,8 @@ def test_check_shows_what_the_rows_make_of_the_laws(uq, write_study):
 
 
 def test_a_figure_shows_each_input_as_stated_and_as_the_rows_have_it():
-    from uq.drawing.input_plot import inputs
-
     entries = {"x1": BELL, "x2": UNIFORM | {"times": "x1"}, "x3": {"equals": "x1"}}
-    figure = inputs(computed(study_of(tables(entries, "sobol", 4096))))
+    figure = plots.inputs(computed(study_of(tables(entries, "sobol", 4096))))
     assert [axes.get_xlabel() for axes in figure.axes] == [
         "Independent input (x_1)",
         "Independent input: factor on x1",
@@ -54,4 +54,5 @@ def test_a_figure_shows_each_input_as_stated_and_as_the_rows_have_it():
     bell = figure.axes[0].patches[1].get_data()
     law = np.diff(stats.norm(0.5, 0.05).cdf(bell.edges))
     np.testing.assert_allclose(bell.values, law, rtol=1e-6)
-    assert inputs(computed(study_of(tables({"x1": BELL}, "morris", 4)))) is None
+    with pytest.raises(InputError, match="'morris' design do not follow the laws"):
+        plots.inputs(computed(study_of(tables({"x1": BELL}, "morris", 4))))

@@ -5,7 +5,7 @@ import pytest
 from asked_indices import sensitivities
 from computed import computed, study_of
 
-from uq.analysis.sampled_inputs import compare, stated_and_realised
+from uq.analysis.sampled_inputs import compare, laws_and_values
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 
@@ -86,5 +86,5 @@ def test_a_factor_of_listed_values_has_these_and_no_others(factor):
     ds = result("monte-carlo", 300, factor=factor)
     expected = factor.get("values", [1.0, 2.0, 3.0])
     assert np.unique(independent_inputs(ds)["b"]).tolist() == expected
-    law, values = stated_and_realised(ds)["b"]
+    law, values = laws_and_values(ds)["b"]
     assert compare(law, values).distance < 0.1

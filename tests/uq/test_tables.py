@@ -60,3 +60,11 @@ def test_indices_are_ranked_and_dropped_groups_counted(told):
     assert [line[0] for line in lines if line[0][:1] == "x"] == ["x4", "x3", "x2", "x1"]
     whole = told("sensitivity", linear("saltelli", samples=16, replicates=4))
     assert cells(whole, "Sensitivity by sobol") == ["of 384 rows"]
+
+
+def test_pairs_have_a_table_of_their_own_without_an_input_without_effect(told):
+    lines = told("sensitivity", linear(samples=600, analysis={"sensitivity": ["hdmr"]}))
+    labels = [line[0] for line in lines]
+    assert labels.count("(an input without effect)") == 1
+    assert labels.index("S2") > labels.index("(an input without effect)")
+    assert {label for label in labels if "," in label} >= {"x1,x2", "x3,x4"}

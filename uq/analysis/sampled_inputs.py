@@ -24,23 +24,23 @@ EVERYWHERE = (-inf, inf)
 """Bounds of a parameter cut off a millionth at most, which no table shows."""
 
 
-class Realised(NamedTuple):
+class SampledInput(NamedTuple):
     """One input as stated and as the rows have it.
 
     Attributes
     ----------
-    stated, realised : ndarray, shape (3,)
+    stated, sampled : ndarray, shape (3,)
         Quantiles of `PROBABILITIES`.
     distance : float
         Largest difference of the two cumulative distributions (Kolmogorov-Smirnov).
     """
 
     stated: Floats
-    realised: Floats
+    sampled: Floats
     distance: float
 
 
-def realised_inputs(study: Study) -> dict[str, Realised]:
+def sampled_inputs(study: Study) -> dict[str, SampledInput]:
     """Compare the laws of a study with its rows, the first 100,000 of them.
 
     Parameters
@@ -49,7 +49,7 @@ def realised_inputs(study: Study) -> dict[str, Realised]:
 
     Returns
     -------
-    dict of str to Realised
+    dict of str to SampledInput
         Empty for designs whose rows do not follow the laws.
     """
     if not DESIGNS[study.design.method].follows_laws:
@@ -68,7 +68,7 @@ def drawn_inputs(study: Study) -> dict[str, Floats]:
     }
 
 
-def realised_ranks(study: Study) -> Floats:
+def sampled_ranks(study: Study) -> Floats:
     """Return the rank correlations that the rows of a study have, shape (k, k).
 
     Parameters
@@ -83,7 +83,7 @@ def realised_ranks(study: Study) -> Floats:
     return np.corrcoef([rankdata(values[name]) for name in study.dependence.parameters])
 
 
-def compare(law: Law, values: Floats) -> Realised:
+def compare(law: Law, values: Floats) -> SampledInput:
     """Compare a law with values that should follow it.
 
     Parameters
@@ -93,7 +93,7 @@ def compare(law: Law, values: Floats) -> Realised:
 
     Returns
     -------
-    Realised
+    SampledInput
     """
     probabilities = np.array(PROBABILITIES)
     ascending = np.sort(values)
@@ -104,14 +104,14 @@ def compare(law: Law, values: Floats) -> Realised:
     if not law.discrete:  # just before each step of the rows
         before = np.searchsorted(ascending, distinct, side="left") / len(ascending)
         distance = max(distance, np.abs(before - stated).max())
-    return Realised(
+    return SampledInput(
         ppf_within(law, probabilities, EVERYWHERE),
         np.quantile(ascending, probabilities, method="inverted_cdf"),
         float(distance),
     )
 
 
-def stated_and_realised(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
+def laws_and_values(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
     """Return the law of each input of a result and the values of its rows, where they follow it.
 
     Parameters

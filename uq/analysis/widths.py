@@ -4,7 +4,8 @@ By the spread of independent rows. Intervals from replicates scatter, and good d
 narrower than that: for these the width is about the most to be expected.
 """
 
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -34,7 +35,31 @@ _ENOUGH_ROWS = 8
 _LEVEL = 0.975
 
 
-def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
+@dataclass(frozen=True)
+class Widths:
+    """Widths of the 95 % intervals of an element of an output; None where the pilot cannot tell.
+
+    Attributes
+    ----------
+    units : str
+        Of the output.
+    mean : float or None
+    quantiles : dict of float to float or None
+        Probability -> width.
+    thresholds : dict of float to float or None
+        Threshold -> width of the probability of lying above.
+    indices : dict of str to float or None
+        The widest of each kind (``S1``, ``ST``) that the design feeds and a pilot can forecast.
+    """
+
+    units: str
+    mean: float | None
+    quantiles: Mapping[float, float | None]
+    thresholds: Mapping[float, float | None]
+    indices: Mapping[str, float | None]
+
+
+def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
     """Return the widths of the 95 % intervals that a whole study will give.
 
     Parameters
@@ -44,11 +69,8 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
 
     Returns
     -------
-    dict
-        Element of an output -> ``units``, width of the ``mean``'s interval, of ``quantiles`` by
-        probability and of ``thresholds``' probabilities, and, where a pilot can forecast the
-        indices that the design feeds, the widest of each kind of them (``S1``, ``ST``). None where
-        the pilot cannot tell.
+    dict of str to Widths
+        Element of an output -> widths.
     """
     analysis = analysis_of(pilot)
     samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
@@ -56,33 +78,25 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, dict[str, Any]]:
     rows = samples * replicates * (2 if "A" in labels else 1)
     factor = _factor(are_independent(pilot), replicates)
     groups = _groups(pilot, len(labels))
+    method = piloted_by(DESIGNS[pilot.attrs["design"]])
     found = {}
     for whole, element in zip(
         elements_of(pilot, shown_outputs(pilot, analysis)),
         elements_of(independent_rows(pilot), shown_outputs(pilot, analysis)),
         strict=True,
     ):
-        found[element.name] = {
-            "units": element.units,
-            "mean": _mean(element, rows, factor),
-            "quantiles": {
-                repr(p): _quantile(element.at_least, p, rows, factor) for p in analysis.quantiles
-            },
-            "thresholds": {
-                repr(t): _share(element, t, rows, factor)
+        found[element.name] = Widths(
+            units=element.units,
+            mean=_mean(element, rows, factor),
+            quantiles={p: _quantile(element.at_least, p, rows, factor) for p in analysis.quantiles},
+            thresholds={
+                t: _share(element, t, rows, factor)
                 for t in analysis.thresholds.get(element.output, ())
             },
-        }
-        if method := piloted_by(DESIGNS[pilot.attrs["design"]]):
-            target = lightened(number_of(whole))
-            own = Sample(target.values, {}, groups[None], tuple(labels))
-            spreads = {} if target.refused else _spreads(METHODS[method], own)
-            n = samples * replicates
-            found[element.name] |= {
-                kind.key: _index(spreads.get(kind), n, factor)
-                for kind in METHODS[method].kinds
-                if not kind.of_pairs
-            }
+            indices=_indices(whole, method, groups, labels, samples * replicates, factor)
+            if method
+            else {},
+        )
     return found
 
 
@@ -129,6 +143,25 @@ def _groups(pilot: xr.Dataset, blocks: int) -> NDArray[np.intp]:
     """Return the rows of each group of the pilot, shape (groups, blocks)."""
     keys = [pilot[name].values for name in ("block", "group", "replicate")]
     return np.lexsort(keys).reshape(-1, blocks)
+
+
+def _indices(
+    element: Element,
+    method: str,
+    groups: NDArray[np.intp],
+    labels: list[str],
+    n: int,
+    factor: float | None,
+) -> dict[str, float | None]:
+    """Return the widest interval of each kind of index, as of independent groups."""
+    target = lightened(number_of(element))
+    own = Sample(target.values, {}, groups[None], tuple(labels))
+    spreads = {} if target.refused else _spreads(METHODS[method], own)
+    return {
+        kind.key: _index(spreads.get(kind), n, factor)
+        for kind in METHODS[method].kinds
+        if not kind.of_pairs
+    }
 
 
 def _spreads(method: Method, sample: Sample) -> dict[Kind, float]:

@@ -10,9 +10,9 @@ from types import FrameType
 from typing import Any, NoReturn
 
 from uq.cli import streams
-from uq.environment import SINGLE_THREADED
 from uq.errors import InputError, RunError, nearest
 from uq.interrupts import undo_all
+from uq.running.environment import SINGLE_THREADED
 
 _when_interrupted = "interrupted"
 

@@ -1,12 +1,11 @@
 """What ``uq models`` shows."""
 
-from collections.abc import Mapping
 from dataclasses import asdict
 from math import isfinite
 from typing import Any
 
 from uq.cli.printing import console, grid, heading, number, paragraph
-from uq.contract import Model
+from uq.contract import Model, Setting
 from uq.errors import InputError
 from uq.study.registry import find_model, model_names
 
@@ -24,9 +23,8 @@ def _entry(name: str) -> dict[str, str]:
     return {"name": name, "version": model.version, "title": model.title}
 
 
-def describe(name: str) -> dict[str, Any]:
-    """Return everything one model declares, as plain data."""
-    model = find_model(name)
+def as_json(model: Model) -> dict[str, Any]:
+    """Return everything a model declares, as plain data."""
     defaults = model.settings()
     return {
         "name": model.name,
@@ -68,47 +66,50 @@ def show_list(listed: list[dict[str, str]]) -> None:
     console.print("\nuq models NAME shows one of them in full.")
 
 
-def show(model: Mapping[str, Any]) -> None:
+def show(model: Model) -> None:
     """Print one model."""
-    heading(model["name"], f"{model['title']} (version {model['version']})")
+    heading(model.name, f"{model.title} (version {model.version})")
     heading("\nParameters", "with meaning and source")
-    lines = [_line(name, parameter) for name, parameter in model["parameters"].items()]
+    lines = [_line(model, name) for name in model.parameter_names]
     header = ("name", "symbol", "nominal", "admissible")
     widths = [max(map(len, column)) for column in zip(header, *lines, strict=True)]
     fits = sum(widths) + 2 * (len(widths) - 1) <= console.width
     if fits:
         paragraph(_aligned(header, widths), indent=0)
-    for line, parameter in zip(lines, model["parameters"].values(), strict=True):
+    for line, name in zip(lines, model.parameter_names, strict=True):
         if fits:
             heading(line[0].ljust(widths[0]), _aligned(line[1:], widths[1:]))
         else:
             heading(line[0], line[1])
             paragraph(f"{line[2]}, admissible: {line[3]}")
-        paragraph(parameter["meaning"])
-        paragraph(parameter["source"])
-    if model["settings"]:
+        paragraph(model.parameter(name).meaning)
+        paragraph(model.parameter(name).source)
+    if model.setting_names:
         heading("\nSettings")
-    for name, setting in model["settings"].items():
-        unit = "" if setting["unit"] == "1" else f" {setting['unit']}"
-        heading(f"  {name}", f"{setting['default']}{unit}{_allowed(setting)}")
-        paragraph(setting["meaning"])
+    defaults = model.settings()
+    for name in model.setting_names:
+        setting = model.setting(name)
+        unit = "" if setting.unit == "1" else f" {setting.unit}"
+        heading(f"  {name}", f"{getattr(defaults, name)}{unit}{_allowed(setting)}")
+        paragraph(setting.meaning)
     heading("\nOutputs")
-    for name, output in model["outputs"].items():
-        dims = f"({', '.join(output['dims'])})" if output["dims"] else ""
-        heading(f"  {name}{dims}", f"{output['kind']} [{output['unit']}]")
-        paragraph(output["meaning"])
-        if output["categories"]:
-            paragraph(", ".join(output["categories"]))
-    if model["references"]:
+    for name, output in model.outputs.items():
+        dims = f"({', '.join(output.dims)})" if output.dims else ""
+        heading(f"  {name}{dims}", f"{output.kind} [{output.unit}]")
+        paragraph(output.meaning)
+        if output.categories:
+            paragraph(", ".join(output.categories))
+    if model.references:
         heading("\nReferences")
-    for reference in model["references"]:
+    for reference in model.references:
         paragraph(reference)
 
 
-def _line(name: str, parameter: Mapping[str, Any]) -> tuple[str, str, str, str]:
-    unit = "" if parameter["unit"] == "1" else f" {parameter['unit']}"
-    bounds = " to ".join(map(number, parameter["bounds"]))
-    return name, parameter["symbol"], f"{parameter['nominal']:.6g}{unit}", bounds
+def _line(model: Model, name: str) -> tuple[str, str, str, str]:
+    parameter = model.parameter(name)
+    unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+    bounds = " to ".join(map(number, parameter.bounds))
+    return name, parameter.symbol, f"{model.nominal[name]:.6g}{unit}", bounds
 
 
 def _aligned(cells: tuple[str, ...], widths: list[int]) -> str:
@@ -116,9 +117,9 @@ def _aligned(cells: tuple[str, ...], widths: list[int]) -> str:
     return "  ".join(padded).rstrip()
 
 
-def _allowed(setting: Mapping[str, Any]) -> str:
-    if setting["choices"]:
-        return f", one of {', '.join(setting['choices'])}"
-    if setting["bounds"]:
-        return ", " + " to ".join(map(number, setting["bounds"]))
+def _allowed(setting: Setting) -> str:
+    if setting.choices:
+        return f", one of {', '.join(setting.choices)}"
+    if setting.bounds:
+        return ", " + " to ".join(map(number, setting.bounds))
     return ""

@@ -38,7 +38,7 @@ def check(path: str, model: str | None) -> None:
     laws = [(name, law(stated), _unit(study, name)) for name, stated in study.uncertain.items()]
     ties = [(name, f"equals {tied.equals}", "") for name, tied in study.tied.items()]
     grid(laws + ties, header=("parameter", "distribution", "unit"))
-    _show_realised(study)
+    _show_sampled(study)
 
 
 def _of_random(study: Study) -> list[tuple[str, str]]:
@@ -54,12 +54,12 @@ def _unit(study: Study, name: str) -> str:
     return study.model.parameter(name).unit if times is None else f"x {times}"
 
 
-def _show_realised(study: Study) -> None:
+def _show_sampled(study: Study) -> None:
     """Print each input as stated and as the rows have it."""
-    from uq.analysis.sampled_inputs import MAX_ROWS, realised_inputs, realised_ranks
+    from uq.analysis.sampled_inputs import MAX_ROWS, sampled_inputs, sampled_ranks
 
     count = min(rows(study), MAX_ROWS)
-    found = realised_inputs(study)
+    found = sampled_inputs(study)
     if not found:
         print(f"\nThe rows of a '{study.design.method}' design do not follow these laws.")
         return
@@ -70,11 +70,11 @@ def _show_realised(study: Study) -> None:
     lines = []
     for name, one in found.items():
         lines.append((name, "stated", *map(number, one.stated), ""))
-        lines.append(("", "rows", *map(number, one.realised), f"{one.distance:.2g}"))
+        lines.append(("", "rows", *map(number, one.sampled), f"{one.distance:.2g}"))
     grid(lines, header=("parameter", "", "5 %", "50 %", "95 %", "largest distance"))
     if study.dependence is not None:
         heading("\nRank correlations")
-        ranks, names = realised_ranks(study), study.dependence.parameters
+        ranks, names = sampled_ranks(study), study.dependence.parameters
         stated = study.dependence.rank_correlation
         grid(
             [

@@ -1,13 +1,12 @@
 """What ``uq plan`` does."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from uq.analysis.widths import expected_widths
+from uq.analysis.widths import Widths, expected_widths
 from uq.cli.catalogue import finite
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.cli.progress import say_compiling
-from uq.methods.registry import METHODS
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
 from uq.study.definition import load_study
@@ -23,24 +22,41 @@ def plan(
     if samples is not None:
         study = study.with_samples(samples)
     cost, ds = pilot(study, workers, say_compiling)
-    found = {
+    failures, widths = int(failed(ds).sum()), expected_widths(ds)
+    if json:
+        print_json(finite(as_json(cost, failures, widths)))
+    else:
+        _show(path, study.description, cost, failures)
+        _show_widths(widths)
+
+
+def as_json(cost: Cost, failures: int, widths: Mapping[str, Widths]) -> dict[str, Any]:
+    """Return the JSON of ``uq plan``."""
+    return {
         "rows": cost.rows,
         "workers": cost.workers,
-        "pilot": {"rows": cost.pilot_rows, "failed": int(failed(ds).sum())},
+        "pilot": {"rows": cost.pilot_rows, "failed": failures},
         "row_seconds": cost.row_seconds,
         "seconds": cost.seconds,
         "seconds_low": cost.seconds_low,
         "seconds_high": cost.seconds_high,
         "disk": {"result": cost.result_bytes, "run": cost.run_bytes},
-        "widths": expected_widths(ds),
+        "widths": {
+            name: {
+                "units": width.units,
+                "mean": width.mean,
+                "quantiles": {repr(p): one for p, one in width.quantiles.items()},
+                "thresholds": {repr(t): one for t, one in width.thresholds.items()},
+                **width.indices,
+            }
+            for name, width in widths.items()
+        },
     }
-    print_json(finite(found)) if json else _show(path, study.description, cost, found)
 
 
-def _show(path: str, description: str, cost: Cost, found: dict[str, Any]) -> None:
+def _show(path: str, description: str, cost: Cost, failures: int) -> None:
     heading(path, description)
     processes = "one process" if cost.workers == 1 else f"{cost.workers} processes"
-    failures = found["pilot"]["failed"]
     told = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
     sure = cost.seconds_high < _SURE * cost.seconds
     band = "" if sure else f"; {_clock(cost.seconds_low)} to {_clock(cost.seconds_high)}"
@@ -52,44 +68,39 @@ def _show(path: str, description: str, cost: Cost, found: dict[str, Any]) -> Non
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
         ]
     )
-    _show_widths(found["widths"])
 
 
-def _show_widths(widths: dict[str, Any]) -> None:
-    kinds = {kind.key: None for method in METHODS.values() for kind in method.kinds}
-    asked = [probability for entry in widths.values() for probability in entry["quantiles"]]
+def _show_widths(widths: Mapping[str, Widths]) -> None:
+    asked = [repr(probability) for width in widths.values() for probability in width.quantiles]
     heading("\nExpected width of the 95 % intervals of mean and quantiles")
     grid(_widths(widths), header=("", "mean", *dict.fromkeys(asked)))
     others = [
-        (label, _short(width))
-        for name, entry in widths.items()
-        for label, width in (
-            *(
-                (f"P({name} > {number(float(t))})", width)
-                for t, width in entry["thresholds"].items()
-            ),
-            *((f"{kind} of {name}, the widest", entry[kind]) for kind in kinds if kind in entry),
+        (label, _short(one))
+        for name, width in widths.items()
+        for label, one in (
+            *((f"P({name} > {number(t)})", share) for t, share in width.thresholds.items()),
+            *((f"{kind} of {name}, the widest", index) for kind, index in width.indices.items()),
         )
     ]
     if others:
         heading("\nand of")
         grid(others)
-    if any(entry["mean"] is None for entry in widths.values()):
+    if any(width.mean is None for width in widths.values()):
         console.print()
         told = "A dash: not from so few rows, not from this design, or the tail is too heavy."
         paragraph(told, indent=0)
 
 
-def _widths(widths: dict[str, Any]) -> Iterator[tuple[str, ...]]:
+def _widths(widths: Mapping[str, Widths]) -> Iterator[tuple[str, ...]]:
     """Yield a line for each output, or one with its name and then one for each element."""
     before = ""
-    for name, entry in widths.items():
+    for name, width in widths.items():
         output, _, place = name.partition("[")
-        label = output if entry["units"] == "1" else f"{output} [{entry['units']}]"
+        label = output if width.units == "1" else f"{output} [{width.units}]"
         if place and output != before:
-            yield label, *[""] * (1 + len(entry["quantiles"]))
+            yield label, *[""] * (1 + len(width.quantiles))
         before = output
-        numbers = (_short(width) for width in (entry["mean"], *entry["quantiles"].values()))
+        numbers = (_short(one) for one in (width.mean, *width.quantiles.values()))
         yield f"  {place.removesuffix(']')}" if place else label, *numbers
 
 

@@ -50,11 +50,11 @@ def simulate(
         store.write(ds, output)
     if plot:
         from uq.drawing.figure import DOTS_PER_INCH
-        from uq.drawing.motion_plot import plot_history
+        from uq.plots import history
 
         try:
             file_behind(plot).parent.mkdir(parents=True, exist_ok=True)
-            plot_history(ds).savefig(plot, dpi=DOTS_PER_INCH)
+            history(ds).savefig(plot, dpi=DOTS_PER_INCH)
         except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
             raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None
     print_json(as_json(model, ds)) if json else _show(model, ds)

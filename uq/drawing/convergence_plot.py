@@ -9,12 +9,21 @@ from matplotlib.ticker import LogLocator
 
 from uq.analysis.convergence import running_estimates
 from uq.drawing.elements_plot import label, look, told_in
-from uq.drawing.figure import COLOURS, LINES, legend, new_figure, sentence, styled, with_symbol
+from uq.drawing.figure import COLOURS, LINES, sentence, styled, with_symbol
+from uq.drawing.index_plot import subject
+from uq.drawing.panel import column, figure_of, heading, legend
+from uq.errors import InputError
 from uq.rows.elements import independent_rows, named_elements
 
 
 @styled
-def convergence(ds: xr.Dataset, output: str, running: pd.DataFrame | None = None) -> Figure | None:
+def convergence(
+    ds: xr.Dataset,
+    output: str,
+    *,
+    running: pd.DataFrame | None = None,
+    axes: Axes | None = None,
+) -> Figure:
     """Draw how the mean of an output, or its median, settles as rows come in, with its interval.
 
     Parameters
@@ -25,61 +34,98 @@ def convergence(ds: xr.Dataset, output: str, running: pd.DataFrame | None = None
         An output that is no category, or one element of it.
     running : pandas.DataFrame, optional
         What `uq.running_estimates` returns, if that is known already.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
 
     Returns
     -------
-    matplotlib.figure.Figure or None
-        None where there is no estimate. The interval at each size is for that size alone.
+    matplotlib.figure.Figure
+        The interval at each size is for that size alone.
 
     Raises
     ------
     InputError
-        When the first rows of the design are no design.
+        When the first rows of the design are no design, or neither estimate is known.
     """
     running = running_estimates(ds) if running is None else running
+    kind, told = followed(ds, output, running)
+    if not kind:
+        raise InputError(f"{output}: neither its mean nor its median is known")
     chosen = named_elements(independent_rows(ds), output)
-    own = running[running["output"].isin([element.name for element in chosen])]
+    unit, per = told_in(chosen[0].units, told["value"].to_numpy(float))
+    (panel,) = column(axes, 2.1, entries=len(chosen))
+    for i, element in enumerate(chosen):
+        colour, line = look(i, element, chosen)
+        _curve(panel, told[told["output"] == element.name], per, colour, line, label(ds, element))
+    what = "mean" if kind == "mean" else "median"
+    panel.set_ylabel(sentence(f"{what}: {chosen[0].meaning}", unit, width=30))
+    _finish(panel, ds)
+    return figure_of(panel)
+
+
+def followed(ds: xr.Dataset, output: str, running: pd.DataFrame) -> tuple[str, pd.DataFrame]:
+    """Return which estimate of an output `convergence` follows, "" for none, and its lines."""
+    names = [element.name for element in named_elements(independent_rows(ds), output)]
+    own = running[running["output"].isin(names)]
     own = own[np.isfinite(own["value"].astype(float))]
     # Where some life never ends there is a mean of the first rows, but none of all of them.
     of_all = own[own["samples"] == running["samples"].max()].groupby("estimate")["output"].nunique()
     kind = max(("mean", "quantile 0.5"), key=lambda one: of_all.get(one, 0))
-    told = own[own["estimate"] == kind]
-    if kind not in of_all:
-        return None
-    unit, per = told_in(chosen[0].units, told["value"].to_numpy(float))
-    figure, (axes,) = new_figure(2.1, entries=len(chosen))
-    for i, element in enumerate(chosen):
-        colour, line = look(i, element, chosen)
-        _curve(axes, told[told["output"] == element.name], per, colour, line, label(ds, element))
-    what = "mean" if kind == "mean" else "median"
-    axes.set_ylabel(sentence(f"{what}: {chosen[0].meaning}", unit, width=30))
-    _finish(axes, ds)
-    return figure
+    return kind if kind in of_all else "", own[own["estimate"] == kind]
 
 
 @styled
 def index_convergence(
-    ds: xr.Dataset, target: str, running: pd.DataFrame, words: str
-) -> Figure | None:
-    """Draw how the total indices of one target settle; parameters as in `convergence`."""
-    own = running[(running["output"] == target) & running["estimate"].str.startswith("ST ")]
-    own = own.dropna(subset="value")
+    ds: xr.Dataset,
+    output: str,
+    *,
+    running: pd.DataFrame | None = None,
+    axes: Axes | None = None,
+) -> Figure:
+    """Draw how the total indices of an output settle as rows come in, with their intervals.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result of a crossed design.
+    output : str
+        One of the names that `uq.sensitivity` returns.
+    running, axes
+        As in `convergence`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When the output has no total indices.
+    """
+    running = running_estimates(ds) if running is None else running
+    own = total_indices(running)
+    own = own[own["output"] == output]
     if own.empty:
-        return None
+        raise InputError(f"{output}: no total indices are known of fewer rows")
     last = own[own["samples"] == own["samples"].max()].sort_values("value", ascending=False)
     leading = last["estimate"].tolist()[: len(COLOURS)]
-    figure, (axes,) = new_figure(2.1, entries=len(leading))
+    (panel,) = column(axes, 2.1, entries=len(leading))
     for i, estimate in enumerate(leading):
         name = sentence(with_symbol(ds[estimate.removeprefix("ST ")]), width=60)
         colour, line = COLOURS[i], LINES[i % len(LINES)]
-        _curve(axes, own[own["estimate"] == estimate], 1.0, colour, line, name)
-    axes.set_ylabel("Total index (ST) [1]")
+        _curve(panel, own[own["estimate"] == estimate], 1.0, colour, line, name)
+    panel.set_ylabel("Total index (ST) [1]")
     # An interval from the first few rows must not squeeze the rest.
-    low, high = axes.get_ylim()
-    axes.set_ylim(max(low, -0.25), min(high, 1.25))
-    figure.suptitle(words, x=0.01, ha="left", fontsize=8)
-    _finish(axes, ds)
-    return figure
+    low, high = panel.get_ylim()
+    panel.set_ylim(max(low, -0.25), min(high, 1.25))
+    _finish(panel, ds)
+    heading(panel, subject(ds, output))
+    return figure_of(panel)
+
+
+def total_indices(running: pd.DataFrame) -> pd.DataFrame:
+    """Return the lines of `uq.running_estimates` that are total indices."""
+    return running[running["estimate"].str.startswith("ST ")].dropna(subset="value")
 
 
 def _curve(

@@ -7,7 +7,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from uq.drawing.figure import COLOURS, LINES, is_wide, legend, place_in_words
+from uq.drawing.figure import COLOURS, LINES, is_wide, place_in_words
+from uq.drawing.panel import legend
 from uq.rows.elements import Element, Floats, flags
 from uq.wording import percent, time_unit
 

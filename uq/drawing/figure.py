@@ -17,7 +17,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import EngFormatter, LogFormatter
 
 from uq.literals import plain
@@ -63,28 +62,6 @@ class Drawing(Figure):
         return png.getvalue()
 
 
-def new_figure(height: float, panels: int = 1, entries: int = 0) -> tuple[Figure, list[Axes]]:
-    """Return an empty figure one column wide, and its panels from top to bottom.
-
-    Parameters
-    ----------
-    height : float
-        [inch]
-    panels : int
-        They share the horizontal axis.
-    entries : int
-        Lines of the legend below, for which the figure grows.
-
-    Returns
-    -------
-    tuple of Figure and list of Axes
-    """
-    figure = Drawing(figsize=(WIDTH, height + 0.15 * entries), layout="constrained")
-    found = list(figure.subplots(panels, sharex=True, squeeze=False)[:, 0])
-    roomy(found[0])
-    return figure, found
-
-
 def roomy(axes: Axes, ticks: int = 6) -> None:
     """Have so few ticks on a horizontal axis, not yet logarithmic, that long numbers have room."""
     whole_numbers(axes.xaxis)
@@ -123,16 +100,6 @@ def logarithmic(axes: Axes, vertical: bool = False) -> None:
     scale("log")
     axis.set_major_formatter(_PlainLog())
     axis.set_minor_formatter(_PlainLog())
-
-
-def legend(axes: Axes) -> None:
-    """Explain colours and lines below a figure with one panel, where there is anything to say."""
-    handles, labels = axes.get_legend_handles_labels()
-    if any(labels) and isinstance(axes.figure, Figure):
-        shown = axes.figure.legend(handles, labels, loc="outside lower left", markerscale=1.5)
-        for handle in shown.legend_handles:
-            if isinstance(handle, Line2D) and handle.get_linestyle() == "None":
-                handle.set(markersize=6, alpha=1)  # a point as small as in the figure has no colour
 
 
 @styled

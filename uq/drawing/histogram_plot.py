@@ -4,6 +4,7 @@ import textwrap
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.drawing.elements_plot import (
@@ -16,14 +17,15 @@ from uq.drawing.elements_plot import (
     rows_in_words,
     told_in,
 )
-from uq.drawing.figure import legend, logarithmic, new_figure, roomy, sentence, styled
+from uq.drawing.figure import logarithmic, roomy, sentence, styled
+from uq.drawing.panel import column, figure_of, legend
 from uq.rows.elements import independent_rows, named_elements
 
 _MOST_PANELS = 4
 
 
 @styled
-def histogram(ds: xr.Dataset, output: str) -> Figure:
+def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw how the values of an output are distributed.
 
     Parameters
@@ -32,6 +34,8 @@ def histogram(ds: xr.Dataset, output: str) -> Figure:
         A result.
     output : str
         An output that is not a lifetime or category, or one element of it.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
 
     Returns
     -------
@@ -39,7 +43,7 @@ def histogram(ds: xr.Dataset, output: str) -> Figure:
     """
     chosen = named_elements(independent_rows(ds), output)
     values = [element.at_least for element in chosen]
-    figure, (axes,) = new_figure(2.1, entries=len(chosen))
+    (panel,) = column(axes, 2.1, entries=len(chosen))
     together = np.concatenate(values)
     unit, per = told_in(chosen[0].units, together)
     edges, wide = bins(together / per)
@@ -47,7 +51,7 @@ def histogram(ds: xr.Dataset, output: str) -> Figure:
         colour, line = look(i, element, chosen)
         counts = np.histogram(own / per, edges)[0] / max(len(own), 1)
         alone = len(chosen) == 1
-        axes.stairs(
+        panel.stairs(
             counts,
             edges,
             fill=alone,
@@ -56,15 +60,15 @@ def histogram(ds: xr.Dataset, output: str) -> Figure:
             lw=0 if alone else 1.2,
             label=label(ds, element),
         )
-    axes.set(ylim=(0, None), ylabel="Share of rows per bin")
-    axes.set_xlabel(sentence(chosen[0].meaning, unit))
-    logarithmic(axes) if wide else roomy(axes)
-    explain(axes, chosen)
-    return figure
+    panel.set(ylim=(0, None), ylabel="Share of rows per bin")
+    panel.set_xlabel(sentence(chosen[0].meaning, unit))
+    logarithmic(panel) if wide else roomy(panel)
+    explain(panel, chosen)
+    return figure_of(panel)
 
 
 @styled
-def histogram_by_regime(ds: xr.Dataset, output: str) -> Figure:
+def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw how the values of an output are distributed, each regime on top of the last.
 
     Parameters
@@ -74,6 +78,8 @@ def histogram_by_regime(ds: xr.Dataset, output: str) -> Figure:
     output : str
         An output that is no category, or one element of it. Of an output with more than four
         elements the first four are drawn; of a lifetime those that end.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its place. By default a new figure.
 
     Returns
     -------
@@ -88,19 +94,19 @@ def histogram_by_regime(ds: xr.Dataset, output: str) -> Figure:
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
     unit, per = told_in(chosen[0].units, together)
     edges, wide = bins(together / per)
-    figure, panels = new_figure(0.7 + 1.1 * len(chosen), len(chosen), entries=len(regimes))
-    for axes, element, mask in zip(panels, chosen, ended, strict=True):
+    panels = column(axes, 0.7 + 1.1 * len(chosen), len(chosen), entries=len(regimes))
+    for panel, element, mask in zip(panels, chosen, ended, strict=True):
         base = np.zeros(len(edges) - 1)
         for name, code in regimes.items():
             own = element.values[mask & (codes == code)] / per
             top = base + np.histogram(own, edges)[0] / max(int(mask.sum()), 1)
-            axes.stairs(top, edges, baseline=base, fill=True, color=colours[name], label=name)
+            panel.stairs(top, edges, baseline=base, fill=True, color=colours[name], label=name)
             base = top
-        axes.set(ylim=(0, None), ylabel="Share of rows\nper bin")
+        panel.set(ylim=(0, None), ylabel="Share of rows\nper bin")
         words = label(ds, element)
         title = f"{words}{', ' if words else ''}{rows_in_words([element])}"
-        axes.set_title(textwrap.fill(title, 46), loc="left")
+        panel.set_title(textwrap.fill(title, 46), loc="left")
     panels[-1].set_xlabel(sentence(chosen[0].meaning, unit))
     logarithmic(panels[-1]) if wide else roomy(panels[-1])
     legend(panels[0])
-    return figure
+    return figure_of(panels[0])

@@ -2,18 +2,18 @@
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.drawing.figure import (
     COLOURS,
-    legend,
-    new_figure,
     place_in_words,
     roomy,
     sentence,
     styled,
     with_symbol,
 )
+from uq.drawing.panel import column, figure_of, heading, legend
 from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
@@ -23,7 +23,15 @@ from uq.rows.variables import is_category
 from uq.wording import time_unit
 
 
-def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure:
+@styled
+def index_bars(
+    ds: xr.Dataset,
+    output: str,
+    *,
+    method: str | None = None,
+    found: TargetIndices | None = None,
+    axes: Axes | None = None,
+) -> Figure:
     """Draw the sensitivity indices of one output as bars, with their 95 % intervals.
 
     Parameters
@@ -31,9 +39,13 @@ def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure
     ds : xarray.Dataset
         A result.
     output : str
-        One of the names that `uq.indices.sensitivities` returns.
+        One of the names that `uq.sensitivity` returns.
     method : str, optional
         By default the first that the study asks for.
+    found : TargetIndices, optional
+        The indices, if they are known already.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
 
     Returns
     -------
@@ -44,35 +56,13 @@ def index_bars(ds: xr.Dataset, output: str, method: str | None = None) -> Figure
     InputError
         When there is no such output, it stands for several, or it has no indices.
     """
-    found = sensitivities(ds, method, output).targets
-    if len(found) > 1:
-        raise InputError(f"'{output}' stands for several; name one of: {', '.join(found)}")
-    ((name, one),) = found.items()
-    if one.refused:
-        raise InputError(f"{name}: {one.refused}")
-    return bars(ds, one)
-
-
-@styled
-def bars(ds: xr.Dataset, found: TargetIndices) -> Figure:
-    """Draw the indices of one target.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-    found : TargetIndices
-        Not refused.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    found = found or _only(ds, output, method)
     kinds, name = found.kinds(), found.target.name
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
     labels = [_named(ds[parameter]) for parameter in parameters]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
-    figure, (axes,) = new_figure(0.8 + 0.13 * lines.sum(), entries=2)
+    (panel,) = column(axes, 0.8 + 0.13 * lines.sum(), entries=2)
     middle = np.cumsum(lines) - lines / 2
     thickness = 0.8 * lines.min() / len(kinds)
     for i, (kind, values) in enumerate(kinds.items()):
@@ -80,31 +70,42 @@ def bars(ds: xr.Dataset, found: TargetIndices) -> Figure:
         drawn = [values[parameter] for parameter in parameters]
         table = np.array([(one.value, one.low, one.high) for one in drawn])
         value, ends = table[:, 0], table[:, 1:].T
-        axes.barh(y, value, thickness, color=COLOURS[i], label=kind.words)
-        axes.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
+        panel.barh(y, value, thickness, color=COLOURS[i], label=kind.words)
+        panel.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
     for null in found.indices.nulls.values():
         label = "largest of inputs that play no part"
-        axes.axvline(null.one, color="black", ls="--", lw=0.8, label=label)
+        panel.axvline(null.one, color="black", ls="--", lw=0.8, label=label)
         if np.isfinite(null.largest):
             label = "the largest of as many"
-            axes.axvline(null.largest, color="black", ls=":", lw=0.8, label=label)
-    axes.axvline(0, color="black", lw=0.6)
+            panel.axvline(null.largest, color="black", ls=":", lw=0.8, label=label)
+    panel.axvline(0, color="black", lw=0.6)
     # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
     shares = all(kind.unit != "output" for kind in kinds)
     if shares:
-        low, high = axes.get_xlim()
-        axes.set_xlim(max(low, -0.25), min(high, 1.25))
-    axes.set_yticks(middle, labels)
-    axes.set_ylim(0, lines.sum())
-    roomy(axes, ticks=3)  # the labels take most of the width
+        low, high = panel.get_xlim()
+        panel.set_xlim(max(low, -0.25), min(high, 1.25))
+    panel.set_yticks(middle, labels)
+    panel.set_ylim(0, lines.sum())
+    roomy(panel, ticks=3)  # the labels take most of the width
     known = any(np.isfinite(one.low) for values in kinds.values() for one in values.values())
     form, *_ = split_name(name)
     unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect, in the unit of the output"
     axis = "Sensitivity index [1]" if shares else unit
-    axes.set_xlabel(axis + known * ",\nwith 95 % interval")
-    figure.suptitle(subject(ds, name), x=0.01, ha="left", fontsize=8)
-    legend(axes)
-    return figure
+    panel.set_xlabel(axis + known * ",\nwith 95 % interval")
+    heading(panel, subject(ds, name))
+    legend(panel)
+    return figure_of(panel)
+
+
+def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:
+    """Return the indices of the only target that a name stands for."""
+    found = sensitivities(ds, method, output).targets
+    if len(found) > 1:
+        raise InputError(f"'{output}' stands for several; name one of: {', '.join(found)}")
+    ((name, one),) = found.items()
+    if one.refused:
+        raise InputError(f"{name}: {one.refused}")
+    return one
 
 
 def _named(parameter: xr.DataArray) -> str:

@@ -5,11 +5,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.analysis.sampled_inputs import EVERYWHERE, stated_and_realised
+from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values
 from uq.drawing.figure import (
     COLOURS,
-    WIDTH,
-    Drawing,
     is_wide,
     logarithmic,
     named_input,
@@ -17,6 +15,8 @@ from uq.drawing.figure import (
     sentence,
     styled,
 )
+from uq.drawing.panel import figure_of, grid
+from uq.errors import InputError
 from uq.inputs.conditioning import cdf_within
 from uq.inputs.distributions import Law
 from uq.rows.elements import Floats
@@ -25,39 +25,44 @@ _IN_ONE_COLUMN = 3  # inputs
 
 
 @styled
-def inputs(ds: xr.Dataset) -> Figure | None:
+def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     """Draw how the values of each input are distributed, beside the law that was stated.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its place. By default a new figure.
 
     Returns
     -------
-    matplotlib.figure.Figure or None
-        None where the rows do not follow the laws.
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When the rows do not follow the laws.
     """
-    found = stated_and_realised(ds)
+    found = laws_and_values(ds)
     if not found:
-        return None
+        raise InputError(f"the rows of a '{ds.attrs['design']}' design do not follow the laws")
     columns = 1 if len(found) <= _IN_ONE_COLUMN else 2
     lines = -(-len(found) // columns)
-    figure = Drawing(figsize=(WIDTH, 0.3 + 1.4 * lines), layout="constrained")
-    panels = figure.subplots(lines, columns, squeeze=False).ravel()
-    for axes in panels[len(found) :]:
-        axes.set_axis_off()
-    for axes, (name, (law, values)) in zip(panels, found.items(), strict=False):
-        _panel(axes, law, values, ticks=6 // columns)
+    panels = grid(axes, 0.3 + 1.4 * lines, lines, columns).ravel()
+    for panel in panels[len(found) :]:
+        panel.set_axis_off()
+    for panel, (name, (law, values)) in zip(panels, found.items(), strict=False):
+        _panel(panel, law, values, ticks=6 // columns)
         width = 44 // columns
         if law.times is None:
-            axes.set_xlabel(named_input(ds[name], width))
+            panel.set_xlabel(named_input(ds[name], width))
         else:
             factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
-            axes.set_xlabel(sentence(factor, width=width))
+            panel.set_xlabel(sentence(factor, width=width))
     rows = len(next(iter(found.values()))[1])
     panels[0].set_title(f"Share per bin of {rows} rows; line: as stated", loc="left")
-    return figure
+    return figure_of(panels[0])
 
 
 def _panel(axes: Axes, law: Law, values: Floats, ticks: int) -> None:

@@ -9,14 +9,15 @@ from numpy.typing import ArrayLike
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles
 from uq.analysis.lifetime import survival
 from uq.drawing.elements_plot import explain, label, look
-from uq.drawing.figure import is_wide, logarithmic, new_figure, sentence, styled, thinned
+from uq.drawing.figure import is_wide, logarithmic, sentence, styled, thinned
+from uq.drawing.panel import column, figure_of
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.wording import TimeUnit, time_unit
 
 
 @styled
-def lifetime(ds: xr.Dataset, output: str) -> Figure:
+def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw the probability that a life has ended against time, with its 95 % bands.
 
     The dark band holds each point, the light one the whole curve, where there is one.
@@ -30,6 +31,8 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
         A result.
     output : str
         A lifetime, or one element of it.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
 
     Returns
     -------
@@ -39,7 +42,7 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
     chosen = named_elements(rows, output)
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = time_unit(float(np.median(ends)) if len(ends) else 0.0)
-    figure, (axes,) = new_figure(2.3, entries=len(chosen))
+    (panel,) = column(axes, 2.3, entries=len(chosen))
     bands = ["", ""]
     for i, element in enumerate(chosen):
         curve = survival(ds, element.name)
@@ -47,24 +50,24 @@ def lifetime(ds: xr.Dataset, output: str) -> Figure:
         time = curve["time"].values / unit.seconds
         colour, line = look(i, element, chosen)
         words = label(ds, element, never=float(curve["never"]))
-        axes.step(time, 1 - curve["survival"], where="post", color=colour, ls=line, label=words)
+        panel.step(time, 1 - curve["survival"], where="post", color=colour, ls=line, label=words)
         low, high = 1 - curve["high"], 1 - curve["low"]
         if np.isfinite(low).any():
-            axes.fill_between(time, low, high, step="post", color=colour, alpha=0.2, lw=0)
+            panel.fill_between(time, low, high, step="post", color=colour, alpha=0.2, lw=0)
             bands[0] = "pointwise 95 % band"
         low, high = 1 - curve["band_high"], 1 - curve["band_low"]
         if np.isfinite(low).any():
-            axes.fill_between(time, low, high, step="post", color=colour, alpha=0.1, lw=0)
+            panel.fill_between(time, low, high, step="post", color=colour, alpha=0.1, lw=0)
             bands[1] = "light: of the whole curve"
-        _mark(axes, element, replicates_of(rows), unit, colour)
-    axes.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
-    axes.set_xlabel(sentence(chosen[0].meaning, unit.name))
-    other = axes.secondary_yaxis("right", functions=(_rest, _rest))
+        _mark(panel, element, replicates_of(rows), unit, colour)
+    panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
+    panel.set_xlabel(sentence(chosen[0].meaning, unit.name))
+    other = panel.secondary_yaxis("right", functions=(_rest, _rest))
     other.set_ylabel("Probability of\na longer life")
     if is_wide(ends):
-        logarithmic(axes)
-    explain(axes, chosen, *filter(None, bands))
-    return figure
+        logarithmic(panel)
+    explain(panel, chosen, *filter(None, bands))
+    return figure_of(panel)
 
 
 def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, colour: str) -> None:

@@ -7,8 +7,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import COLOURS, LINES, new_figure, powers, sentence, styled
-from uq.drawing.panel import above, are_many, finish, legend_above, panel_of
+from uq.drawing.figure import COLOURS, LINES, powers, sentence, styled
+from uq.drawing.panel import above, are_many, column, figure_of, finish, legend_above
 from uq.drawing.quantities import (
     Scale,
     find,
@@ -26,7 +26,12 @@ _BESIDE = 32  # characters that the label of a vertical axis has room for
 
 
 @styled
-def plot_history(ds: xr.Dataset, quantities: Sequence[str | Sequence[str]] | None = None) -> Figure:
+def history(
+    ds: xr.Dataset,
+    quantities: Sequence[str | Sequence[str]] | None = None,
+    *,
+    axes: Axes | None = None,
+) -> Figure:
     """Draw quantities against time, a panel for each.
 
     Parameters
@@ -37,6 +42,8 @@ def plot_history(ds: xr.Dataset, quantities: Sequence[str | Sequence[str]] | Non
     quantities : sequence of str or of sequences of str, optional
         In this order, by default all; those named together share a panel, for instance
         ``["disphasing_angle", ["speed_1", "speed_2"]]`` for a run-up.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its place. By default a new figure.
 
     Returns
     -------
@@ -57,26 +64,27 @@ def plot_history(ds: xr.Dataset, quantities: Sequence[str | Sequence[str]] | Non
     scales = [scale_of(group) for group in found]
     clock = scale_of([find(ds, "time")])
     time = ds["time"].values * clock.factor
-    figure, panels = new_figure(0.4 + 1.0 * len(groups), len(groups))
-    for axes, group, scale in zip(panels, found, scales, strict=True):
+    panels = column(axes, 0.4 + 1.0 * len(groups), len(groups))
+    for panel, group, scale in zip(panels, found, scales, strict=True):
         for i, one in enumerate(group):
             colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
             series, text = one.values * scale.factor, sentence(words(one))
-            axes.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
+            panel.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
         if len(group) > 1:
-            axes.set_ylabel(f"[{powers(scale.unit)}]")
-            legend_above(axes)
+            panel.set_ylabel(f"[{powers(scale.unit)}]")
+            legend_above(panel)
         else:
-            above(axes, label(group[0], scale))
+            above(panel, label(group[0], scale))
     panels[-1].set_xlabel(label(ds["time"], clock))
-    return figure
+    return figure_of(panels[0])
 
 
 @styled
-def plot_phase_portrait(
+def phase_portrait(
     ds: xr.Dataset,
-    x: str = "displacement",
-    y: str = "velocity",
+    output: str = "velocity",
+    *,
+    against: str = "displacement",
     section: xr.Dataset | None = None,
     axes: Axes | None = None,
 ) -> Figure:
@@ -87,8 +95,8 @@ def plot_phase_portrait(
     ds : xarray.Dataset
         From `uq.simulate`, or any Dataset with both quantities along time or phase, the last
         dimension. Along the one before, if there is one, a curve for each.
-    x, y : str
-        What lies along the axes.
+    output, against : str
+        What lies along the vertical axis, and along the horizontal one.
     section : xarray.Dataset, optional
         With the same quantities at the instants of a section.
     axes : matplotlib.axes.Axes, optional
@@ -105,20 +113,24 @@ def plot_phase_portrait(
         When a quantity does not exist.
     """
     ds = with_quantities(ds)
-    axes = panel_of(axes, 2.6)
-    scales = _label_both(axes, ds, x, y)
-    for i, (name, xs, ys) in enumerate(_families(ds, x, y, scales)):
+    (axes,) = column(axes, 2.6)
+    scales = _label_both(axes, ds, output, against)
+    for i, (name, xs, ys) in enumerate(_families(ds, output, against, scales)):
         colour, thin = COLOURS[i % len(COLOURS)], 0.7 if len(xs) < 5000 else 0.4
         axes.plot(xs, ys, color=colour, lw=thin, label=name, rasterized=are_many(len(xs) // 10))
     if section is not None:
-        for name, xs, ys in _families(section, x, y, scales):
+        for name, xs, ys in _families(section, output, against, scales):
             axes.plot(xs, ys, "ko", ms=2.5, mew=0, label=f"Poincaré section {name}".strip())
     return finish(axes)
 
 
 @styled
-def plot_section(
-    ds: xr.Dataset, x: str = "displacement", y: str = "velocity", axes: Axes | None = None
+def section(
+    ds: xr.Dataset,
+    output: str = "velocity",
+    *,
+    against: str = "displacement",
+    axes: Axes | None = None,
 ) -> Figure:
     """Draw the points of a Poincare section.
 
@@ -127,8 +139,8 @@ def plot_section(
     ds : xarray.Dataset
         With both quantities at the instants of the section, the last dimension. Along the one
         before, if there is one, a colour for each.
-    x, y, axes
-        As in `plot_phase_portrait`.
+    output, against, axes
+        As in `phase_portrait`.
 
     Returns
     -------
@@ -139,9 +151,9 @@ def plot_section(
     InputError
         When a quantity does not exist.
     """
-    axes = panel_of(axes, 2.6)
-    scales = _label_both(axes, ds, x, y)
-    for i, (name, xs, ys) in enumerate(_families(ds, x, y, scales)):
+    (axes,) = column(axes, 2.6)
+    scales = _label_both(axes, ds, output, against)
+    for i, (name, xs, ys) in enumerate(_families(ds, output, against, scales)):
         size, many = _point_size(xs, ys), are_many(len(xs))
         colour = COLOURS[i % len(COLOURS)]
         axes.plot(xs, ys, "o", ms=size, mew=0, color=colour, label=name, rasterized=many)
@@ -158,7 +170,7 @@ def _point_size(xs: Floats, ys: Floats) -> float:
     return 3.0 if len(places) < 60 else 1.0
 
 
-def _label_both(axes: Axes, ds: xr.Dataset, x: str, y: str) -> tuple[Scale, Scale]:
+def _label_both(axes: Axes, ds: xr.Dataset, y: str, x: str) -> tuple[Scale, Scale]:
     across, up = find(ds, x), find(ds, y)
     scales = scale_of([across]), scale_of([up])
     axes.set_xlabel(label(across, scales[0]))
@@ -167,7 +179,7 @@ def _label_both(axes: Axes, ds: xr.Dataset, x: str, y: str) -> tuple[Scale, Scal
 
 
 def _families(
-    ds: xr.Dataset, x: str, y: str, scales: tuple[Scale, Scale]
+    ds: xr.Dataset, y: str, x: str, scales: tuple[Scale, Scale]
 ) -> Iterator[tuple[str, Floats, Floats]]:
     """Yield name and coordinates of each curve: of all there are along the first dimension."""
     across, up = pair(ds, x, y)

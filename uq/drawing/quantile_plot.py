@@ -1,15 +1,14 @@
 """The table of quantiles, drawn as a figure for a paper."""
 
-from collections.abc import Mapping
-from math import isfinite, nan
-
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.analysis.summary import Described
+from uq.analysis.summary import Summary, summarise
 from uq.drawing.elements_plot import label, rows_in_words, told_in
 from uq.drawing.figure import WIDTH, Drawing, sentence, styled
+from uq.drawing.panel import figure_of
 from uq.rows.elements import independent_rows, named_elements
 from uq.wording import interval
 
@@ -17,7 +16,13 @@ _LINE = 0.15  # inch
 
 
 @styled
-def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Described]) -> Figure:
+def quantile_table(
+    ds: xr.Dataset,
+    output: str,
+    *,
+    summary: Summary | None = None,
+    axes: Axes | None = None,
+) -> Figure:
     """Draw a table of the quantiles of an output, each with its 95 % interval below.
 
     Parameters
@@ -26,23 +31,25 @@ def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Described]
         A result.
     output : str
         An output that is no category.
-    entries : dict
-        ``outputs`` of what `uq.analysis.summary.summarise` returns.
+    summary : Summary, optional
+        What `uq.analysis.summary.summarise` returns, if that is known already.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
     """
     chosen = named_elements(independent_rows(ds), output)
-    found = [entries[element.name].parts["quantiles"] for element in chosen]
-    values = [one.estimate.value for quantiles in found for one in quantiles]
-    known = np.array([value if isfinite(value) else nan for value in values])
-    unit, per = told_in(chosen[0].units, known)
+    outputs = (summary or summarise(ds)).outputs
+    found = [outputs[element.name].parts["quantiles"] for element in chosen]
+    values = [one.estimate.finite.value for quantiles in found for one in quantiles]
+    unit, per = told_in(chosen[0].units, np.array(values))
     words = [label(ds, element) for element in chosen]
     lines = 3 if any(words) else 2
     height = _LINE * (4.2 + (lines + 0.4) * len(chosen))
-    figure = Drawing(figsize=(WIDTH, height))
-    axes = figure.add_axes((0.02, 0.0, 0.96, 1.0))
+    if axes is None:
+        axes = Drawing(figsize=(WIDTH, height)).add_axes((0.02, 0.0, 0.96, 1.0))
     axes.set_axis_off()
     axes.set(xlim=(0, 1), ylim=(height / _LINE, 0))
     axes.text(0, 0.3, sentence(chosen[0].meaning, unit, 60), va="top")
@@ -60,4 +67,4 @@ def quantile_table(ds: xr.Dataset, output: str, entries: Mapping[str, Described]
         for place, one in zip(places, quantiles, strict=True):
             axes.text(place, y, one.words(per), ha="right")
             axes.text(place, y + 0.95, interval(one.estimate, per), ha="right", size=6)
-    return figure
+    return figure_of(axes)

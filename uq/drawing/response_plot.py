@@ -10,7 +10,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
 from uq.drawing.figure import COLOURS, LINES, powers, sentence, styled
-from uq.drawing.panel import are_many, finish, panel_of
+from uq.drawing.panel import are_many, column, finish
 from uq.drawing.quantities import find, label, pair, place_in, scale_of
 from uq.errors import InputError
 from uq.wording import percent
@@ -21,7 +21,9 @@ _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 
 
 @styled
-def plot_curve(ds: xr.Dataset, y: str, x: str, axes: Axes | None = None) -> Figure:
+def curve(
+    ds: xr.Dataset, output: str, *, against: str | None = None, axes: Axes | None = None
+) -> Figure:
     """Draw one quantity against another: work-rates against gaps, gaps against the time of wear.
 
     Where the regime, if ``ds["regime"]`` tells one, changes along a curve, there is a dotted line,
@@ -30,11 +32,11 @@ def plot_curve(ds: xr.Dataset, y: str, x: str, axes: Axes | None = None) -> Figu
     Parameters
     ----------
     ds : xarray.Dataset
-    y : str
+    output : str
         A variable along one dimension, and perhaps a second, for instance ``site``: a curve for
         each.
-    x : str
-        A variable along the first of these, and perhaps the second.
+    against : str, optional
+        A variable along the first of these, and perhaps the second; by default that dimension.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -48,9 +50,9 @@ def plot_curve(ds: xr.Dataset, y: str, x: str, axes: Axes | None = None) -> Figu
     InputError
         When a quantity does not exist.
     """
-    across, up = pair(ds, x, y)
+    across, up = pair(ds, against or _first_dimension(ds, output), output)
     scales = scale_of([across]), scale_of([up])
-    axes = panel_of(axes, 2.2)
+    (axes,) = column(axes, 2.2)
     along = across.dims[0]
     across, up = across.transpose(..., along), up.transpose(..., along)
     family = up if up.ndim > 1 else up.expand_dims("")
@@ -76,18 +78,23 @@ def plot_curve(ds: xr.Dataset, y: str, x: str, axes: Axes | None = None) -> Figu
 
 
 @styled
-def plot_bifurcation(
-    ds: xr.Dataset, y: str, x: str, by: str | None = None, axes: Axes | None = None
+def bifurcation(
+    ds: xr.Dataset,
+    output: str,
+    *,
+    against: str | None = None,
+    by: str | None = None,
+    axes: Axes | None = None,
 ) -> Figure:
     """Draw all values that a quantity takes at each value of a parameter, as points.
 
     Parameters
     ----------
     ds : xarray.Dataset
-    y : str
-        A variable along that of `x` and other dimensions, NaN where there is no value.
-    x : str
-        A variable along one dimension.
+    output : str
+        A variable along the dimension of the parameter and others, NaN where there is no value.
+    against : str, optional
+        The parameter, a variable along one dimension; by default the first one of the output.
     by : str, optional
         A variable of words along the same, for instance ``regime``: a colour for each.
     axes : matplotlib.axes.Axes, optional
@@ -103,9 +110,9 @@ def plot_bifurcation(
     InputError
         When a quantity does not exist.
     """
-    up, across = find(ds, y), find(ds, x)
+    up, across = find(ds, output), find(ds, against or _first_dimension(ds, output))
     kinds = find(ds, by) if by else xr.full_like(across, "", dtype=object)
-    axes = panel_of(axes, 2.4)
+    (axes,) = column(axes, 2.4)
     scales = scale_of([across]), scale_of([up])
     up, across, kinds = xr.broadcast(up, across, kinds)
     there = np.isfinite(up.values)
@@ -123,7 +130,7 @@ def plot_bifurcation(
 
 
 @styled
-def plot_basins(ds: xr.Dataset, outputs: Sequence[str] = (), axes: Axes | None = None) -> Figure:
+def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = None) -> Figure:
     """Draw which points of a grid lead to which attractor.
 
     Parameters
@@ -152,7 +159,7 @@ def plot_basins(ds: xr.Dataset, outputs: Sequence[str] = (), axes: Axes | None =
     across, up = (ds[dim] for dim in attractor.dims)
     scales = scale_of([across]), scale_of([up])
     texts = [_basin(ds.isel(basin=i), outputs) for i in range(ds.sizes["basin"])]
-    axes = panel_of(axes, 2.6)
+    (axes,) = column(axes, 2.6)
     # More attractors than colours: the rare ones share the last.
     shown = np.where(attractor.values < 0, len(COLOURS) + 1, attractor.values)
     shown = np.where(attractor.values >= len(COLOURS), len(COLOURS), shown)
@@ -176,6 +183,10 @@ def plot_basins(ds: xr.Dataset, outputs: Sequence[str] = (), axes: Axes | None =
     axes.set_xlabel(label(across, scales[0]))
     axes.set_ylabel(label(up, scales[1], _BESIDE))
     return finish(axes)
+
+
+def _first_dimension(ds: xr.Dataset, output: str) -> str:
+    return str(next(iter(find(ds, output).dims), output))
 
 
 def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:

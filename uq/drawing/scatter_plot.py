@@ -20,10 +20,7 @@ from uq.drawing.elements_plot import (
 )
 from uq.drawing.figure import (
     COLOURS,
-    WIDTH,
-    Drawing,
     is_wide,
-    legend,
     logarithmic,
     named_input,
     roomy,
@@ -32,6 +29,7 @@ from uq.drawing.figure import (
     thinned,
     whole_numbers,
 )
+from uq.drawing.panel import figure_of, grid, legend
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.methods.indices import RefusedError
@@ -45,7 +43,7 @@ _IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
 
 
 @styled
-def scatter(ds: xr.Dataset, output: str) -> Figure:
+def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw the rows of one output against the inputs that move it most, with conditional means.
 
     Parameters
@@ -56,6 +54,8 @@ def scatter(ds: xr.Dataset, output: str) -> Figure:
         An output without dimensions, or one element of another: of an output with several, its
         first. Where lives never end or are censored, or values spread over decades, the line is
         the conditional median.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its place. By default a new figure.
 
     Returns
     -------
@@ -65,25 +65,24 @@ def scatter(ds: xr.Dataset, output: str) -> Figure:
     element = named_elements(rows, output)[0]
     inputs = independent_inputs(rows)
     leading = _leading(inputs, element)[:_MOST_INPUTS]
-    figure = Drawing(figsize=(WIDTH, 0.5 + 1.5 * len(leading)), layout="constrained")
-    panels = figure.subplots(len(leading), sharey=True, squeeze=False)[:, 0]
+    panels = grid(axes, 0.5 + 1.5 * len(leading), len(leading), sharey=True)[:, 0]
     finite = np.isfinite(element.values)
     unit, per = told_in(element.units, element.values)
     wide = is_wide(element.values[finite])
     independent = replicates_of(rows) is None
-    for axes, name in zip(panels, leading, strict=True):
-        _points(axes, inputs[name], element, per)
-        _conditional(axes, inputs[name], element, per, wide, independent)
-        _name_input(axes, rows, name)
-        whole_numbers(axes.yaxis)
-        axes.set_ylabel(sentence(element.meaning, unit, width=24))
+    for panel, name in zip(panels, leading, strict=True):
+        _points(panel, inputs[name], element, per)
+        _conditional(panel, inputs[name], element, per, wide, independent)
+        _name_input(panel, rows, name)
+        whole_numbers(panel.yaxis)
+        panel.set_ylabel(sentence(element.meaning, unit, width=24))
         if wide:
-            logarithmic(axes, vertical=True)
+            logarithmic(panel, vertical=True)
     words = label(ds, element)
     title = f"{words}{', ' if words else ''}{rows_in_words([element])}"
     panels[0].set_title(textwrap.fill(title, 46), loc="left")
     legend(panels[0])
-    return figure
+    return figure_of(panels[0])
 
 
 def _points(axes: Axes, x: Floats, element: Element, per: float) -> None:
@@ -166,13 +165,15 @@ def _name_input(axes: Axes, rows: xr.Dataset, name: str, width: int = 38, ticks:
 
 
 @styled
-def pairs(ds: xr.Dataset) -> Figure:
+def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     """Draw the inputs that decide the regime against each other, the rows coloured by regime.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result of a model with regimes, and of a study with two uncertain inputs or more.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw: panels divide its place. By default a new figure.
 
     Returns
     -------
@@ -193,19 +194,18 @@ def pairs(ds: xr.Dataset) -> Figure:
     size = len(leading) - 1
     alone = size == 1
     height = 0.5 + (2.1 if alone else 1.45 * size) + 0.15 * len(regimes)
-    figure = Drawing(figsize=(WIDTH, height), layout="constrained")
-    panels = figure.subplots(size, size, squeeze=False, sharex="col", sharey="row")
+    panels = grid(axes, height, size, size, sharex="col", sharey="row")
     shown = thinned(len(codes), _MOST_POINTS)
     colours = regime_colours(rows)
     for i, down in enumerate(leading[1:]):
         for j, across in enumerate(leading[:-1]):
-            axes = panels[i, j]
+            panel = panels[i, j]
             if j > i:
-                axes.set_axis_off()
+                panel.set_axis_off()
                 continue
             for name, code in regimes.items():
                 own = shown[codes[shown] == code]
-                axes.plot(
+                panel.plot(
                     inputs[across][own],
                     inputs[down][own],
                     ".",
@@ -216,15 +216,15 @@ def pairs(ds: xr.Dataset) -> Figure:
                     label=name,
                     rasterized=True,
                 )
-            axes.locator_params(axis="y", nbins=4)
-            whole_numbers(axes.yaxis)
+            panel.locator_params(axis="y", nbins=4)
+            whole_numbers(panel.yaxis)
             if i == size - 1:
-                _name_input(axes, rows, across, *((38, 6) if alone else (17, 3)))
+                _name_input(panel, rows, across, *((38, 6) if alone else (17, 3)))
             if j == 0:
-                axes.set_ylabel(named_input(rows[down], width=30 if alone else 20))
+                panel.set_ylabel(named_input(rows[down], width=30 if alone else 20))
     panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
     legend(panels[0, 0])
-    return figure
+    return figure_of(panels[0, 0])
 
 
 def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:

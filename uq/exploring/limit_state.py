@@ -7,11 +7,11 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from uq.columns import censored_name
 from uq.contract import Status
 from uq.errors import InputError, nearest
 from uq.exploring.evaluator import Evaluator
 from uq.inputs.values import unknown_name
+from uq.rows.columns import censored_name
 from uq.rows.evaluate import Chunk
 from uq.rows.results import elements
 from uq.rows.sampling import physical, row_seeds

@@ -1,21 +1,23 @@
 """What a report says of sensitivities: one table for each target of each method."""
 
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import NamedTuple
 
 import xarray as xr
 
+from uq.analysis.findings import Findings
 from uq.drawing.figure import sentence, with_symbol
-from uq.drawing.index_plot import bars, subject
+from uq.drawing.index_plot import subject
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.ranked import Values, lines, ranking, size
-from uq.indices.sensitivities import TargetIndices, methods, sensitivities
+from uq.indices.sensitivities import TargetIndices, methods
 from uq.indices.targets import FORMS, split_name
 from uq.methods.indices import S1, Kind, Null
 from uq.report.cells import Cell, Table
-from uq.report.pictures import Picture, picture
+from uq.report.pictures import Picture, pictures
 
 _LEAST = 0.05
 """Less than this share of a variance is not worth a sentence of its own."""
@@ -31,7 +33,7 @@ class Subject(NamedTuple):
     refused : str
         Why there are none, or "".
     tables : list of Table
-    picture : Picture or None
+    pictures : tuple of Picture
     notes : list of str
     leading : str
         A sentence on the input with the largest index; "" where none is larger than that of an
@@ -42,7 +44,7 @@ class Subject(NamedTuple):
     words: str
     refused: str = ""
     tables: tuple[Table, ...] = ()
-    picture: Picture | None = None
+    pictures: tuple[Picture, ...] = ()
     notes: tuple[str, ...] = ()
     leading: str = ""
 
@@ -56,34 +58,45 @@ class Method(NamedTuple):
     subjects: tuple[Subject, ...] = ()
 
 
-def sensitivity_of(ds: xr.Dataset) -> list[Method]:
+Drawn = defaultdict[tuple[str, str], list[Picture]]
+"""Method and target -> their figures."""
+
+
+def sensitivity_of(findings: Findings) -> list[Method]:
     """Return the indices by every method that the study asks for.
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        A result.
+    findings : Findings
 
     Returns
     -------
     list of Method
     """
-    return [_method(ds, name) for name in methods(ds)]
+    drawn: Drawn = defaultdict(list)
+    for of, picture in pictures(findings, "sensitivities"):
+        drawn[of.method, of.name].append(picture)
+    return [_method(findings, name, drawn) for name in methods(findings.ds)]
 
 
-def _method(ds: xr.Dataset, name: str) -> Method:
+def _method(findings: Findings, name: str, drawn: Drawn) -> Method:
     try:
-        found = sensitivities(ds, name)
+        found = findings.sensitivities(name)
     except InputError as error:
         return Method(name, refused=str(error))
     used = f"Of {found.rows_used} rows"
     if found.groups_dropped:
         used += f", {found.groups_dropped} groups dropped for lack of a value in some of their rows"
-    subjects = (_subject(ds, name, one) for one in found.targets.values())
+    subjects = (
+        _subject(findings.ds, name, one, drawn[name, target])
+        for target, one in found.targets.items()
+    )
     return Method(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
+def _subject(
+    ds: xr.Dataset, method: str, found: TargetIndices, drawn: Sequence[Picture]
+) -> Subject:
     name, indices = found.target.name, found.indices
     words = " ".join(subject(ds, name).split())
     if found.refused:
@@ -94,11 +107,9 @@ def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise))]
         tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
-    caption = f"Sensitivity indices of {name} by {method}"
-    drawn = picture(bars(ds, found), caption) if kinds else None
     article = "the " * (split_name(name)[0] in FORMS)
     leading = _leading(ds, method, f"{article}{words[:1].lower()}{words[1:]}", found)
-    return Subject(name, words, "", tables, drawn, indices.notes, leading)
+    return Subject(name, words, "", tables, tuple(drawn), indices.notes, leading)
 
 
 def _leading(ds: xr.Dataset, method: str, words: str, found: TargetIndices) -> str:

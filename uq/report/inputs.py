@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import xarray as xr
 
-from uq.analysis.sampled_inputs import compare, stated_and_realised
+from uq.analysis.sampled_inputs import compare, laws_and_values
 from uq.drawing.figure import powers
 from uq.inputs.distributions import Law
 from uq.report.cells import Cell, Table, without_empty_columns
@@ -74,12 +74,12 @@ def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
 
 
 def _uncertain(ds: xr.Dataset) -> Table:
-    realised = stated_and_realised(ds)
+    given = laws_and_values(ds)
     rows = []
     for name, entry in study_file_of(ds).uncertain.items():
         quantiles = [Cell("")] * 3
-        if name in realised:
-            found = compare(*realised[name]).realised
+        if name in given:
+            found = compare(*given[name]).sampled
             quantiles = [Cell(number(value), key=float(value)) for value in found]
         rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
     header = ("input", "law", "5 % of rows", "50 %", "95 %", "known", "source")

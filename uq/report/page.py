@@ -8,29 +8,26 @@ from typing import Any
 import xarray as xr
 from markupsafe import Markup, escape
 
-from uq.analysis.summary import Summary, summarise
+from uq.analysis.findings import Findings
+from uq.analysis.summary import Summary
 from uq.designs.registry import DESIGNS
-from uq.drawing.elements_plot import occurring_regimes
-from uq.drawing.input_plot import inputs
 from uq.errors import InputError
-from uq.indices.independent_inputs import independent_inputs
 from uq.literals import plain
-from uq.plots import histogram, histogram_by_regime, lifetime, pairs, scatter
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
 from uq.report.outcomes import (
-    Outcome,
     outcomes,
     regime_table,
     result_tables,
     status_table,
 )
-from uq.report.pictures import Picture, picture
-from uq.rows.elements import elements_of, independent_rows, study_file_of
+from uq.report.pictures import Picture, pictures
+from uq.rows.elements import study_file_of
 from uq.rows.results import failed
+from uq.rows.variables import outputs_of
 from uq.store.files import check_target, whole
 from uq.study.registry import find_model
 
@@ -100,14 +97,12 @@ def _breakable(text: str) -> Markup:
 def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
     """Return what the template lays out."""
     study = study_file_of(ds)
-    summary = summarise(ds)
+    findings = Findings(ds)
+    summary = findings.summary
     found = outcomes(ds, summary)
-    methods = sensitivity_of(ds)
-    lives = [one for one in found if one.declared.is_lifetime]
-    others = [one for one in found if one not in lives]
-    rows = independent_rows(ds)
-    several = len(occurring_regimes(rows)) > 1
-    spread = histogram_by_regime if several else histogram
+    methods = sensitivity_of(findings)
+    lives = {name for name, output in outputs_of(ds).items() if output.is_lifetime}
+    drawn = list(pictures(findings, "results", without=findings.absent))
     lost = int(failed(ds).sum())
     return {
         "title": str(ds.attrs["title"]),
@@ -115,17 +110,17 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
         "facts": _facts(ds, summary),
         "headlines": headlines(summary, lost, found, methods),
         "inputs": list(input_tables(ds)),
-        "input_picture": _inputs_picture(ds),
+        "inputs_drawn": _drawn(findings, "inputs"),
         "status": status_table(ds, summary),
         "failed": lost,
         "max_failed": study.analysis.max_failed,
         "regimes": regime_table(summary) if summary.regimes else None,
-        "pairs": _pairs(ds) if several and len(independent_inputs(rows)) > 1 else None,
-        "convergence": convergence_of(ds, found),
+        "rows_drawn": _drawn(findings, "rows"),
+        "convergence": convergence_of(findings, found),
         "results": list(result_tables(found)),
-        "histograms": _pictures(ds, others, spread, scatter),
+        "results_drawn": [picture for of, picture in drawn if of.name not in lives],
         "lives": list(result_tables(found, of_lives=True)),
-        "survival": _pictures(ds, lives, lifetime, *[spread] * several, scatter),
+        "lives_drawn": [picture for of, picture in drawn if of.name in lives],
         "notes": summary.notes,
         "methods": methods,
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
@@ -136,6 +131,10 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
         "references": _references(ds),
         "version": str(ds.attrs.get("vibrolife", "")),
     }
+
+
+def _drawn(findings: Findings, section: str) -> list[Picture]:
+    return [picture for _, picture in pictures(findings, section)]
 
 
 def _facts(ds: xr.Dataset, summary: Summary) -> list[tuple[str, str]]:
@@ -152,43 +151,6 @@ def _facts(ds: xr.Dataset, summary: Summary) -> list[tuple[str, str]]:
         ("Seed", f"{ds.attrs['seed']}"),
         ("Hash", f"SHA-256 {ds.attrs['study_sha256']}"),
     ]
-
-
-_CAPTIONS: dict[Any, str] = {
-    histogram: "{name}: {meaning}",
-    lifetime: "{name}: {meaning}",
-    histogram_by_regime: "{name} by regime",
-    scatter: "{name} against the inputs that move it most",
-}
-
-
-def _pictures(ds: xr.Dataset, found: list[Outcome], *kinds: Any) -> list[Picture]:
-    """Draw each output once of each kind, with all its elements where the kind can."""
-    names = dict.fromkeys(one.name.partition("[")[0] for one in found)
-    there = {
-        element.output
-        for element in elements_of(independent_rows(ds), list(names))
-        if element.present.any()
-    }
-    return [
-        picture(
-            draw(ds, name), _CAPTIONS[draw].format(name=name, meaning=ds[name].attrs["long_name"])
-        )
-        for name in names
-        if name in there
-        for draw in kinds
-    ]
-
-
-def _pairs(ds: xr.Dataset) -> Picture:
-    return picture(pairs(ds), "Rows by regime, over the inputs that decide it most")
-
-
-def _inputs_picture(ds: xr.Dataset) -> Picture | None:
-    figure = inputs(ds)
-    return (
-        None if figure is None else picture(figure, "Inputs, as stated and as the rows have them")
-    )
 
 
 def _commands(ds: xr.Dataset, name: str, study: str, samples: int) -> list[str]:

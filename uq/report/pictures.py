@@ -2,6 +2,7 @@
 
 import base64
 import re
+from collections.abc import Container, Iterator
 from io import BytesIO, StringIO
 from typing import NamedTuple
 from xml.etree import ElementTree
@@ -12,8 +13,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
+from uq.analysis.findings import Findings
+from uq.drawing.catalogue import Subject, drawables
 from uq.drawing.figure import lay_out, styled
 from uq.literals import plain
+from uq.plots import FIGURES
 
 HEAVIEST_SVG = 300_000
 """Longer drawings, of thousands of points, become images [characters]."""
@@ -27,6 +31,28 @@ class Picture(NamedTuple):
     html: Markup
     caption: str
     is_image: bool
+
+
+def pictures(
+    findings: Findings, section: str, without: Container[str] = ()
+) -> Iterator[tuple[Subject, Picture]]:
+    """Yield the figures of one section of the report, and what each is drawn of.
+
+    Parameters
+    ----------
+    findings : Findings
+    section : str
+        As in `uq.drawing.catalogue.Entry`.
+    without : container of str
+        Outputs of which none is drawn.
+
+    Yields
+    ------
+    tuple of Subject and Picture
+    """
+    for one in drawables(FIGURES, findings, section):
+        if one.subject.name not in without:
+            yield one.subject, picture(one.draw(), one.caption)
 
 
 @styled

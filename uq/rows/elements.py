@@ -8,12 +8,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.columns import censored_name
 from uq.contract import Output
 from uq.designs.layouts import CURVES, NOISE
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
+from uq.rows.columns import censored_name
 from uq.rows.results import elements, failed
 from uq.rows.variables import outputs_of
 from uq.study.file import AnalysisTable, StudyFile

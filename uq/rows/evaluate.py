@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.columns import Column, blank_rows, columns_of
 from uq.contract import Model, Status
 from uq.errors import InputError
+from uq.rows.columns import Column, blank_rows, columns_of
 
 _WITH_OUTPUTS = (Status.OK, Status.OUT_OF_BUDGET)
 

@@ -16,11 +16,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.columns import failed_rows
 from uq.contract import Model
 from uq.errors import InputError, choices, nearest
 from uq.places import node
 from uq.provenance import provenance
+from uq.rows.columns import failed_rows
 from uq.rows.soundness import unsound
 from uq.rows.variables import (
     SCHEMA_VERSION,

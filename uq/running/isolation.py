@@ -20,11 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Status
-from uq.environment import command, inherited
 from uq.errors import RunError
 from uq.interrupts import undone
 from uq.rows.evaluate import Chunk, Fault, joined, lost_rows
 from uq.running import child
+from uq.running.environment import command, inherited
 from uq.study.code import code_of
 
 if TYPE_CHECKING:

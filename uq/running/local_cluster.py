@@ -17,9 +17,9 @@ import dask
 from dask.system import CPU_COUNT
 from distributed import Client, LocalCluster
 
-from uq.environment import command, inherited
 from uq.errors import RunError
 from uq.interrupts import undone
+from uq.running.environment import command, inherited
 from uq.running.workers import Workers, quiet
 
 CORES = CPU_COUNT

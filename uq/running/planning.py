@@ -13,7 +13,6 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
-from uq.environment import command, inherited
 from uq.errors import InputError
 from uq.interrupts import undone
 from uq.rows import results
@@ -22,6 +21,7 @@ from uq.rows.sampling import Rows
 from uq.rows.workload import Workload, workload_of
 from uq.running import executor
 from uq.running.dispatch import CHUNK_SECONDS, chunk_rows
+from uq.running.environment import command, inherited
 from uq.running.isolation import Isolated, spec_of
 from uq.store import row_bytes
 from uq.study.definition import Study

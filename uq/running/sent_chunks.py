@@ -1,7 +1,7 @@
-"""Chunks on their way to dask workers and back.
+"""Chunks sent to dask workers: what comes back, and what is sent again.
 
-Whatever happens to a worker, its chunks fly again. A chunk that has killed its worker too often is
-halved, until a single row stands there as the guilty one.
+The chunks of a killed worker are computed by another. A chunk that kills its worker three times is
+halved until the guilty row is found, which is marked as crashed.
 """
 
 from typing import TYPE_CHECKING, Any, NamedTuple

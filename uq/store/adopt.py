@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.columns import columns_of
 from uq.contract import Status
 from uq.literals import read_toml
 from uq.rows import results
+from uq.rows.columns import columns_of
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, row_block
 from uq.store.chunk_file import Block

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.columns import Column
+from uq.rows.columns import Column
 from uq.rows.sampling import Rows
 from uq.store.files import flush
 

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from uq.columns import blank_rows, columns_of
 from uq.rows import results
+from uq.rows.columns import blank_rows, columns_of
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
 from uq.rows.workload import Workload, workload_of

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.columns import columns_of, failed_rows
 from uq.contract import Status
+from uq.rows.columns import columns_of, failed_rows
 from uq.rows.preview import Preview
 from uq.rows.workload import Workload
 

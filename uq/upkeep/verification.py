@@ -6,11 +6,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from uq.columns import censored_name
 from uq.contract import Status
 from uq.errors import InputError
 from uq.interrupts import in_background
 from uq.rows import results
+from uq.rows.columns import censored_name
 from uq.rows.evaluate import evaluate
 from uq.rows.sampling import row_block
 from uq.store.adopt import variants

@@ -2,7 +2,7 @@
 
 Reading order; a module imports only those above it:
 
-    phases          free flight and contact as sums of exponentials
+    phases          free flight and contact, where the stop's spring couples the modes
     within_phase    motion within one of them
     tip_bounds      how long the tip is certain to keep its distance from a stop
     events          where contacts begin, turn and end

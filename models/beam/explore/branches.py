@@ -13,6 +13,7 @@ from models.beam.exact.tuning import Tuning
 from models.beam.explore.orbit_labels import labelled_events, labelled_orbits, named
 from models.beam.parameters import Params, Settings
 from models.beam.structure.modal import Array, beams
+from models.beam.units import wear_per_work
 
 Parameter = Literal["forcing_frequency", "gap"]
 
@@ -169,8 +170,7 @@ def follow_wear(
     scaled = [event._replace(value=event.value * x0) for event in worn.events]
     ds = ds.merge(labelled_events(params, scaled, named("m", "right gap")))
     dimensionless = worn.time * 2 * np.pi * tuning.fundamental / tuning.forcing
-    wear = params.wear_coefficient / params.contact_area * params.contact_stiffness * x0
-    time = worn.time / (params.forcing_frequency * wear)
+    time = worn.time / (params.forcing_frequency * wear_per_work(params))
     return ds.assign_attrs(end=worn.end).assign_coords(
         time=("point", time, named("s", "time of wear")),
         dimensionless_time=("point", dimensionless, named("1", "T (eq 12)")),

@@ -3,11 +3,12 @@
 import numpy as np
 import xarray as xr
 
-from models.beam.explore.labels import WORDS, check_counts, dataset, equal_rows, watt
+from models.beam.explore.labels import WORDS, check_counts, dataset, equal_rows
 from models.beam.parameters import Params, Settings
 from models.beam.response.settling import settle
 from models.beam.start import initial_gaps, initial_state, one_system
 from models.beam.structure.modal import beams
+from models.beam.units import watt, wear_per_work
 from models.beam.wear.accelerated_life import LOOKS, run_life
 from models.beam.wear.regimes import CONFIRMED, WINDOW, changes_of, confirmed_regimes
 
@@ -64,9 +65,7 @@ def wear_history(
     seen = np.flatnonzero(np.isfinite(life.time[0]))
     regime = confirmed_regimes(life.regime, CONFIRMED * max(1, looks // LOOKS))
     changed = np.flatnonzero(changes_of(regime)[0])
-    wear_rate = (
-        params.wear_coefficient / params.contact_area * params.contact_stiffness * x0[0]
-    ) * params.forcing_frequency
+    wear_rate = wear_per_work(params) * params.forcing_frequency
     w0 = beams(p, settings).frequency[0, 0]
     time = np.concatenate([[0.0], life.time[0, seen]])
     gap = np.concatenate([gaps, life.gaps[0, seen]]) * x0[0]

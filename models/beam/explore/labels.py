@@ -54,12 +54,6 @@ def blank(n: int) -> tuple[Array, NDArray[np.int8], Array]:
     return np.full((n, 2), np.nan), np.full(n, -1, np.int8), np.full(n, np.nan)
 
 
-def watt(params: Params) -> float:
-    """Return the work-rate of one unit of dimensionless work per period [W]."""
-    joule = params.contact_stiffness * params.initial_gap**2
-    return joule * params.forcing_frequency
-
-
 def dataset(variables: dict[str, Any], settings: Settings, sweep: Sweep = "none") -> xr.Dataset:
     """Return variables, given as (dimensions, values), with units and meanings."""
     labelled = {

@@ -11,13 +11,14 @@ from models.beam.branches.orbits import Orbit
 from models.beam.exact.tuning import Tuning
 from models.beam.parameters import SITES, Params
 from models.beam.structure.modal import Array
+from models.beam.units import joule, newton
 
 
 def labelled_orbits(
     params: Params, tuning: Tuning, orbits: Sequence[Orbit], frequency: Array
 ) -> xr.Dataset:
     """Give the orbits of a branch their units."""
-    x0, k_c = params.initial_gap, params.contact_stiffness
+    x0 = params.initial_gap
     work = np.array([orbit.work for orbit in orbits])
     impacts = np.full((len(orbits), max(len(o.impact_velocities) for o in orbits)), np.nan)
     for row, orbit in zip(impacts, orbits, strict=True):
@@ -27,7 +28,7 @@ def labelled_orbits(
     sited, multiplied = ("point", "site"), ("point", "multiplier")
     variables: dict[str, tuple[Any, Array, str, str]] = {
         "gaps": (sited, x0 * np.array([o.gaps for o in orbits]), "m", "gap of each site"),
-        "work_rate": (sited, k_c * x0**2 * f * work, "W", "impact work-rate of each site"),
+        "work_rate": (sited, joule(params) * f * work, "W", "impact work-rate of each site"),
         "dimensionless_work_rate": (
             sited,
             f / tuning.fundamental * work,
@@ -36,7 +37,7 @@ def labelled_orbits(
         ),
         "peak_contact_force": (
             sited,
-            k_c * x0 * np.array([o.peak for o in orbits]),
+            newton(params) * np.array([o.peak for o in orbits]),
             "N",
             "largest contact force of each site",
         ),

@@ -4,10 +4,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from models.beam.explore.labels import WORDS, blank, check_counts, dataset, equal_rows, watt
+from models.beam.explore.labels import WORDS, blank, check_counts, dataset, equal_rows
 from models.beam.explore.sweeps import Sweep, settled_rows
 from models.beam.parameters import Params, Settings
 from models.beam.structure.modal import Array, beams
+from models.beam.units import watt
 
 
 def work_rate_against_gap(

@@ -6,7 +6,7 @@ Reading order; a module imports only those above it:
     systems       beams that share the size of the step
     states        where they start
     lines         the random load at each step
-    steps         the hot loop
+    steps         the hot loop: modes, contact force, impact work
     tangents      what a small change of the state grows to
     propagator    many beams over whole forcing periods
 """

@@ -6,6 +6,6 @@ Reading order; a module imports only those above it:
     random_lines       the random force as a sum of lines
     random_response    the steady response to it
     random_load        its lines for a given beam, and how long they last
-    modal              rows of parameters as beams in modal form
+    modal              the equations of motion, and rows of parameters as beams in modal form
     propagation        what a propagator of them promises and reports
 """

@@ -121,6 +121,18 @@ def test_an_edit_of_a_helper_takes_effect_at_once(house):
         assert result(package) == (5.0, False)
 
 
+def test_an_edit_while_a_process_runs_leaves_nothing_stale(house):
+    """What it imported before and what it imports after are of no one state of the sources."""
+    shared = house / "house/numerics/shared.py"
+    written(house / "house/numerics/early.py", SHARED)
+    forget()
+    importlib.import_module("house.numerics.early")
+    edit(shared, "1.0 * x", "-10.0 * x")
+    assert importlib.import_module("house.beam.motion").run(1.0) == -30.0
+    edit(shared, "-10.0 * x", "1.0 * x")
+    assert result("house.beam") == (3.0, False)
+
+
 def test_a_package_from_outside_may_use_a_machine(house):
     edit(house / "plant/motion.py", "plant.helper", "house.beam.parts.helper")
     assert result("plant") == (3.0, False)

@@ -91,7 +91,10 @@ def test_a_kernel_is_cached_by_what_it_can_import(tmp_path, monkeypatch, caller,
     (tmp_path / "site-packages" / "__init__.py").unlink(missing_ok=True)
     function = importlib.import_module(caller).function
     before = cache.folder_of(function)
-    file.write_text("a = 2\n")
+    assert before.is_dir()
+    file.write_text("a = 22\n")
+    assert cache.folder_of(function) == (None if counts else before)
+    cache._snapshot.cache_clear()  # as in the next process
     after = cache.folder_of(function)
     assert after.is_dir()
     assert (after != before) == counts

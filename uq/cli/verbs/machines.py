@@ -17,13 +17,14 @@ def models(
     """List the models, or show all that one of them declares."""
     from uq.cli import catalogue
     from uq.cli.printing import print_json
+    from uq.study.registry import find_model
 
     if name is None:
         listed = catalogue.list_models()
         print_json(listed) if json else catalogue.show_list(listed)
     else:
-        described = catalogue.describe(name)
-        print_json(catalogue.finite(described)) if json else catalogue.show(described)
+        model = find_model(name)
+        print_json(catalogue.finite(catalogue.as_json(model))) if json else catalogue.show(model)
 
 
 def simulate(

@@ -1,7 +1,8 @@
 """The verbs that take a study file."""
 
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -101,13 +102,15 @@ def rare_event(
     json: Json = False,
 ) -> int:
     """Estimate the probability of a rare event."""
-    from uq.cli import estimates
+    from uq.cli.rare_event import rare_event as estimate_and_show
+    from uq.exploring import rare_events
 
-    options: dict[str, Any] = {
-        "method": method,
-        "samples": samples,
-        "replicates": replicates,
-        "workers": workers,
-        "scheduler": scheduler,
-    }
-    return estimates.rare_event(study, model, output, above, below, json, options)
+    estimate = partial(
+        rare_events.rare_event,
+        method=method,
+        samples=samples,
+        replicates=replicates,
+        workers=workers,
+        scheduler=scheduler,
+    )
+    return estimate_and_show(study, model, output, above, below, json, estimate)

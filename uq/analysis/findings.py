@@ -1,0 +1,74 @@
+"""A result, and what is computed of it once, however many tables and figures show it."""
+
+from functools import cached_property
+
+import pandas as pd
+import xarray as xr
+
+from uq.analysis.convergence import running_estimates
+from uq.analysis.summary import Summary, summarise
+from uq.errors import InputError
+from uq.indices.sensitivities import Sensitivities, sensitivities
+from uq.rows.elements import elements_of, independent_rows, output_names
+
+_COLUMNS = ["output", "estimate", "samples", "value", "low", "high"]
+
+
+class Findings:
+    """What is known of a result, each part computed when it is first asked for.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result, which nobody changes while this is in use.
+    """
+
+    def __init__(self, ds: xr.Dataset):
+        self.ds = ds
+        self._sensitivities: dict[str, Sensitivities] = {}
+
+    @cached_property
+    def rows(self) -> xr.Dataset:
+        """The independent rows."""
+        return independent_rows(self.ds)
+
+    @cached_property
+    def absent(self) -> frozenset[str]:
+        """The outputs that none of the independent rows has."""
+        names = output_names(self.rows)
+        there = (one.output for one in elements_of(self.rows, names) if one.present.any())
+        return frozenset(names) - frozenset(there)
+
+    @cached_property
+    def summary(self) -> Summary:
+        """What `uq.analysis.summary.summarise` returns."""
+        return summarise(self.ds)
+
+    @property
+    def running(self) -> pd.DataFrame:
+        """What `uq.running_estimates` returns; without lines where `not_running` says why."""
+        return self._running[0]
+
+    @property
+    def not_running(self) -> str:
+        """Why nothing is known of fewer rows, or ""."""
+        return self._running[1]
+
+    @cached_property
+    def _running(self) -> tuple[pd.DataFrame, str]:
+        try:
+            return running_estimates(self.ds), ""
+        except InputError as refused:
+            return pd.DataFrame(columns=_COLUMNS), str(refused)
+
+    def sensitivities(self, method: str) -> Sensitivities:
+        """Return what `uq.indices.sensitivities.sensitivities` finds by a method.
+
+        Raises
+        ------
+        InputError
+            When the method has nothing to say of this result.
+        """
+        if method not in self._sensitivities:
+            self._sensitivities[method] = sensitivities(self.ds, method)
+        return self._sensitivities[method]

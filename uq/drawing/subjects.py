@@ -1,0 +1,91 @@
+"""What figures of a result are drawn of, and which of these suit which figure."""
+
+from collections.abc import Iterator
+
+from uq.analysis.findings import Findings
+from uq.analysis.sampled_inputs import laws_and_values
+from uq.drawing.catalogue import Subject
+from uq.drawing.convergence_plot import followed, total_indices
+from uq.drawing.elements_plot import occurring_regimes
+from uq.errors import InputError
+from uq.indices.independent_inputs import independent_inputs
+from uq.indices.sensitivities import methods
+from uq.rows.elements import analysis_of, shown_outputs
+from uq.rows.variables import outputs_of
+
+
+def the_result(findings: Findings) -> Iterator[Subject]:
+    """Yield the result as a whole."""
+    yield Subject()
+
+
+def outputs(findings: Findings) -> Iterator[Subject]:
+    """Yield each output with numbers."""
+    if findings.rows.sizes["sample"]:
+        yield from map(Subject, _numbers(findings))
+
+
+def targets(findings: Findings) -> Iterator[Subject]:
+    """Yield each target of each sensitivity method."""
+    for method in methods(findings.ds):
+        try:
+            targets_of = findings.sensitivities(method).targets
+        except InputError:  # the report says why
+            continue
+        for name, found in targets_of.items():
+            if not found.refused and found.kinds():
+                yield Subject(name, method, found)
+
+
+def crossed_targets(findings: Findings) -> Iterator[Subject]:
+    """Yield each target with total indices of fewer rows."""
+    if any(outputs(findings)):
+        names = findings.running["output"]
+        known = total_indices(findings.running)["output"]
+        yield from map(Subject, names[names.isin(known)].unique())
+
+
+def _numbers(findings: Findings) -> list[str]:
+    declared = outputs_of(findings.ds)
+    shown = shown_outputs(findings.ds, analysis_of(findings.ds))
+    return [output for output in shown if not declared[output].is_category]
+
+
+def has_numbers(findings: Findings, name: str) -> bool:
+    """Whether any output has numbers."""
+    return bool(_numbers(findings))
+
+
+def is_lifetime(findings: Findings, name: str) -> bool:
+    """Whether the output is a lifetime."""
+    return outputs_of(findings.ds)[name].is_lifetime
+
+
+def is_no_lifetime(findings: Findings, name: str) -> bool:
+    """Whether the output is something else."""
+    return not is_lifetime(findings, name)
+
+
+def in_regimes(findings: Findings, name: str) -> bool:
+    """Whether rows are in several regimes."""
+    return len(occurring_regimes(findings.rows)) > 1
+
+
+def in_one_regime(findings: Findings, name: str) -> bool:
+    """Whether rows are all in one regime, or the model knows none."""
+    return not in_regimes(findings, name)
+
+
+def has_several_inputs(findings: Findings, name: str) -> bool:
+    """Whether two inputs or more vary by themselves."""
+    return len(independent_inputs(findings.rows)) > 1
+
+
+def follows_laws(findings: Findings, name: str) -> bool:
+    """Whether rows follow the laws of the inputs."""
+    return bool(laws_and_values(findings.ds))
+
+
+def settles(findings: Findings, name: str) -> bool:
+    """Whether an estimate of the output is known of fewer rows."""
+    return bool(followed(findings.ds, name, findings.running)[0])
