@@ -107,5 +107,5 @@ def test_what_is_estimated_has_no_idle_digits():
 
 
 def test_a_life_that_never_ends_at_the_low_end_has_no_interval():
-    assert interval({"low": None, "low_never": True, "high": None}) == ""
-    assert interval({"low": 2.0, "high": None, "high_never": True}) == "2 to never"
+    assert interval(Estimate(low=inf)) == ""
+    assert interval(Estimate(low=2.0, high=inf)) == "2 to never"
