@@ -175,6 +175,10 @@ def test_one_machine_does_not_import_another():
     assert not guilty
 
 
+def test_every_machine_has_its_storeys_here():
+    assert {path.parent.name for path in HOUSE.glob("models/*/parameters.py")} == set(STOREYS)
+
+
 @pytest.mark.parametrize("machine", STOREYS)
 def test_a_machine_depends_one_way(machine):
     height = {name: i for i, names in enumerate(STOREYS[machine]) for name in names}

@@ -5,7 +5,7 @@ from scipy import stats
 
 from benchmarks.coverage.lives import B_LIVES, FIT_ROWS, with_life
 from benchmarks.coverage.tally import Tally
-from uq.analysis.life_fit import life_fits
+from uq.analysis.life_fit import fitted_laws
 from uq.analysis.lifetime import survival
 
 EARLY = 0.05
@@ -38,7 +38,7 @@ def wrong_fits(repetitions):
         rng = np.random.default_rng(1)
         for _ in range(repetitions):
             ds = with_life(law.rvs(FIT_ROWS, random_state=rng))
-            for family, fit in life_fits(ds, "life")["life"].items():
+            for family, fit in fitted_laws(ds, "life")["life"].items():
                 refused = "refused" in fit
                 tally.add(f"{family} refused", 1.0, 1.0, 2.0 if refused else 0.0)
                 if not refused:

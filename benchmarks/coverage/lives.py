@@ -9,7 +9,7 @@ from scipy import stats
 
 from benchmarks.coverage.problems import ENDS, LIFE, MIXED, computed, never_cdf, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.analysis.life_fit import life_fits
+from uq.analysis.life_fit import fitted_laws
 from uq.analysis.lifetime import survival
 from uq.analysis.statistics import summarise
 
@@ -161,7 +161,7 @@ def fits(law, censored, repetitions):
     )
     for ds in repeated(study, repetitions):
         ds = _cut(ds, truth.ppf(0.7)) if censored else ds
-        fit = life_fits(ds, "life")["life"][law]
+        fit = fitted_laws(ds, "life")["life"][law]
         tally.add("not refused, where the law is true", 1.0, 1.0, 2.0 - ("refused" in fit) * 2)
         if "refused" in fit:
             continue

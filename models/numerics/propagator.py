@@ -1,9 +1,9 @@
-"""What carries machines through time, and what every such thing promises.
+"""What takes machines through time, and what each such thing promises.
 
-A machine offers one `Propagator` or two, which many rows of a study share, and may offer a
-`Yardstick`, which follows one row as closely as asked. A package or module that has these functions
-is one: nothing is registered or derived. `tests/models/test_propagators.py` holds all of them to
-what is written here.
+A `Propagator` takes many machines along at once: `models.beam.lanes`, `models.beam.exact`,
+`models.vibrator.lanes`, `models.mole.lanes`. A `Yardstick` follows one machine as closely as asked:
+`models.vibrator.exact`, `models.mole.exact`. Any package or module with these functions is one.
+`tests/models/test_propagators.py` holds all of them to these promises.
 """
 
 from collections.abc import Iterator
@@ -17,14 +17,13 @@ Array = NDArray[np.float64]
 
 @runtime_checkable
 class Propagator(Protocol):
-    """Carries n machines side by side, over whole periods of what drives them.
+    """Takes n machines along at once, over whole periods of what drives them.
 
-    What happens to a machine depends on its parameters, its state and its own arguments alone, to
-    the bit: not on the others, on their order or number, or on what was computed before. Nothing is
-    kept between calls: all that a machine's future depends on stands in its row of the state. A
-    machine that cannot be followed harms no other, and raises nothing.
+    What a machine does depends on its parameters, its state and its own arguments alone, to the
+    bit: not on the other machines, nor on their number or order, nor on earlier calls. A machine
+    that cannot be followed affects no other and raises nothing.
 
-    What else a machine needs (gaps that grow, where to stop) comes after the arguments named here.
+    Arguments of one machine only, such as gaps that grow, follow those named here.
     """
 
     def groups(self, machines: Any, settings: Any, /) -> Iterator[tuple[NDArray[np.intp], Any]]:
@@ -33,27 +32,31 @@ class Propagator(Protocol):
         Parameters
         ----------
         machines
-            Their parameters, in a form that the machine chooses; each field of shape (n, ...).
+            Their parameters, each field of shape (n, ...).
         settings
-            Numerical choices, those of the model.
+            Those of the model.
 
         Yields
         ------
         rows : ndarray of int
-            Which of the n machines are in the group: each in one at most, one that the propagator
-            cannot follow in none.
+            Which of the n machines are in the group. Each is in one group at most; one that the
+            propagator cannot follow is in none.
         system
-            These machines, prepared, and never changed; ``system.take(rows)`` returns some of them.
+            These machines, prepared. It is never changed; ``system.take(rows)`` returns some of
+            them.
         """
 
     def start(self, system: Any, /, *args: Any) -> Array:
-        """Return the state in which machines begin, shape (n, k); it belongs to the caller."""
+        """Return the initial state, shape (n, k), a new array that belongs to the caller.
+
+        Row by row it is all that the future of a machine depends on.
+        """
 
     def advance(self, system: Any, state: Array, /, *args: Any, **kwargs: Any) -> Any:
-        """Advance n machines, and return what was seen on the way.
+        """Advance n machines, and return a record of the way.
 
-        Advanced in parts, a machine comes where it comes in one go, to rounding or to the tolerance
-        of its steps.
+        Two calls lead where one call over the same periods leads: to the bit for fixed steps and
+        for exact propagation, to the tolerance where steps are chosen anew.
 
         Parameters
         ----------
@@ -63,7 +66,7 @@ class Propagator(Protocol):
         """
 
     def monodromy(self, system: Any, state: Array, /, *args: Any, **kwargs: Any) -> Array:
-        """Return how the state that `advance` reaches depends on the state now.
+        """Return the derivative of the state that `advance` reaches, by the state now.
 
         Parameters
         ----------
@@ -74,17 +77,17 @@ class Propagator(Protocol):
         Returns
         -------
         ndarray, shape (n, f, f)
-            Derivative of each of the first f components after (rows) with respect to each before
-            (columns); zero by what has no freedom.
+            Of each of the first f components after (rows) by each before (columns); zero by a
+            component that cannot vary.
         """
 
 
 @runtime_checkable
 class Yardstick(Protocol):
-    """Follows one machine over any time, with an error that shrinks with the tolerance."""
+    """Follows one machine over any time; its error shrinks with the tolerance."""
 
     def start(self, params: Any, system: Any, /) -> Any:
-        """Return the state in which a machine begins.
+        """Return the initial state of a machine.
 
         Parameters
         ----------
@@ -105,7 +108,7 @@ class Yardstick(Protocol):
         state
             Not changed.
         end : float
-            When to stop [s], on the clock of the state.
+            When to stop [s]. A state that does not hold its time stands at 0.
         tolerance : float
             Error allowed in a step, relative to the sizes of the machine's motion.
         times : array_like, shape (k,)
@@ -114,7 +117,7 @@ class Yardstick(Protocol):
         Returns
         -------
         motion
-            With `status`, of `models.numerics.dop853`; `state`, the last; `samples`, shape (k, m),
-            NaN from where the motion ended. From its last state the machine goes on as if it had
-            never stopped, to the tolerance.
+            Its `status` is one of `models.numerics.dop853`, its `state` the last one; `samples`,
+            shape (k, m), are NaN from where the motion ended. Followed on from its last state, a
+            machine moves as if it had never stopped, to the tolerance.
         """

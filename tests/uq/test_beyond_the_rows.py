@@ -10,6 +10,7 @@ from scipy import stats
 import uq as api
 from uq import order_statistics
 from uq.analysis.comparison import comparison
+from uq.analysis.life_fit import fitted_laws
 from uq.analysis.overview import summary
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
@@ -74,13 +75,13 @@ def found(ds):
 
 
 def test_a_fitted_life_beyond_the_rows_is_called_extrapolated():
-    fits = api.life_fits(lives(60), "life")["life"]
+    fits = fitted_laws(lives(60), "life")["life"]
     for law in ("weibull", "lognormal"):
         assert "refused" not in fits[law]
         assert fits[law]["B1"]["extrapolated"] is True
         assert not fits[law]["B10"]["extrapolated"]
         assert "no proof" in fits[law]["assumes"]
-    more = api.life_fits(lives(120), "life")["life"]["weibull"]
+    more = fitted_laws(lives(120), "life")["life"]["weibull"]
     assert more["B1"]["extrapolated"] is False
 
 

@@ -13,7 +13,7 @@ from computed import UNIFORM, asking, computed, study_of, with_output, with_seed
 from scipy import stats
 from scipy.optimize import brentq
 
-from uq.analysis.life_fit import life_fits
+from uq.analysis.life_fit import fitted_laws
 from uq.analysis.lifetime import survival
 from uq.analysis.regime_split import between_share
 from uq.analysis.statistics import summarise
@@ -292,7 +292,7 @@ def test_fitted_laws(horizon):
     for ds in repeat("exponential-wear", ("monte-carlo", 60, 1), WEAR):
         life = ds["life"].values
         ds = with_output(ds, "seen", np.minimum(life, horizon), "lifetime", life > horizon)
-        fit = life_fits(ds, "seen")["seen"]["lognormal"]
+        fit = fitted_laws(ds, "seen")["seen"]["lognormal"]
         refused += "refused" in fit
         if "refused" in fit:
             continue

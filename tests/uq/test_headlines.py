@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from computed import asking, kinds, linear, with_output
 
+from uq.analysis.findings import Findings
 from uq.analysis.statistics import summarise
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
@@ -21,7 +22,7 @@ def told(ds, methods=(), failed=0):
 
 
 def subjects(ds, method, outputs):
-    (found,) = sensitivity_of(asking(ds, outputs=outputs, sensitivity=[method]))
+    (found,) = sensitivity_of(Findings(asking(ds, outputs=outputs, sensitivity=[method])))
     return found.subjects
 
 

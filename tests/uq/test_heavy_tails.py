@@ -7,6 +7,7 @@ from computed import asking, linear, with_output
 from scipy import stats
 
 import uq
+from uq.analysis.findings import Findings
 from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
 from uq.indices.transforms import HEAVY, heaviness, tail_share
@@ -93,7 +94,7 @@ def test_an_output_without_a_heavy_tail_stands_as_it_is():
 
 def test_reports_say_what_the_indices_are_of():
     ds = asking(heavy(samples=128), outputs=["work"], sensitivity=["sobol"])
-    (method,) = sensitivity_of(ds)
+    (method,) = sensitivity_of(Findings(ds))
     (subject,) = method.subjects
     assert subject.words == "Logarithm of the meaning of work"
     assert "matters most to the logarithm of the meaning of work" in subject.leading

@@ -9,7 +9,7 @@ from input_studies import UNIFORM, refusal, tables
 
 from uq.analysis.comparison import comparison
 from uq.analysis.convergence import running_estimates
-from uq.analysis.life_fit import life_fits
+from uq.analysis.life_fit import fitted_laws
 from uq.analysis.lifetime import survival
 from uq.analysis.pairing import Kinship, kinship
 from uq.analysis.statistics import summarise
@@ -163,7 +163,7 @@ def test_a_life_of_independent_imported_rows_has_a_curve_and_fits(table):
     values = np.random.default_rng(0).weibull(2.0, 100)
     ds = with_output(ds, "life", values, "lifetime")
     assert survival(ds, "life")["low"].notnull().any()
-    assert "B10" in life_fits(ds, "life")["life"]["weibull"]
+    assert "B10" in fitted_laws(ds, "life")["life"]["weibull"]
 
 
 def test_without_the_statement_the_remedy_is_named(table):

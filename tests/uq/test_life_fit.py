@@ -6,6 +6,7 @@ from scipy import stats
 
 import uq
 from uq.analysis import b_lives
+from uq.analysis.life_fit import fitted_laws
 from uq.analysis.location_scale import FAMILIES, anderson_darling, fit
 from uq.analysis.statistics import summarise
 from uq.errors import InputError
@@ -42,7 +43,7 @@ def test_parameters_are_those_of_openturns():
     factory = ot.WeibullMinFactory()
     factory.setKnownParameter([0.0], [2])
     found = factory.build(ot.Sample(life[:, None])).getParameter()
-    parameters = uq.life_fits(lives(life), "life")["life"]["weibull"]["parameters"]
+    parameters = fitted_laws(lives(life), "life")["life"]["weibull"]["parameters"]
     assert parameters["scale"]["value"] == pytest.approx(found[0], rel=1e-3)
     assert parameters["shape"]["value"] == pytest.approx(found[1], rel=1e-3)
 
@@ -60,7 +61,7 @@ def test_distance_is_that_of_anderson_and_darling():
     [(WEIBULL, "weibull", "lognormal"), (LOGNORMAL, "lognormal", "weibull")],
 )
 def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
-    found = uq.life_fits(lives(sample(law)), "life")["life"]
+    found = fitted_laws(lives(sample(law)), "life")["life"]
     assert found[right]["p_value"] > 0.05 > found[wrong]["p_value"]
     assert "does not fit" in found[wrong]["refused"] and "parameters" not in found[wrong]
     for name, p in b_lives.B_LIVES.items():
@@ -71,9 +72,23 @@ def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
         assert index["low"] < index["value"] < index["high"]
 
 
+def test_fits_are_a_table():
+    life = lives(sample(LOGNORMAL))
+    table, entries = uq.life_fits(life, "life"), fitted_laws(life, "life")["life"]
+    assert table.index.to_list() == [("life", "weibull"), ("life", "lognormal")]
+    good, bad = table.loc[("life", "lognormal")], table.loc[("life", "weibull")]
+    assert good["refused"] == "" and bad["refused"] == entries["weibull"]["refused"]
+    for name in ("B1", "B10", "B50"):
+        found = [good[name], good[f"{name}_low"], good[f"{name}_high"]]
+        assert found == [entries["lognormal"][name][end] for end in ("value", "low", "high")]
+        assert not good[f"{name}_extrapolated"]
+    assert good["sigma_low"] < good["sigma"] < good["sigma_high"]
+    assert np.isnan(bad["B10"]) and np.isnan(bad["scale"])
+
+
 def test_few_rows_have_the_exact_interval_of_a_lognormal_median():
     life = sample(LOGNORMAL, 20, seed=2)
-    median = uq.life_fits(lives(life), "life")["life"]["lognormal"]["parameters"]["median"]
+    median = fitted_laws(lives(life), "life")["life"]["lognormal"]["parameters"]["median"]
     logarithms = np.log(life)
     exact = stats.ttest_1samp(logarithms, 0).confidence_interval()
     found = np.log([median[end] for end in ("low", "high")])
@@ -91,9 +106,9 @@ def test_what_cannot_be_fitted_is_refused():
         (good, np.arange(400) >= 19, "only 19 rows ended"),
         (np.full(400, 5.0), None, "share fewer than 20 values"),
     ):
-        found = uq.life_fits(lives(values, censored), "life")["life"]
+        found = fitted_laws(lives(values, censored), "life")["life"]
         assert all(sentence in one["refused"] for one in found.values())
-    for one in uq.life_fits(lives(good, method="halton"), "life")["life"].values():
+    for one in fitted_laws(lives(good, method="halton"), "life")["life"].values():
         assert "independent rows" in one["refused"]
     with pytest.raises(InputError, match="not a lifetime"):
         uq.life_fits(linear(), "y")

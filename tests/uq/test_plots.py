@@ -2,6 +2,7 @@ import io
 import xml.etree.ElementTree as ElementTree
 from itertools import pairwise
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from asked_indices import sensitivities
@@ -40,6 +41,28 @@ def test_every_figure_of_a_study_is_written_as_png_svg_and_pdf(tmp_path):
             assert ElementTree.parse(path).getroot().tag.endswith("svg")
         else:
             assert path.read_bytes().startswith(b"%PDF-")
+
+
+@pytest.mark.parametrize("figure", ["histogram", "scatter", "regimes", "quantiles", "inputs"])
+def test_figures_are_drawn_into_axes_that_are_given(figure):
+    ds, (whole, (left, right)) = kinds(samples=40), plt.subplots(1, 2, layout="constrained")
+    entry = plots.FIGURES[figure]
+    names = [] if figure == "inputs" else ["work"]
+    assert entry.draw(ds, *names, axes=right) is whole
+    whole.draw_without_rendering()
+    (alone,) = {len(entry.draw(ds, *names).axes)}
+    drawn = [axes for axes in whole.axes if axes is not left and axes.axison]
+    assert len(drawn) == alone or figure == "quantiles"
+    middle = whole.bbox.width / 2
+    assert all(axes.bbox.x0 >= middle for axes in drawn)
+    assert not left.lines and not left.texts and not whole.legends
+    plt.close(whole)
+
+
+def test_panels_need_axes_of_a_grid():
+    axes = Figure().add_axes((0, 0, 1, 1))
+    with pytest.raises(InputError, match="needs axes of a grid"):
+        plots.scatter(kinds(samples=40), "work", axes=axes)
 
 
 def test_the_same_result_gives_the_same_bytes(tmp_path):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_output, with_status
 
+from uq.analysis.findings import Findings
 from uq.analysis.statistics import summarise
 from uq.contract import Status
 from uq.report.cells import Cell, Table, estimate, without_empty_columns
@@ -153,7 +154,7 @@ def test_fixed_inputs_have_units_and_correlations_a_source():
 
 def test_indices_are_ranked_beside_an_input_without_effect():
     ds = asking(linear(samples=200, settings={"fail_above": 0.95}), sensitivity=["rbd-fast"])
-    (method,) = sensitivity_of(ds)
+    (method,) = sensitivity_of(Findings(ds))
     lost = int(ds["y"].isnull().sum())
     assert lost > 0
     assert method.used.startswith(f"Of {200 - lost} rows, {lost} groups dropped")
@@ -166,7 +167,7 @@ def test_indices_are_ranked_beside_an_input_without_effect():
 
 
 def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
-    (method,) = sensitivity_of(linear("saltelli", samples=32, replicates=4))
+    (method,) = sensitivity_of(Findings(linear("saltelli", samples=32, replicates=4)))
     assert method.used == "Of 768 rows"
     first, *_ = method.subjects[0].tables[0].rows
     low, high = map(float, first[1].more.split(" to "))
@@ -175,7 +176,7 @@ def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
 
 def test_errors_of_the_rows_stand_beside_that_of_sampling_in_one_unit():
     ds = with_output(lives(), "life_error", np.full(64, 0.5 * DAY), "lifetime")
-    found = convergence_of(ds, outcomes(ds, summarise(ds)))
+    found = convergence_of(Findings(ds), outcomes(ds, summarise(ds)))
     line = lines(found.table)["life"]
     assert (line["unit"], line["error of the rows"]) == ("days", "0.5")
     assert float(line["half-width of its interval"]) == pytest.approx(1.6, abs=0.1)
@@ -184,7 +185,7 @@ def test_errors_of_the_rows_stand_beside_that_of_sampling_in_one_unit():
 
 def test_rows_less_exact_than_their_number_are_warned_of():
     ds = with_output(linear("latin-hypercube", 16, 4), "y_error", np.ones(64))
-    found = convergence_of(ds, outcomes(ds, summarise(ds)))
+    found = convergence_of(Findings(ds), outcomes(ds, summarise(ds)))
     (warning,) = found.warnings
     assert warning.startswith("y: the rows' own error (1 1)")
     assert "the designs that grow are" in found.refused and found.pictures == []

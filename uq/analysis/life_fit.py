@@ -42,15 +42,8 @@ ASSUMES = (
 """What every number of an accepted law rests on."""
 
 
-def life_fits(ds: xr.Dataset, output: str) -> dict[str, dict[str, Any]]:
-    """Fit Weibull and lognormal laws to a lifetime.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        A result of design ``monte-carlo``.
-    output : str
-        A lifetime, or one element of it.
+def fitted_laws(ds: xr.Dataset, output: str) -> dict[str, dict[str, Any]]:
+    """Fit every law to a lifetime; see `uq.life_fits`.
 
     Returns
     -------
@@ -61,30 +54,6 @@ def life_fits(ds: xr.Dataset, output: str) -> dict[str, dict[str, Any]]:
         ``value``, ``low``, ``high``, and ``extrapolated``: whether it is earlier than the rows
         reach, 1/(n + 1); ``assumes``, a sentence; else ``refused``, a sentence. ``rows``: how many
         were used.
-
-    Raises
-    ------
-    InputError
-        When there is no such output or it is not a lifetime.
-
-    Notes
-    -----
-    Intervals are exact for complete samples, whose pivots do not depend on the parameters [1]_,
-    and those of the parametric bootstrap for censored ones, with censoring times drawn from their
-    own Kaplan-Meier estimate: censoring must say nothing of the life left.
-
-    References
-    ----------
-    .. [1] J. F. Lawless, "Statistical models and methods for lifetime data", 2nd ed., Wiley
-       (2003), sections 5.1.2 and 10.3.
-
-    Examples
-    --------
-    >>> laws = uq.life_fits(uq.run("studies/exponential-wear.toml"), "life")["life"]
-    >>> round(laws["lognormal"]["parameters"]["sigma"]["value"], 1)
-    0.5
-    >>> "refused" in laws["weibull"]
-    True
     """
     rows = independent_rows(ds)
     independent = replicates_of(rows) is None
@@ -92,7 +61,7 @@ def life_fits(ds: xr.Dataset, output: str) -> dict[str, dict[str, Any]]:
 
 
 def fits_of(element: Element, independent: bool) -> dict[str, Any]:
-    """Fit every law to one element of a lifetime; see `life_fits`."""
+    """Fit every law to one element of a lifetime; see `fitted_laws`."""
     return {law: _one(law, element, independent) for law in FAMILIES}
 
 

@@ -17,19 +17,7 @@ _SPARE_STEPS = 10_000
 
 
 def start(params: Params, q: Mole) -> State:
-    """Return the state of one mole before its relay first closes.
-
-    Parameters
-    ----------
-    params : Params
-        Each field a float.
-    q : Mole
-        The same mole, prepared.
-
-    Returns
-    -------
-    State
-    """
+    """Return the state of one mole before its relay first closes."""
     y = np.zeros(equations.SIZE)
     y[0], y[1] = u, v = params.initial_displacement, params.initial_velocity
     contact = u > q.stop_gap
@@ -40,24 +28,8 @@ def start(params: Params, q: Mole) -> State:
 def propagate(q: Mole, state: State, end: float, tolerance: float, times: ArrayLike = ()) -> Motion:
     """Follow one mole.
 
-    Parameters
-    ----------
-    q : Mole
-        Each field a number.
-    state : State
-        It is left as it is.
-    end : float
-        Time at which to stop [s].
-    tolerance : float
-        Error allowed in a step, relative to each component of the state, or to its size in
-        `scales` if that is greater.
-    times : array_like, shape (k,)
-        Ascending, when to sample the state [s].
-
-    Returns
-    -------
-    Motion
-        Propagated from its last state, the mole moves on as if it had never stopped, to rounding.
+    The tolerance is relative to each component of the state, or to its size in `scales` if that is
+    greater.
     """
     q = Mole._make([*(float(field) for field in q[:-1]), int(q.formulation)])
     times = np.ascontiguousarray(times, float)

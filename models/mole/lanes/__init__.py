@@ -4,9 +4,11 @@ Reading order; a module imports only those above it:
 
     block         the memory of the lanes
     rates         their rates of change
-    modes         guards, and what an event changes
+    modes         constants and guards of each mode
+    events        what an event changes
     steps         what follows a trial step
     rows          how a row enters and leaves a lane
+    strobe        whether the motion repeats, once in a control period
     loop          each lane with its own step: the hot loop
     propagator    n moles, prepared, started and advanced
 """

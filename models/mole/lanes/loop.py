@@ -12,8 +12,9 @@ from models.mole.lanes import block as at
 from models.mole.lanes.block import INTEGRALS, LANES, MEASURED, Block, quantities
 from models.mole.lanes.modes import judge
 from models.mole.lanes.rates import renew, slopes
-from models.mole.lanes.rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, strobe, unload
+from models.mole.lanes.rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, unload
 from models.mole.lanes.steps import conclude, look
+from models.mole.lanes.strobe import strobe
 from models.numerics import dop8
 from models.numerics.jit import kernel, lean
 

@@ -64,15 +64,7 @@ class System(NamedTuple):
 
 
 def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
-    """Prepare n moles: all in one group, since lanes need nothing in common.
-
-    Parameters
-    ----------
-    p : Params
-        Each field an ndarray of shape (n,).
-    settings : Settings
-        Formulation and tolerance count.
-    """
+    """Prepare n moles, by the formulation and the tolerance set: all in one group."""
     n = len(p.control_frequency)
     yield (
         np.arange(n),
@@ -87,18 +79,10 @@ def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], Syst
 
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:
-    """Return the records of moles at rest, bars thrown, relays just closed.
+    """Return the records of moles at rest whose relays have just closed, shape (n, RECORD).
 
-    Parameters
-    ----------
-    system : System
-    displacement, velocity : ndarray, shape (n,)
-        Of the bar, u [m] and v [m s-1].
-
-    Returns
-    -------
-    ndarray, shape (n, RECORD)
-        See `models.mole.lanes.rows`: the state, and what the last run has seen.
+    The bars are at u [m] and move at v [m s-1]. A record holds the state and what the last run has
+    seen, see `models.mole.lanes.rows`.
     """
     record = np.empty((len(system.table), RECORD))
     begin(system.table, displacement, velocity, record)
@@ -116,9 +100,8 @@ def advance(
 
     Parameters
     ----------
-    system : System
-    record : ndarray, shape (n, RECORD)
-        Updated in place.
+    system, record
+        As `groups` and `start` return them.
     limit : ndarray of int, shape (n,)
         Control periods since the start at which to end.
     tangents : ndarray, shape (n, 5 columns), optional
@@ -142,21 +125,7 @@ def advance(
 
 
 def monodromy(system: System, record: Array, limit: Counts) -> Array:
-    """Return how (u, v, x, i, p) at the end depend on these now.
-
-    Parameters
-    ----------
-    system : System
-    record : ndarray, shape (n, RECORD)
-        Not changed.
-    limit : ndarray of int, shape (n,)
-        As in `advance`.
-
-    Returns
-    -------
-    ndarray, shape (n, 5, 5)
-        Zero by what sticks now, which has no freedom.
-    """
+    """Return the derivative of (u, v, x, i, p); zero by what sticks now."""
     after = record.copy()
     tangents = np.tile(np.eye(MEASURED).ravel(), (len(record), 1))
     advance(system, after, limit, tangents)

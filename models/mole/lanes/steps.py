@@ -6,7 +6,8 @@ import numpy as np
 
 from models.mole.lanes import block as at
 from models.mole.lanes.block import GUARDS, INTEGRALS, LANES
-from models.mole.lanes.modes import happen, mole_of, turn_relay
+from models.mole.lanes.events import happen, turn_relay
+from models.mole.lanes.modes import mole_of
 from models.numerics.events import crossing, dip
 from models.numerics.jit import lean
 
