@@ -122,7 +122,7 @@ def test_a_design_is_accepted_explained_and_documented(toy_design, uq, write_stu
     refused = uq("check", asking(write_study, "mirrored", "sobol"))
     assert "'mirrored' feeds 'rbd-fast' or" in refused.err
     assert '| `"mirrored"` | pairs of opposite points | yes | rbd-fast' in generated.designs()
-    assert "`mirrored`" in generated.questions()
+    assert "`mirrored`" in generated.questions() and "`mirrored`" in generated.confidence()
 
 
 def test_a_sensitivity_method_is_accepted_explained_and_documented(toy_method, uq, write_study):

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from models.vibrator.lanes.machines import follows
 from models.vibrator.parameters import Params, Rows, Settings
 from models.vibrator.start import exact, fast
 from models.vibrator.start.regimes import Outcome
@@ -33,7 +34,7 @@ def batch(
     status : ndarray of int8, shape (n,)
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
-    quick = is_rigid(p) & (settings.kinematics == "small") & (settings.propagator == "fast")
+    quick = follows(p, settings) & (settings.propagator == "fast")
     outcome, status = Outcome.nothing(len(x)), np.full(len(x), Status.OK, np.int8)
     _run(fast.outcomes, p, np.flatnonzero(quick), settings, outcome, status)
     # The exact propagator also follows what is too stiff for fixed steps.
@@ -82,9 +83,3 @@ def _run(
         whole: tuple[Any, ...] = outcome
         for field, part in zip(whole, some, strict=True):
             field[rows] = part
-
-
-def is_rigid(p: Rows) -> NDArray[np.bool_]:
-    """Tell the machines whose motors are bolted to the body, without feed."""
-    rigid = np.isinf(p.mount_stiffness) & np.isinf(p.mount_rotational_stiffness)
-    return rigid & (p.feed_mass == 0)

@@ -67,6 +67,11 @@ class LimitState:
         """Map points of standard normal space, (n, dimension), to the model's parameters."""
         return physical(self.study, np.clip(ndtr(u), 2.0**-54, 1.0 - 2.0**-53))
 
+    def uncertain(self, u: Floats) -> Floats:
+        """Map points of standard normal space to the uncertain parameters alone."""
+        names = self.study.model.parameter_names
+        return self.physical(u)[:, [names.index(name) for name in self.study.uncertain]]
+
     def __call__(self, u: Floats) -> Floats:
         """Compute the rows of some points.
 

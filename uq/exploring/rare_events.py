@@ -2,7 +2,7 @@
 
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -22,8 +22,6 @@ from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, subset_simulat
 from uq.intervals import Ends, binomial_interval
 from uq.running.options import RunOptions
 from uq.study.definition import Study, load_study
-
-METHODS = ("subset", "importance")
 
 _FEWEST = 100  # rows of a level: 10 chains
 Floats = NDArray[np.float64]
@@ -106,18 +104,20 @@ def rare_event(
     margin = LimitState(study, output, threshold, below, evaluator)
     generators = np.random.default_rng((study.design.seed, 1)).spawn(replicates)
     with evaluator:
-        found, interval, worst = _METHODS[method](margin, samples, generators)
+        found = METHODS[method](margin, samples, generators)
+    low, high = map(float, found.interval)
     ds = xr.Dataset(
         {
-            "probability": ((), found["estimate"][1].mean()),
-            "low": ((), interval[0]),
-            "high": ((), interval[1]),
-            "failed_high": ((), max(worst, float(interval[1])) if margin.failed else np.nan),
+            "probability": ((), found.estimates.mean()),
+            "low": ((), low),
+            "high": ((), high),
+            "failed_high": ((), max(found.failed_inside, high) if margin.failed else np.nan),
             "rows": ((), evaluator.rows),
             "failed": ((), margin.failed),
             "undefined": ((), margin.undefined),
+            "estimate": ("replicate", found.estimates),
         }
-        | found,
+        | found.variables,
         {"parameter": list(study.uncertain)},
         {
             "output": output,
@@ -133,8 +133,24 @@ def rare_event(
     return ds.assign_attrs(notes="\n".join(_notes(ds, margin)))
 
 
-_Found = tuple[dict[str, Any], Ends, float]
-"""Variables of the result, the interval, and its high end if failed rows lay within the event."""
+class _Found(NamedTuple):
+    """What a method found.
+
+    Attributes
+    ----------
+    estimates : ndarray, shape (R,)
+        Of each replicate.
+    interval : Ends
+    failed_inside : float
+        The high end if the failed rows lay within the event.
+    variables : dict
+        Variables of the result that this method alone gives.
+    """
+
+    estimates: Floats
+    interval: Ends
+    failed_inside: float
+    variables: dict[str, Any]
 
 
 def _subset(margin: LimitState, samples: int, generators: list[np.random.Generator]) -> _Found:
@@ -147,18 +163,16 @@ def _subset(margin: LimitState, samples: int, generators: list[np.random.Generat
 
     found = subset_simulation(counting, margin.dimension, samples, generators)
     hits, rows = sum(one.first_hits for one in found), samples * len(found)
-    inside = margin.physical(np.concatenate([one.inside for one in found]))
-    names = margin.study.model.parameter_names
-    chosen = [names.index(name) for name in margin.study.uncertain]
-    typical = np.median(inside[:, chosen], axis=0) if len(inside) else np.full(len(chosen), np.nan)
+    inside = margin.uncertain(np.concatenate([one.inside for one in found]))
+    nothing = np.full(margin.dimension, np.nan)
     variables = {
-        "estimate": ("replicate", np.array([one.probability for one in found])),
         "levels": ("replicate", np.array([one.levels for one in found])),
         "ended": ("replicate", np.array([one.ended for one in found])),
-        "typical": ("parameter", typical),
+        "typical": ("parameter", np.median(inside, axis=0) if len(inside) else nothing),
     }
+    estimates = np.array([one.probability for one in found])
     worst = with_failed_inside(hits, failed[0], rows)
-    return variables, subset_interval(found, samples), worst
+    return _Found(estimates, subset_interval(found, samples), worst, variables)
 
 
 def _importance(margin: LimitState, samples: int, generators: list[np.random.Generator]) -> _Found:
@@ -174,8 +188,6 @@ def _importance(margin: LimitState, samples: int, generators: list[np.random.Gen
     drawn = [drawn_around(points, samples, rng) for rng in generators]
     inside = margin(np.concatenate([u for u, _ in drawn])) > 0
     weights = np.concatenate([weight for _, weight in drawn])
-    names = margin.study.model.parameter_names
-    chosen = [names.index(name) for name in margin.study.uncertain]
     index = np.linalg.norm(points, axis=1)
     estimates = (weights * inside).reshape(-1, samples).mean(axis=1)
     interval = (
@@ -184,15 +196,15 @@ def _importance(margin: LimitState, samples: int, generators: list[np.random.Gen
         else binomial_interval(hits / samples, samples)
     )
     variables = {
-        "estimate": ("replicate", estimates),
         "reliability_index": ("design_point", index),
         "first_order": ("design_point", ndtr(-index)),
-        "location": (("design_point", "parameter"), margin.physical(points)[:, chosen]),
+        "location": (("design_point", "parameter"), margin.uncertain(points)),
     }
-    return variables, interval, with_failed_inside(hits, failed, samples)
+    worst = with_failed_inside(hits, failed, samples)
+    return _Found(estimates, interval, worst, variables)
 
 
-_METHODS = {"subset": _subset, "importance": _importance}
+METHODS = {"subset": _subset, "importance": _importance}
 
 
 def _check(threshold: float, method: str, samples: int, replicates: int) -> None:

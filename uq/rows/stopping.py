@@ -1,7 +1,7 @@
-"""When a run has seen enough: looks at fixed sizes, and intervals that stay honest for it.
+"""When a run knows enough: interim estimates at fixed sizes, with intervals that remain honest.
 
-Whoever looks often enough sees any interval narrow by luck. So a run looks at few sizes, fixed
-before it starts, each half as large as the next, and the interval of each of K looks has the
+An interval that is recomputed often enough narrows by chance. So a run estimates at few sizes,
+fixed before it starts, each half as large as the next, and the interval at each of K sizes has the
 confidence 1 - 0.05/K: the chance that one of them misses is at most 5 %, whenever the run stops.
 """
 
@@ -22,7 +22,7 @@ _FIRST = 32  # samples of the first look at least
 
 
 class InterimEstimate(NamedTuple):
-    """What a run sees when it looks.
+    """An estimate on the way, which may end the run.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class InterimEstimate(NamedTuple):
 
 
 def interim_sizes(design: "DesignTable") -> tuple[int, ...]:
-    """Return the numbers of samples at which a run looks, the last being all of them."""
+    """Return the numbers of samples at which a run estimates, the last being all of them."""
     size = design.samples
     sizes = [size]
     while (size := -(-size // 2)) >= _FIRST:
@@ -52,7 +52,7 @@ def confidence(design: "DesignTable") -> float:
 
 
 def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
-    """Look at the rows of a run so far.
+    """Estimate from the rows of a run so far.
 
     Parameters
     ----------

@@ -42,8 +42,8 @@ def run(
     """Run a study and write its result, or return the result that is already there.
 
     Rows are kept on disk as they arrive: a run that was stopped goes on where it was, and a result
-    with fewer samples is extended, where the design allows it. A study with [design] until is
-    looked at on the way, and ends when enough is known or its samples are spent.
+    with fewer samples is extended, where the design allows it. A study with [design] until ends
+    when its estimate is known well enough, or its samples are spent.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def run(
     KernelError
         When the model does not keep its contract.
     RunError
-        When no result can be had: workers that die, a disk that is full.
+        When there is no result: workers die, a disk is full.
 
     Examples
     --------
@@ -178,7 +178,7 @@ def carry_out(
 
 
 def _until(study: Study) -> Study | None:
-    """Return the study, if it may end early; looks and intervals are those of its file's budget."""
+    """Return the study, if it may end early: at the interim sizes of its file's budget."""
     if study.design.until is None:
         return None
     budget = read_study_text(study.text, study.path).design.samples
@@ -191,7 +191,7 @@ def _until(study: Study) -> Study | None:
 
 
 def _interim_studies(until: Study | None, reach: int) -> list[Study]:
-    """Return what to look at before the budget is spent: a run that goes on looks where it was."""
+    """Return the study at each interim size from `reach` on, where a resumed run stood."""
     if until is None:
         return []
     parts = [until.with_samples(samples) for samples in stopping.interim_sizes(until.design)]

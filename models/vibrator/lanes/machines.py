@@ -46,16 +46,30 @@ class Machines(NamedTuple):
         )
 
 
+def follows(p: Rows, settings: Settings) -> NDArray[np.bool_]:
+    """Tell the machines that lanes can follow: motors bolted to the body, no feed."""
+    rigid = np.isinf(p.mount_stiffness) & np.isinf(p.mount_rotational_stiffness)
+    return rigid & (p.feed_mass == 0) & (settings.kinematics == "small")
+
+
 def prepared(p: Rows) -> Machines:
-    """Prepare n machines, each field of p of shape (n,): mounts rigid, no feed."""
+    """Prepare n machines that lanes can follow, each field of p of shape (n,)."""
     m = rigid_machines(p)
     speeds = np.stack([p.synchronous_speed_1, p.synchronous_speed_2], axis=1)
     return Machines(p, m, pack(m), fastest_rates(m), speeds)
 
 
 def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], Machines]]:
-    """Prepare n machines: all in one group, since lanes need nothing in common."""
-    yield np.arange(len(p.body_mass)), prepared(p)
+    """Prepare those of n machines that lanes can follow, all in one group.
+
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,).
+    settings : Settings
+    """
+    rows = np.flatnonzero(follows(p, settings))
+    yield rows, prepared(Params._make(field[rows] for field in p))
 
 
 def start(machines: Machines) -> Array:
