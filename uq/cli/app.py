@@ -28,10 +28,7 @@ VERBS = (
     results.report,
 )
 
-app = typer.Typer(
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
+app = typer.Typer(pretty_exceptions_enable=False, rich_markup_mode=None)
 for verb in VERBS:
     app.command()(verb)
 

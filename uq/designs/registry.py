@@ -13,9 +13,7 @@ from uq.designs.trajectories import morris_trajectories, optimised_trajectories
 DESIGNS = {
     "monte-carlo": Design("independent rows", monte_carlo, independent=True),
     "latin-hypercube": Design(
-        "each input stratified into as many slices as samples",
-        latin_hypercube,
-        append_only=False,
+        "each input stratified into as many slices as samples", latin_hypercube, append_only=False
     ),
     "sobol": Design("scrambled Sobol' sequence, samples a power of two", sobol, power_of_two=True),
     "halton": Design("scrambled Halton sequence", halton),
@@ -45,9 +43,7 @@ DESIGNS = {
         " estimates",
     ),
     "shapley": Design(
-        "paths from one independent row to another, for Shapley effects",
-        paths,
-        PATHS,
+        "paths from one independent row to another, for Shapley effects", paths, PATHS
     ),
     "fast": Design(
         "a curve through the inputs for each of them, for extended FAST",
@@ -57,14 +53,10 @@ DESIGNS = {
         least=LEAST_POINTS,
     ),
     "rbd-fast": Design(
-        "one curve shuffled for each input, for RBD-FAST",
-        random_balance,
-        append_only=False,
+        "one curve shuffled for each input, for RBD-FAST", random_balance, append_only=False
     ),
     "imported": Design(
-        "the rows of a CSV or netCDF file, in the parameters' units",
-        None,
-        append_only=False,
+        "the rows of a CSV or netCDF file, in the parameters' units", None, append_only=False
     ),
 }
 

@@ -119,11 +119,7 @@ class Triangular(BaseLaw):
 
     def _scipy(self) -> Scipy:
         width = self.upper - self.lower
-        return "triang", {
-            "c": (self.mode - self.lower) / width,
-            "loc": self.lower,
-            "scale": width,
-        }
+        return "triang", {"c": (self.mode - self.lower) / width, "loc": self.lower, "scale": width}
 
 
 class Pert(BaseLaw):

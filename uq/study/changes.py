@@ -7,12 +7,7 @@ from uq.designs.registry import DESIGNS
 from uq.literals import read_toml, shown
 from uq.study.definition import Study
 
-_FREE = {
-    ("study", "name"),
-    ("study", "description"),
-    ("design", "samples"),
-    ("design", "until"),
-}
+_FREE = {("study", "name"), ("study", "description"), ("design", "samples"), ("design", "until")}
 """Entries that decide no row."""
 
 

@@ -133,8 +133,7 @@ class DesignTable(_Table):
     """Which rows are computed."""
 
     method: Annotated[str, _one_of("design", DESIGNS)] = Field(
-        description="how rows are chosen",
-        json_schema_extra=_enum(DESIGNS),
+        description="how rows are chosen", json_schema_extra=_enum(DESIGNS)
     )
     samples: int = Field(
         default_factory=lambda: 0,  # all rows of an imported file; other designs must say
