@@ -87,14 +87,14 @@ def test_a_near_miss_is_told_what_would_do():
 def test_designs_for_independent_inputs_are_refused_and_others_named(method):
     entries = {"x1": UNIFORM, "x3": UNIFORM}
     said = refusal(tables(entries, method, 128, dependence=CORRELATED))
-    assert said.startswith(f'[design] method = "{method}": supposes independent inputs')
+    assert said.startswith(f'[design] method = "{method}": assumes independent inputs')
     assert "use monte-carlo or latin-hypercube" in said and "delta and pawn" in said
 
 
 def test_methods_for_independent_inputs_are_refused_and_others_named():
     given = tables({"x1": UNIFORM, "x3": UNIFORM}, samples=256, dependence=CORRELATED)
     said = refusal(given | {"analysis": {"sensitivity": ["rbd-fast"]}})
-    assert said.startswith('[analysis] sensitivity = "rbd-fast": supposes independent inputs')
+    assert said.startswith('[analysis] sensitivity = "rbd-fast": assumes independent inputs')
     assert said.endswith("those that do not are 'delta' or 'pawn' or 'quantile' or 'regional'")
     ds = computed(study_of(given))
     assert sensitivities(ds)["method"] == "delta"

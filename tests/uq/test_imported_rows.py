@@ -74,14 +74,14 @@ def test_without_a_number_of_samples_all_rows_are_imported(table):
         (imported(uncertain={"x3": UNIFORM}), "has no column 'x3'"),
         (imported(replicates=2), "[design] replicates = 2: must be 1 for 'imported'"),
         (imported(samples=101), "[design] samples = 101: the file has 100 rows"),
-        (imported(uncertain={"x1": UNIFORM | {"times": "x2"}, "x2": UNIFORM}), "take it out"),
+        (imported(uncertain={"x1": UNIFORM | {"times": "x2"}, "x2": UNIFORM}), "leave it out"),
         (
             imported()
             | {
                 "dependence": {"parameters": ["x1", "x2"]}
                 | dict(rank_correlation=[[1.0, 0.5], [0.5, 1.0]])
             },
-            "imported rows are as dependent as they are",
+            "imported rows carry their own dependence",
         ),
         (tables({"x1": UNIFORM}, design={"file": "rows.csv"}), "only for method = 'imported'"),
         (

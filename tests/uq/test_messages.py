@@ -224,7 +224,7 @@ ONE_FAULT = [
             "analysis": {"tolerance": {"coverage": 0.95, "confidence": 0.95}},
         },
         "[analysis] tolerance = {coverage = 0.95, confidence = 0.95}: refused: its confidence"
-        " holds for independent rows, and those of 'saltelli' are not; use method = 'monte-carlo',"
+        " assumes independent rows, and those of 'saltelli' are not; use method = 'monte-carlo',"
         " or leave the bound out",
     ),
     (

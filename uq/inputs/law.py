@@ -3,23 +3,23 @@
 from math import inf
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 Positive = Annotated[float, Field(gt=0)]
 Scipy = tuple[str, dict[str, Any]]
 
 
-def _tuple(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
+LIST = Field(strict=False)
+"""Of a tuple, whose items stay strict: TOML has lists only."""
 
-
-LIST = BeforeValidator(_tuple)
+STRICT = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+"""What every table of a study file asks of its keys and values."""
 
 
 class BaseLaw(BaseModel):
     """A law of one variable; arguments in the parameter's unit."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+    model_config = STRICT
 
     _ascending: ClassVar[tuple[str, ...]] = ()
     discrete: ClassVar[bool] = False

@@ -1,10 +1,11 @@
 """What a study file asks of its model and of its design, beyond its shape."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from uq.contract import Model
-from uq.designs.registry import DESIGNS, IMPORTED
+from uq.designs.design import Design
+from uq.designs.registry import DESIGNS
 from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
@@ -15,7 +16,7 @@ Tables = Mapping[str, Mapping[str, Any]]
 
 
 def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Iterator[Fault]:
-    """Yield what does not suit the model, but for the laws of its parameters.
+    """Yield what does not suit the model, apart from the laws of its parameters.
 
     Parameters
     ----------
@@ -33,49 +34,45 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
     for name, value in tables["fixed"].items():
         if name in model.parameter_names and (problem := parameter_problem(model, name, value)):
             yield Fault(("fixed", name), problem, value)
-    given = tables["settings"]
+    given, analysis = tables["settings"], tables["analysis"]
     for name, text in read_settings(model, given)[1].items():
         yield Fault(("settings", name), text, given[name]) if name else Fault(("settings",), text)
-    yield from _output_faults(model, tables["analysis"])
-    yield from _twin_faults(model, tables["analysis"].get("twin", ""), given)
+    for name in analysis.get("outputs", ()):
+        yield from _output_faults(model, name, ("analysis", "outputs"), name)
+    for name, value in analysis.get("thresholds", {}).items():
+        path, no_number = ("analysis", "thresholds", name), "it has shares, not thresholds"
+        yield from _output_faults(model, name, path, value, no_number)
+    yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
-        if name not in model.outputs:
-            problem = unknown_name("output", name, model, tuple(model.outputs))
-            yield Fault(("design", "until", "output"), problem, until["output"])
-        elif model.outputs[name].is_category:
-            yield Fault(("design", "until", "output"), "is a category: it has no numbers", name)
+        path = ("design", "until", "output")
+        yield from _output_faults(model, name, path, until["output"], "it has no numbers")
 
 
 def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
-    names = {
-        table: tuple(data[table]) if isinstance(data.get(table), dict) else ()
-        for table in ("fixed", "uncertain")
-    }
-    for table, given in names.items():
-        for name in given:
+    fixed, uncertain = (
+        data[table] if isinstance(data.get(table), dict) else {} for table in ("fixed", "uncertain")
+    )
+    for table, given in (("fixed", fixed), ("uncertain", uncertain)):
+        for name, value in given.items():
             if name not in model.parameter_names:
                 problem = unknown_name("parameter", name, model, model.parameter_names)
-                yield Fault((table, name), problem, data[table][name])
-    for name in names["uncertain"]:
-        if name in names["fixed"]:
+                yield Fault((table, name), problem, value)
+    for name in uncertain:
+        if name in fixed:
             yield Fault(("uncertain", name), "is in [fixed] too; keep one of the two")
-    if isinstance(data.get("uncertain"), dict) and not data["uncertain"]:
+    if data.get("uncertain") == {}:
         yield Fault(("uncertain",), "nothing varies; give at least one parameter a law")
 
 
-def _output_faults(model: Model, analysis: Mapping[str, Any]) -> Iterator[Fault]:
-    known = tuple(model.outputs)
-    for name in analysis.get("outputs", ()):
-        if name not in known:
-            problem = unknown_name("output", name, model, known)
-            yield Fault(("analysis", "outputs"), problem, name)
-    for name, value in analysis.get("thresholds", {}).items():
-        path = ("analysis", "thresholds", name)
-        if name not in known:
-            yield Fault(path, unknown_name("output", name, model, known), value)
-        elif model.outputs[name].is_category:
-            yield Fault(path, "is a category: it has shares, not thresholds", value)
+def _output_faults(
+    model: Model, name: str, path: tuple[str, ...], value: Any, no_number: str = ""
+) -> Iterator[Fault]:
+    """Yield whether a model lacks an output, or has it as a category where numbers are needed."""
+    if name not in model.outputs:
+        yield Fault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
+    elif no_number and model.outputs[name].is_category:
+        yield Fault(path, f"is a category: {no_number}", value)
 
 
 def _twin_faults(model: Model, twin: Any, given: Mapping[str, Any]) -> Iterator[Fault]:
@@ -94,46 +91,46 @@ def _twin_faults(model: Model, twin: Any, given: Mapping[str, Any]) -> Iterator[
 
 
 def design_faults(tables: Tables) -> Iterator[Fault]:
-    """Yield what the design cannot serve."""
+    """Yield what the design does not allow."""
     table, analysis = tables["design"], tables["analysis"]
     if "method" not in table:
         return
     method = table["method"]
     design = DESIGNS[method]
+    asks = {key for key, value in (*table.items(), *analysis.items()) if value}
+    stated = "independent" in asks and design.imported
+    imported, independent = _able(lambda d: d.imported), _able(lambda d: d.independent)
+    problems = {}
     if "samples" in table and (problem := design.size_problem(table["samples"])):
-        yield Fault(("design", "samples"), f"{problem} for '{method}'", table["samples"])
-    if table.get("second_order") and not design.crossed:
-        able = _names(name for name, other in DESIGNS.items() if other.crossed)
-        yield Fault(("design", "second_order"), f"only for method = {able}", True)
-    stated = table.get("independent") and design.imported
-    if table.get("independent") and not stated:
-        able = _names(IMPORTED)
-        yield Fault(("design", "independent"), f"only for method = {able}", True)
-    if "tolerance" in analysis and not design.independent and not stated:
-        able = _names(name for name, other in DESIGNS.items() if other.independent)
-        able += ", independent = true if they are" * (design.imported)
-        yield Fault(
-            ("analysis", "tolerance"),
-            f"refused: its confidence holds for independent rows, and those of '{method}' are not;"
-            f" use method = {able}, or leave the bound out",
-            analysis["tolerance"],
+        problems["samples"] = f"{problem} for '{method}'"
+    if "second_order" in asks and not design.crossed:
+        problems["second_order"] = f"only for method = {_able(lambda d: d.crossed)}"
+    if "independent" in asks and not stated:
+        problems["independent"] = f"only for method = {imported}"
+    if "until" in asks and not design.append_only:
+        able = _able(lambda d: d.append_only)
+        problems["until"] = f"a '{method}' design cannot grow; use method = {able}"
+    elif "until" in asks and not design.independent and table.get("replicates", 1) < 2:
+        problems["until"] = (
+            f"a '{method}' design without replicates gives no interval; set replicates = 8"
         )
-    if table.get("until") and not design.append_only:
-        able = _names(name for name, other in DESIGNS.items() if other.append_only)
-        yield Fault(
-            ("design", "until"), f"a '{method}' design cannot grow; use method = {able}", True
+    for key, problem in problems.items():
+        yield Fault(("design", key), problem, True if key == "until" else table[key])
+    if "tolerance" in asks and not design.independent and not stated:
+        able = independent + ", independent = true if they are" * design.imported
+        problem = (
+            f"refused: its confidence assumes independent rows, and those of '{method}' are not;"
+            f" use method = {able}, or leave the bound out"
         )
-    elif table.get("until") and not design.independent and table.get("replicates", 1) < 2:
-        problem = f"nothing shows how well a '{method}' design knows anything; set replicates = 8"
-        yield Fault(("design", "until"), problem, True)
-    if analysis.get("twin") and not design.independent:
-        able = _names(name for name, other in DESIGNS.items() if other.independent)
+        yield Fault(("analysis", "tolerance"), problem, analysis["tolerance"])
+    if "twin" in asks and not design.independent:
         why = (
             "needs rows that can be drawn, and imported rows cannot"
             if stated
             else f"needs independent rows, and those of '{method}' are not"
         )
-        yield Fault(("analysis", "twin"), f"{why}; use method = {able}", analysis["twin"])
+        problem = f"{why}; use method = {independent}"
+        yield Fault(("analysis", "twin"), problem, analysis["twin"])
     unsaid = design.imported and not stated
     dependent = bool(tables["dependence"]) or unsaid
     yield from _method_faults(method, analysis.get("sensitivity", ()), dependent, unsaid)
@@ -145,27 +142,23 @@ def _method_faults(
     """Yield the sensitivity methods that a design cannot feed."""
     feeds, able = fed_by(DESIGNS[method]), fed_by(DESIGNS[method], dependent)
     if dependent and not able:
-        return  # told at the design
+        return  # a fault of the design, reported there
+    why = "[dependence] says they are not"
+    if unsaid:
+        why = "imported rows may be dependent (independent = true in [design] states otherwise)"
     for name in asked:
-        if name in feeds and name not in able:
-            why = (
-                "imported rows may be dependent (independent = true in [design] states that they"
-                " are not)"
-                if unsaid
-                else "[dependence] says they are not"
-            )
-            yield Fault(
-                ("analysis", "sensitivity"),
-                f"supposes independent inputs, and {why}; those that do not are {_names(able)}",
-                name,
-            )
-        elif name not in feeds:
-            yield Fault(
-                ("analysis", "sensitivity"),
-                f"a '{method}' design cannot feed it, method = {_names(designs_for(name))} can;"
-                f" '{method}' feeds {_names(feeds)}",
-                name,
-            )
+        problem = (
+            f"a '{method}' design cannot feed it, method = {_names(designs_for(name))} can;"
+            f" '{method}' feeds {_names(feeds)}"
+        )
+        if name in feeds:
+            problem = f"assumes independent inputs, and {why}; those that do not are {_names(able)}"
+        if name not in able:
+            yield Fault(("analysis", "sensitivity"), problem, name)
+
+
+def _able(can: Callable[[Design], bool]) -> str:
+    return _names(name for name, design in DESIGNS.items() if can(design))
 
 
 def _names(names: Iterable[str]) -> str:

@@ -4,14 +4,13 @@ Pydantic checks files against these classes (`uq.study.reading`), and the JSON S
 comes from them (`uq.study.schema`).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Annotated, Any, NamedTuple, Self, get_args
 
 from pydantic import (
     AfterValidator,
     BaseModel,
     BeforeValidator,
-    ConfigDict,
     Discriminator,
     Field,
     Tag,
@@ -24,7 +23,7 @@ from uq.designs.design import MAX_SAMPLES
 from uq.designs.registry import DESIGNS
 from uq.errors import nearest
 from uq.inputs.distributions import Law
-from uq.inputs.law import BaseLaw
+from uq.inputs.law import LIST, STRICT, BaseLaw
 from uq.literals import shown
 from uq.methods.registry import METHODS
 
@@ -43,15 +42,6 @@ def _one_of(kind: str, choices: Mapping[str, Any]) -> AfterValidator:
         return name
 
     return AfterValidator(check)
-
-
-def _enum(choices: Mapping[str, Any]) -> Callable[[dict[str, Any]], None]:
-    """Return what puts the names of a table, as they are by then, into a JSON Schema."""
-    return lambda schema: schema.update(enum=list(choices))
-
-
-def _tuple(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
 
 
 def _numbers(value: Any) -> Any:
@@ -81,14 +71,13 @@ def _name_or_settings(value: Any) -> Any:
     return value
 
 
-_LIST = BeforeValidator(_tuple)
 _DISTINCT = AfterValidator(_distinct)
 Share = Annotated[float, Field(gt=0, lt=1)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
 
 
 class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+    model_config = STRICT
 
 
 class StudyTable(_Table):
@@ -133,7 +122,8 @@ class DesignTable(_Table):
     """Which rows are computed."""
 
     method: Annotated[str, _one_of("design", DESIGNS)] = Field(
-        description="how rows are chosen", json_schema_extra=_enum(DESIGNS)
+        description="how rows are chosen",
+        json_schema_extra=lambda schema: schema.update(enum=list(DESIGNS)),
     )
     samples: int = Field(
         default_factory=lambda: 0,  # all rows of an imported file; other designs must say
@@ -190,10 +180,10 @@ ENTRY: TypeAdapter[BaseLaw | Tied] = TypeAdapter(Entry)
 class DependenceTable(_Table):
     """Rank correlations of uncertain parameters, by a Gaussian copula."""
 
-    parameters: Annotated[tuple[str, ...], _LIST, _DISTINCT, Field(min_length=2)] = Field(
+    parameters: Annotated[tuple[str, ...], LIST, _DISTINCT, Field(min_length=2)] = Field(
         description="the dependent ones, in the order of the matrix; others are independent"
     )
-    rank_correlation: Annotated[tuple[Annotated[tuple[float, ...], _LIST], ...], _LIST] = Field(
+    rank_correlation: Annotated[tuple[Annotated[tuple[float, ...], LIST], ...], LIST] = Field(
         description="Spearman's, a row for each parameter; of the law itself, before it is cut"
         " into discrete values"
     )
@@ -213,10 +203,10 @@ _SHARE_SCHEMA = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
 class AnalysisTable(_Table):
     """What is made of the rows; may change without a row being computed again."""
 
-    outputs: Annotated[tuple[str, ...], _LIST, _DISTINCT] = Field(
+    outputs: Annotated[tuple[str, ...], LIST, _DISTINCT] = Field(
         (), description="outputs to show; all if not given"
     )
-    quantiles: Annotated[tuple[Share, ...], _LIST, _DISTINCT] = Field(
+    quantiles: Annotated[tuple[Share, ...], LIST, _DISTINCT] = Field(
         (0.05, 0.5, 0.95), description="probabilities, each between 0 and 1"
     )
     max_failed: float = Field(
@@ -248,7 +238,7 @@ class AnalysisTable(_Table):
         " estimates, monte-carlo only",
     )
     sensitivity: Annotated[
-        tuple[Annotated[str, _one_of("method", METHODS)], ...], _LIST, _DISTINCT
+        tuple[Annotated[str, _one_of("method", METHODS)], ...], LIST, _DISTINCT
     ] = Field(
         (),
         description="sensitivity methods; the design's own if not given",

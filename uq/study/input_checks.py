@@ -1,4 +1,4 @@
-"""What inputs ask of each other, of their parameters and of the design."""
+"""Whether the inputs suit each other, their parameters and the design."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -21,6 +21,7 @@ from uq.inputs.dependence import matrix_problem
 from uq.inputs.distributions import Law
 from uq.inputs.faults import Fault
 from uq.inputs.observed import Empirical, values_problem
+from uq.inputs.values import bounds_of
 from uq.methods.registry import fed_by, for_dependent_inputs
 from uq.study.file import ENTRY, Tied
 from uq.study.reading import parse, shape_faults, sound_entries
@@ -71,15 +72,42 @@ def laws_of(text: str) -> dict[str, Law]:
 
 
 def input_faults(model: Model, entries: Entries) -> Iterator[Fault]:
-    """Yield what does not suit a parameter: its law, or the one that it is tied to."""
+    """Yield what does not suit a parameter: its law, or the parameter that it follows."""
     known = {name: entry for name, entry in entries.items() if name in model.parameter_names}
+    leaders = {name: entry for name, entry in known.items() if not _followed(entry)}
     for name, entry in known.items():
+        parameter, other = model.parameter(name), _followed(entry)
+        if other is None:
+            if unsuited := law_problem(entry, parameter):
+                yield Fault(("uncertain", name, *unsuited.argument), unsuited.text, unsuited.value)
+            continue
+        path = ("uncertain", name, "equals" if isinstance(entry, Tied) else "times")
+        if other not in leaders:
+            allowed = ", ".join(leaders) or "none"
+            problem = "is no uncertain parameter with its own law"
+            if other == name:
+                problem = "is the parameter itself"
+            yield Fault(path, f"{problem}{nearest(other, leaders)} (allowed: {allowed})", other)
+            continue
+        law, there = leaders[other], model.parameter(other)
         if isinstance(entry, Tied):
-            yield from _tie_faults(model, name, entry, known)
-        elif entry.times is not None:
-            yield from _factor_faults(model, name, entry, known)
-        elif unsuited := law_problem(entry, model.parameter(name)):
-            yield Fault(("uncertain", name, *unsuited.argument), unsuited.text, unsuited.value)
+            if parameter.unit != there.unit:
+                problem = f"is in another unit, {there.unit}, than '{name}', {parameter.unit}"
+                yield Fault(path, problem, other)
+            elif unsuited := law_problem(law, parameter):
+                yield Fault(path, f"'{name}' cannot follow it: {unsuited.text}", other)
+        elif not law_problem(law, there):  # else reported at that parameter
+            low, high = support(law, there.bounds)
+            if low <= 0 <= high:
+                problem = f"must not change sign or be zero: lies within {low:g} to {high:g}"
+                yield Fault(path, problem, other)
+            elif text := _product_problem(parameter, entry, law, there):
+                yield Fault(("uncertain", name), text)
+
+
+def _followed(entry: Law | Tied) -> str | None:
+    """Return the parameter that another one equals, or is a multiple of; None for a law alone."""
+    return entry.equals if isinstance(entry, Tied) else entry.times
 
 
 def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[Fault]:
@@ -89,11 +117,10 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
         return
     names, ranks = table.get("parameters", ()), table.get("rank_correlation")
     for name in names:
-        entry = entries.get(name)
         if name not in tables["uncertain"]:
             problem = f"is not uncertain{nearest(name, entries)}"
             yield Fault(("dependence", "parameters"), problem, name)
-        elif isinstance(entry, Tied) or (entry is not None and entry.times is not None):
+        elif name in entries and _followed(entries[name]):
             problem = "follows another parameter already; only laws of their own can be correlated"
             yield Fault(("dependence", "parameters"), problem, name)
     if names and ranks is not None and (wrong := matrix_problem(tuple(names), ranks)):
@@ -101,11 +128,11 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
         yield Fault(("dependence", "rank_correlation", *wrong.place), wrong.text, value)
     method = tables["design"].get("method")
     if method in IMPORTED:
-        yield Fault(("dependence",), "imported rows are as dependent as they are; take it out")
+        yield Fault(("dependence",), "imported rows carry their own dependence; leave it out")
     elif method is not None and not fed_by(DESIGNS[method], dependent=True):
         able = [n for n, d in DESIGNS.items() if not d.imported and fed_by(d, dependent=True)]
         problem = (
-            f"supposes independent inputs, and [dependence] says they are not; use"
+            f"assumes independent inputs, and [dependence] says they are not; use"
             f" {' or '.join(able)}, which feed {' and '.join(for_dependent_inputs())}"
         )
         yield Fault(("design", "method"), problem, method)
@@ -114,7 +141,7 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
 def import_faults(
     model: Model, tables: Mapping[str, Any], entries: Entries, columns: Columns
 ) -> Iterator[Fault]:
-    """Yield what keeps the rows of a file from being a design."""
+    """Yield why the rows of a file cannot serve as a design."""
     table = tables["design"]
     if table.get("method") not in IMPORTED:
         if "file" in table and "method" in table:
@@ -126,21 +153,18 @@ def import_faults(
         yield Fault(("design", "replicates"), "must be 1 for 'imported'", table["replicates"])
     for name, entry in entries.items():
         if not isinstance(entry, Tied) and entry.times is not None:
-            problem = f"imported rows give '{name}' itself; take it out"
+            problem = f"imported rows give '{name}' itself; leave it out"
             yield Fault(("uncertain", name, "times"), problem, entry.times)
-    found = columns.get(table.get("file", ""), {})
     sizes = {}
-    for name, text in found.items():
+    for name, text in columns.get(table.get("file", ""), {}).items():
         if name in entries and name in model.parameter_names:
-            values = numbers(text)
+            values, parameter = numbers(text), model.parameter(name)
             sizes[name] = len(values)
-            low, high = model.parameter(name).bounds
-            outside = np.flatnonzero((values < low) | (values > high))
-            if len(outside):
-                first = int(outside[0])
+            low, high = parameter.bounds
+            for first in np.flatnonzero((values < low) | (values > high))[:1]:
                 problem = (
                     f"'{name}' = {float(values[first])!r} in row {first + 1} is outside the"
-                    f" parameter's bounds, {low!r} to {high!r} [{model.parameter(name).unit}]"
+                    f" parameter's bounds, {bounds_of(parameter)}"
                 )
                 yield Fault(("design", "file"), problem, table["file"])
     if len(set(sizes.values())) > 1:
@@ -149,53 +173,6 @@ def import_faults(
     elif sizes and table.get("samples", 0) > (rows := min(sizes.values())):
         problem = f"the file has {rows} rows; must be at most that"
         yield Fault(("design", "samples"), problem, table["samples"])
-
-
-def _other(
-    path: tuple[str, ...], name: str, other: str, entries: Entries
-) -> tuple[Law | None, Fault | None]:
-    """Return the law of another parameter, or why it cannot be followed."""
-    own = [n for n, e in entries.items() if not isinstance(e, Tied) and e.times is None]
-    if other in own and other != name:
-        return entries[other], None
-    known = ", ".join(n for n in own if n != name) or "none"
-    problem = (
-        "is the parameter itself" if other == name else "is no uncertain parameter with its own law"
-    )
-    return None, Fault(path, f"{problem}{nearest(other, own)} (allowed: {known})", other)
-
-
-def _tie_faults(model: Model, name: str, tied: Tied, entries: Entries) -> Iterator[Fault]:
-    path = ("uncertain", name, "equals")
-    law, fault = _other(path, name, tied.equals, entries)
-    if fault is not None:
-        yield fault
-    if law is None:
-        return
-    here, there = model.parameter(name), model.parameter(tied.equals)
-    if here.unit != there.unit:
-        problem = f"is in another unit, {there.unit}, than '{name}', {here.unit}"
-        yield Fault(path, problem, tied.equals)
-    elif unsuited := law_problem(law, here):
-        yield Fault(path, f"'{name}' cannot follow it: {unsuited.text}", tied.equals)
-
-
-def _factor_faults(model: Model, name: str, factor: Law, entries: Entries) -> Iterator[Fault]:
-    path = ("uncertain", name, "times")
-    law, fault = _other(path, name, str(factor.times), entries)
-    if fault is not None:
-        yield fault
-    if law is None:
-        return
-    there = model.parameter(str(factor.times))
-    if law_problem(law, there):
-        return  # told at that parameter
-    low, high = support(law, there.bounds)
-    if low <= 0 <= high:
-        problem = f"must not change sign or be zero: lies within {low:g} to {high:g}"
-        yield Fault(path, problem, factor.times)
-    elif unsuited := _product_problem(model.parameter(name), factor, law, there):
-        yield Fault(("uncertain", name), unsuited)
 
 
 def _product_problem(parameter: Parameter, factor: Law, law: Law, there: Parameter) -> str | None:
@@ -211,9 +188,8 @@ def _product_problem(parameter: Parameter, factor: Law, law: Law, there: Paramet
     outside = float(np.average(share, weights=norm.pdf(z)))
     if outside <= OUTSIDE_AT_MOST:
         return None
-    low, high = parameter.bounds
     return (
         f"the product has {outside:.2g} of its probability outside the parameter's bounds,"
-        f" {low!r} to {high!r} [{parameter.unit}] (allowed: {OUTSIDE_AT_MOST:g}); truncate the"
-        " factor, or use other numbers"
+        f" {bounds_of(parameter)} (allowed: {OUTSIDE_AT_MOST:g}); truncate the factor, or use other"
+        " numbers"
     )

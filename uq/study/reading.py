@@ -1,6 +1,6 @@
-"""From the text of a study file to its tables: syntax and shape, every fault in a line."""
+"""From the text of a study file to its tables: syntax and shape, one line per fault."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
@@ -33,8 +33,7 @@ def read_study_text(text: str, source: str = "study") -> StudyFile:
         One line per fault of syntax or shape.
     """
     data = parse(text, source)
-    faults = shape_faults(data)
-    if faults:
+    if faults := shape_faults(data):
         raise InputError(*(f"{source}: {fault.line}" for fault in faults))
     return StudyFile.model_validate(data)
 
@@ -49,8 +48,11 @@ def parse(text: str, source: str) -> dict[str, Any]:
 
 
 def shape_faults(data: dict[str, Any]) -> list[Fault]:
-    """Return what is wrong with the shape of a parsed study file, all of it."""
-    faults = list(_size_faults(data))
+    """Return everything that is wrong with the shape of a parsed study file."""
+    design, faults = data.get("design"), []
+    if isinstance(design, dict) and "samples" not in design:
+        if design.get("method") not in IMPORTED:  # a file of rows has its own size
+            faults.append(Fault(("design", "samples"), _MISSING))
     try:
         StudyFile.model_validate(data)
     except ValidationError as invalid:
@@ -58,24 +60,15 @@ def shape_faults(data: dict[str, Any]) -> list[Fault]:
     return [fault for fault in faults if not any(_is_meant(fault, other) for other in faults)]
 
 
-def _size_faults(data: dict[str, Any]) -> Iterator[Fault]:
-    """Yield whether a design lacks its size: a file of rows has its own."""
-    design = data.get("design")
-    if not isinstance(design, dict) or "samples" in design:
-        return
-    if design.get("method") not in IMPORTED:
-        yield Fault(("design", "samples"), _MISSING)
-
-
 def _is_meant(missing: Fault, other: Fault) -> bool:
-    """Whether what is missing is what another fault's key is told to mean."""
+    """Return whether a missing key is the one that another fault suggests."""
     *table, key = missing.path
     beside = missing.problem.startswith(_MISSING) and other.path[:-1] == tuple(table)
     return beside and f"did you mean '{key}'?" in other.problem
 
 
 def sound_entries(data: dict[str, Any], faults: list[Fault]) -> dict[str, dict[str, Any]]:
-    """Return the entries without a fault of shape, so that the rest is checked all the same.
+    """Return the entries without a fault of shape, so that they can be checked further.
 
     Parameters
     ----------
@@ -96,7 +89,7 @@ def sound_entries(data: dict[str, Any], faults: list[Fault]) -> dict[str, dict[s
     }
     for key, value in sound["analysis"].items():
         sound["analysis"][key] = value.copy() if isinstance(value, list | dict) else value
-    # From the end, so that places in a list keep their number until their turn.
+    # From the end, so that places in a list keep their numbers until they are removed.
     for path in sorted((fault.path for fault in faults if len(fault.path) > 1), reverse=True):
         _remove(sound, path[:3] if path[0] == "analysis" else path[:2])
     return sound
@@ -120,9 +113,8 @@ def _fault(error: dict[str, Any]) -> Fault:
         law = Tied if tied else LAWS[path.pop(2)] if len(path) > 2 else None
     match error["type"]:
         case "extra_forbidden":
-            kind, known = _beside(path, law)
-            problem = f"no such {kind}{nearest(str(path[-1]), known)} (allowed: {', '.join(known)})"
-            return Fault(tuple(path), problem, value)
+            kind, known = _allowed(path, law)
+            return Fault(tuple(path), _unknown(kind, str(path[-1]), known), value)
         case "missing":
             return Fault(tuple(path), _MISSING)
         case "union_tag_not_found":
@@ -132,15 +124,17 @@ def _fault(error: dict[str, Any]) -> Fault:
             return Fault((*path, "distribution"), f"{_MISSING} (one of {', '.join(LAWS)})")
         case "union_tag_invalid":
             name = error["ctx"]["tag"]
-            problem = f"no such law{nearest(name, LAWS)} (allowed: {', '.join(LAWS)})"
-            return Fault((*path, "distribution"), problem, name)
+            return Fault((*path, "distribution"), _unknown("law", name, LAWS), name)
     template = _REASONS.get(error["type"], "")
-    reason = template.format(**error.get("ctx", {})) or error["msg"]
-    return Fault(tuple(path), reason, value)
+    return Fault(tuple(path), template.format(**error.get("ctx", {})) or error["msg"], value)
 
 
-def _beside(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[str]]:
-    """Return what could stand where something unknown stands: kind and names."""
+def _unknown(kind: str, name: str, known: Iterable[str]) -> str:
+    return f"no such {kind}{nearest(name, known)} (allowed: {', '.join(known)})"
+
+
+def _allowed(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[str]]:
+    """Return what may stand in the place of an unknown key: kind and names."""
     if law is not None:
         common = list(BaseLaw.model_fields)[1:] if law is not Tied else []  # last, but the source
         own = [name for name in law.model_fields if name not in common]
@@ -150,9 +144,7 @@ def _beside(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[str
     if len(path) == 3:
         return "key", list(Tolerance._fields)
     table: Any = StudyFile.model_fields[path[0]].annotation
-    if path[0] == "dependence":
-        table = DependenceTable
-    return "key", list(table.model_fields)
+    return "key", list((DependenceTable if path[0] == "dependence" else table).model_fields)
 
 
 _MISSING = "is missing"
