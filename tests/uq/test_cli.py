@@ -1,5 +1,7 @@
 """The command line: what it prints and where, verb by verb."""
 
+import json
+from math import inf, nan
 from pathlib import Path
 
 import pytest
@@ -168,6 +170,6 @@ def test_tables_fit_in_80_columns(uq, write_study, verb):
     assert "\x1b" not in ended.out
 
 
-def test_json_knows_only_finite_numbers():
-    with pytest.raises(ValueError, match="not JSON compliant"):
-        print_json({"a": float("nan")})
+def test_a_number_that_is_not_finite_is_null_in_json(capsys):
+    print_json({"a": [nan, (inf,), 1.5]})
+    assert json.loads(capsys.readouterr().out) == {"a": [None, [None], 1.5]}

@@ -151,7 +151,7 @@ def test_methods_for_independent_inputs_take_rows_stated_to_be_such(table):
     with pytest.raises(InputError, match="but imported inputs may depend on each other"):
         sensitivities(unsaid, "hdmr")
     asks = imported() | {"analysis": {"sensitivity": ["hdmr"]}}
-    assert "independent = true in [design] states that they are not" in refusal(asks, folder)
+    assert "independent = true in [design] states otherwise" in refusal(asks, folder)
     asks = imported(independent=True) | {"analysis": {"sensitivity": ["hdmr"]}}
     assert study_from_text(as_text(asks), folder=folder).analysis.sensitivity == ("hdmr",)
 

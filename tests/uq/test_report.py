@@ -233,7 +233,7 @@ def test_report_on_the_command_line(uq, folder, monkeypatch):
     opened = []
     monkeypatch.setattr("webbrowser.open", lambda address: bool(opened.append(address)))
     ended = uq("report", "out.nc", "-o", "new/my report.html", "--open")
-    assert ended.code == 0 and "no browser was found" in ended.err
+    assert ended.code == 0 and "no browser found" in ended.err
     assert opened == [(folder / "new" / "my report.html").as_uri()]
     assert (folder / "new" / "my report.html").read_text() == text
 

@@ -49,7 +49,7 @@ def test_what_cannot_be_extended_says_why(uq, write_study):
     assert ended.code == 2
     assert ended.err == (
         "out.nc: a 'latin-hypercube' design cannot be extended: all its rows change with their "
-        "number; run it anew, into another output or with --fresh\n"
+        "number; run it again, into another output or with --fresh\n"
     )
     fewer = uq("extend", "out.nc", "--samples", 32)
     assert fewer.err == "--samples 32: out.nc has 64 already; ask for more\n"

@@ -1,7 +1,6 @@
 """What ``uq models`` shows."""
 
 from dataclasses import asdict
-from math import isfinite
 from typing import Any
 
 from uq.cli.printing import console, grid, heading, number, paragraph
@@ -11,20 +10,19 @@ from uq.study.registry import find_model, model_names
 
 
 def list_models() -> list[dict[str, str]]:
-    """Return name, version and title of every installed model."""
-    return [_entry(name) for name in model_names()]
-
-
-def _entry(name: str) -> dict[str, str]:
-    try:
-        model = find_model(name)
-    except InputError as error:
-        return {"name": name, "version": "", "title": str(error)}
-    return {"name": name, "version": model.version, "title": model.title}
+    """Return name, version and title of every installed model, or why it cannot be imported."""
+    listed = []
+    for name in model_names():
+        try:
+            model = find_model(name)
+            listed.append({"name": name, "version": model.version, "title": model.title})
+        except InputError as error:
+            listed.append({"name": name, "version": "", "title": str(error)})
+    return listed
 
 
 def as_json(model: Model) -> dict[str, Any]:
-    """Return everything a model declares, as plain data."""
+    """Return everything that a model declares, as plain data."""
     defaults = model.settings()
     return {
         "name": model.name,
@@ -39,25 +37,9 @@ def as_json(model: Model) -> dict[str, Any]:
             for name in model.setting_names
         },
         "outputs": {name: asdict(output) for name, output in model.outputs.items()},
-        "coordinates": _coordinates(model),
+        "coordinates": {dim: list(values) for dim, values in model.coordinates(defaults).items()},
         "references": list(model.references),
     }
-
-
-def _coordinates(model: Model) -> dict[str, list[Any]]:
-    return {dim: list(values) for dim, values in model.coordinates(model.settings()).items()}
-
-
-def finite(value: Any) -> Any:
-    """Return plain data with None for each number that is not finite, as JSON wants it."""
-    match value:
-        case dict():
-            return {key: finite(item) for key, item in value.items()}
-        case list() | tuple():
-            return [finite(item) for item in value]
-        case float() if not isfinite(value):
-            return None
-    return value
 
 
 def show_list(listed: list[dict[str, str]]) -> None:
@@ -70,18 +52,19 @@ def show(model: Model) -> None:
     """Print one model."""
     heading(model.name, f"{model.title} (version {model.version})")
     heading("\nParameters", "with meaning and source")
-    lines = [_line(model, name) for name in model.parameter_names]
-    header = ("name", "symbol", "nominal", "admissible")
-    widths = [max(map(len, column)) for column in zip(header, *lines, strict=True)]
+    lines = [("name", "symbol", "nominal", "admissible")]
+    lines += [_line(model, name) for name in model.parameter_names]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    padded = [[*map(str.ljust, line, widths)] for line in lines]
     fits = sum(widths) + 2 * (len(widths) - 1) <= console.width
     if fits:
-        paragraph(_aligned(header, widths), indent=0)
-    for line, name in zip(lines, model.parameter_names, strict=True):
+        paragraph("  ".join(padded[0]).rstrip(), indent=0)
+    for (name, symbol, nominal, bounds), cells in zip(lines[1:], padded[1:], strict=True):
         if fits:
-            heading(line[0].ljust(widths[0]), _aligned(line[1:], widths[1:]))
+            heading(cells[0], "  ".join(cells[1:]).rstrip())
         else:
-            heading(line[0], line[1])
-            paragraph(f"{line[2]}, admissible: {line[3]}")
+            heading(name, symbol)
+            paragraph(f"{nominal}, admissible: {bounds}")
         paragraph(model.parameter(name).meaning)
         paragraph(model.parameter(name).source)
     if model.setting_names:
@@ -110,11 +93,6 @@ def _line(model: Model, name: str) -> tuple[str, str, str, str]:
     unit = "" if parameter.unit == "1" else f" {parameter.unit}"
     bounds = " to ".join(map(number, parameter.bounds))
     return name, parameter.symbol, f"{model.nominal[name]:.6g}{unit}", bounds
-
-
-def _aligned(cells: tuple[str, ...], widths: list[int]) -> str:
-    padded = (cell.ljust(width) for cell, width in zip(cells, widths, strict=True))
-    return "  ".join(padded).rstrip()
 
 
 def _allowed(setting: Setting) -> str:

@@ -1,4 +1,4 @@
-"""What several verbs of ``uq`` are given: arguments and options, each with its help."""
+"""Arguments and options shared by several verbs of ``uq``, with their help."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,7 +7,7 @@ import typer
 
 
 def complete_model(incomplete: str) -> list[str]:
-    """Return the names that a shell may complete to."""
+    """Return the names with which a shell may complete a word."""
     from uq.study.registry import model_names
 
     return [name for name in model_names() if name.startswith(incomplete)]
@@ -31,20 +31,18 @@ Workers = Annotated[
     typer.Option(min=0, metavar="N", help="Worker processes; 0: compute in this process."),
 ]
 Samples = Annotated[
-    int | None, typer.Option(min=1, metavar="N", help="Instead of the study's own.")
+    int | None, typer.Option(min=1, metavar="N", help="Instead of the study's own number.")
 ]
 Scheduler = Annotated[
     str | None, typer.Option(metavar="ADDRESS", help="Use a running dask cluster.")
 ]
-RowLimit = Annotated[
-    float | None, typer.Option(metavar="S", help="Stop a row after so many seconds.")
-]
+RowLimit = Annotated[float | None, typer.Option(metavar="S", help="Stop a row after S seconds.")]
 Settings = Annotated[
     list[str] | None,
     typer.Option(metavar="NAME=VALUE", help="Set a numerical setting: TOML, or a bare word."),
 ]
 Mixed = Annotated[
-    bool, typer.Option("--mixed", help="Keep rows that other code of the model computed.")
+    bool, typer.Option("--mixed", help="Keep rows computed by other code of the model.")
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no summary.")]
 Regime = Annotated[str | None, typer.Option(metavar="NAME", help="Only the rows in this regime.")]

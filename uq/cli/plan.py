@@ -4,27 +4,26 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from uq.analysis.widths import Widths, expected_widths
-from uq.cli.catalogue import finite
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.cli.progress import say_compiling
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
 from uq.study.definition import load_study
 
-_SURE = 1.2  # a forecast that may be further off is shown with its band
+_SURE = 1.2  # a forecast with a wider margin is shown with its band
 
 
 def plan(
     path: str, model: str | None, samples: int | None, workers: int | None, json: bool
 ) -> None:
-    """Run a few rows of a study, and show what all of them will take and tell."""
+    """Run a few rows of a study; show what the whole will cost, and how wide intervals will be."""
     study = load_study(path, model)
     if samples is not None:
         study = study.with_samples(samples)
     cost, ds = pilot(study, workers, say_compiling)
     failures, widths = int(failed(ds).sum()), expected_widths(ds)
     if json:
-        print_json(finite(as_json(cost, failures, widths)))
+        print_json(as_json(cost, failures, widths))
     else:
         _show(path, study.description, cost, failures)
         _show_widths(widths)
@@ -57,12 +56,12 @@ def as_json(cost: Cost, failures: int, widths: Mapping[str, Widths]) -> dict[str
 def _show(path: str, description: str, cost: Cost, failures: int) -> None:
     heading(path, description)
     processes = "one process" if cost.workers == 1 else f"{cost.workers} processes"
-    told = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
+    pilot_rows = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
     sure = cost.seconds_high < _SURE * cost.seconds
     band = "" if sure else f"; {_clock(cost.seconds_low)} to {_clock(cost.seconds_high)}"
     grid(
         [
-            ("rows", str(cost.rows), told),
+            ("rows", str(cost.rows), pilot_rows),
             ("a row", f"{cost.row_seconds:.3g} s", "of one process"),
             ("time", _clock(cost.seconds), f"with {processes}, once the model is compiled{band}"),
             ("result", _size(cost.result_bytes), f"{_size(cost.run_bytes)} while it is made"),
@@ -87,8 +86,7 @@ def _show_widths(widths: Mapping[str, Widths]) -> None:
         grid(others)
     if any(width.mean is None for width in widths.values()):
         console.print()
-        told = "A dash: not from so few rows, not from this design, or the tail is too heavy."
-        paragraph(told, indent=0)
+        paragraph("A dash: too few rows, not from this design, or too heavy a tail.", indent=0)
 
 
 def _widths(widths: Mapping[str, Widths]) -> Iterator[tuple[str, ...]]:

@@ -1,7 +1,8 @@
-"""Plain words and numbers on a terminal, and JSON."""
+"""Text, numbers and tables on a terminal, and JSON."""
 
 import json
 from collections.abc import Iterable, Sequence
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class _Terminal(Console):
-    """A console that texts from a file can do nothing to."""
+    """A console that prints control characters as escapes."""
 
     def print(self, *objects: Any, **options: Any) -> None:
         super().print(
@@ -31,22 +32,33 @@ console = _Terminal(markup=False, highlight=False, emoji=False)
 
 
 def print_json(value: Any) -> None:
-    """Print JSON; a number that is not finite is a mistake of the caller."""
-    print(plain(json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False)))
+    """Print JSON, with null for a number that is not finite."""
+    print(plain(json.dumps(_finite(value), indent=2, allow_nan=False, ensure_ascii=False)))
+
+
+def _finite(value: Any) -> Any:
+    match value:
+        case dict():
+            return {key: _finite(item) for key, item in value.items()}
+        case list() | tuple():
+            return [_finite(item) for item in value]
+        case float() if not isfinite(value):
+            return None
+    return value
 
 
 def heading(text: str, more: str = "") -> None:
-    """Print a line that stands out, with what explains it behind."""
+    """Print a bold heading, followed by an explanation."""
     console.print(Text.assemble((plain(text), "bold"), plain(f"  {more}") if more else ""))
 
 
 def paragraph(text: str, indent: int = 4) -> None:
-    """Print text that keeps its indent where it wraps."""
+    """Print text that stays indented where it wraps."""
     console.print(Padding(plain(text), (0, 0, 0, indent), expand=False))
 
 
 def grid(rows: Iterable[Sequence[str]], header: Sequence[str] = (), indent: int = 2) -> None:
-    """Print aligned columns without lines; a column without a cell is left out.
+    """Print aligned columns without rules; an empty column is left out.
 
     Parameters
     ----------

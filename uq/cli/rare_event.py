@@ -1,20 +1,17 @@
 """What ``uq rare-event`` does."""
 
 import sys
-from collections.abc import Callable
+from math import isfinite
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from uq import json_form
 from uq.cli import say_when_interrupted
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
 from uq.errors import InputError
-from uq.study.definition import Study, load_study
-
-Estimate = Callable[[Study, str, float, bool], xr.Dataset]
-"""``estimate(study, output, threshold, below)``, as `uq.rare_event` with all else chosen."""
+from uq.exploring import rare_events
+from uq.study.definition import load_study
 
 
 def rare_event(
@@ -24,16 +21,27 @@ def rare_event(
     above: float | None,
     below: float | None,
     json: bool,
-    estimate: Estimate,
+    options: dict[str, Any],
 ) -> int:
-    """Estimate the probability of a rare event and show it; return the exit code."""
+    """Estimate the probability of a rare event and show it; return the exit code.
+
+    Parameters
+    ----------
+    path, model, output, above, below, json
+        As given on the command line.
+    options : dict
+        What else `uq.rare_event` takes.
+    """
     study = load_study(path, model)
     if (above is None) == (below is None):
         raise InputError("uq: give one of --above and --below")
     say_when_interrupted("interrupted; nothing was written")
-    threshold = above if above is not None else below
-    assert threshold is not None
-    ds = estimate(study, output, threshold, above is None)
+    limits = [(above, False), (below, True)]
+    ds = next(
+        rare_events.rare_event(study, output, threshold, is_below, **options)
+        for threshold, is_below in limits
+        if threshold is not None
+    )
     print_json(as_json(ds)) if json else _show(ds)
     failed = int(ds["failed"]) / int(ds["rows"])
     if failed <= study.analysis.max_failed:
@@ -49,13 +57,12 @@ def rare_event(
 def as_json(ds: xr.Dataset) -> dict[str, Any]:
     """Return the JSON of ``uq rare-event``."""
     names = {"value": "probability", "low": "low", "high": "high"}
-    probability = {key: _number(ds[name]) for key, name in names.items()}
     if np.isfinite(ds["failed_high"]):
-        probability["failed_high"] = float(ds["failed_high"])
+        names["failed_high"] = "failed_high"
     about = {name: ds.attrs[name] for name in ("output", "side", "threshold", "units", "method")}
     return {
         **about,
-        "probability": probability,
+        "probability": {key: float(ds[name]) for key, name in names.items()},
         "estimates": ds["estimate"].values.tolist(),
         **{name: int(ds[name]) for name in ("rows", "failed", "undefined")},
         **_by_method(ds),
@@ -66,22 +73,25 @@ def as_json(ds: xr.Dataset) -> dict[str, Any]:
 def _by_method(ds: xr.Dataset) -> dict[str, Any]:
     if "typical" in ds:
         return {"ended": ds["ended"].values.tolist(), "typical": _by_parameter(ds["typical"])}
-    points = [ds.isel(design_point=i) for i in range(ds.sizes["design_point"])]
     return {
         "design_points": [
             {name: float(point[name]) for name in ("reliability_index", "first_order")}
             | {"location": _by_parameter(point["location"])}
-            for point in points
+            for point in _design_points(ds)
         ]
     }
 
 
-def _by_parameter(values: xr.DataArray) -> dict[str, float | None]:
-    return {str(value["parameter"].item()): _number(value) for value in values}
+def _design_points(ds: xr.Dataset) -> list[xr.Dataset]:
+    return [ds.isel(design_point=i) for i in range(ds.sizes.get("design_point", 0))]
 
 
-def _number(value: xr.DataArray) -> float | None:
-    return json_form.number(float(value))
+def _by_parameter(values: xr.DataArray) -> dict[str, float]:
+    return {str(name): float(value) for name, value in values.to_series().items()}
+
+
+def _cell(value: float) -> str:
+    return number(value if isfinite(value) else None)
 
 
 def _show(ds: xr.Dataset) -> None:
@@ -89,10 +99,10 @@ def _show(ds: xr.Dataset) -> None:
     unit = "" if ds.attrs["units"] == "1" else f" {ds.attrs['units']}"
     event = f"P({ds.attrs['output']} {sign} {ds.attrs['threshold']:g}{unit})"
     heading(event, f"by {ds.attrs['method']}")
-    low, high, worst = (number(_number(ds[name])) for name in ("low", "high", "failed_high"))
+    low, high, worst = (_cell(float(ds[name])) for name in ("low", "high", "failed_high"))
     grid(
         [
-            ("probability", number(_number(ds["probability"]))),
+            ("probability", _cell(float(ds["probability"]))),
             ("95 % interval", f"{low} to {high}"),
             *([("with failed rows inside", f"up to {worst}")] if worst != "-" else []),
             ("rows", str(int(ds["rows"]))),
@@ -103,8 +113,7 @@ def _show(ds: xr.Dataset) -> None:
     if "typical" in ds:
         heading("\nMedian of each input, given the event")
         _show_inputs(ds["typical"])
-    for i in range(ds.sizes.get("design_point", 0)):
-        point = ds.isel(design_point=i)
+    for point in _design_points(ds):
         index = f"reliability index {float(point['reliability_index']):.4g}"
         first = float(point["first_order"])
         heading("\nDesign point", f"{index}, first-order probability {first:.3g}")
@@ -115,4 +124,4 @@ def _show(ds: xr.Dataset) -> None:
 
 
 def _show_inputs(values: xr.DataArray) -> None:
-    grid([(name, number(value)) for name, value in _by_parameter(values).items()])
+    grid([(name, _cell(value)) for name, value in _by_parameter(values).items()])

@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 
 from uq import store
-from uq.cli.catalogue import finite
 from uq.cli.printing import duration, grid, heading, number, print_json
 from uq.cli.progress import say_compiling
 from uq.compilation import compilation
@@ -31,7 +30,7 @@ def simulate(
     output: Path | None,
     plot: Path | None,
 ) -> int:
-    """Run a model once and show what came of it; return the exit code."""
+    """Run a model once and show the result; return the exit code."""
     model = find_model(reference)
     given = dict(_number(text) for text in parameters)
     chosen = dict(literal(text) for text in settings)
@@ -40,7 +39,7 @@ def simulate(
             store.check_target(path, 0)
     if output and output.exists() and not holds_trajectory(output):
         raise InputError(
-            f"{output}: exists, and is no trajectory of 'uq simulate'; choose another name"
+            f"{output}: exists and is not a trajectory of 'uq simulate'; choose another name"
         )
     if model.simulate is None and (output or plot):
         raise InputError(f"model '{model.name}' gives no trajectory; leave out -o and --plot")
@@ -73,31 +72,28 @@ def as_json(model: Model, ds: xr.Dataset) -> dict[str, Any]:
     Returns
     -------
     dict
-        Numbers that are not finite are None; ``never``, ``censored`` and ``undefined`` name them.
+        ``never``, ``censored`` and ``undefined`` name the outputs that are so.
     """
     status = Status(ds["status"].item())
-    outputs: dict[str, Any] = {}
     names: dict[str, list[str]] = {"never": [], "censored": [], "undefined": []}
-    for name in model.outputs:
-        outputs[name] = _plain(model, name, ds[name].isel(sample=0).values)
-        for element, _, state in _states(ds, name):
-            if state:
-                names[state].append(element)
+    for element, _, state in (one for name in model.outputs for one in _states(ds, name)):
+        if state:
+            names[state].append(element)
     return {
         "model": model.name,
-        "inputs": finite({name: ds[name].item() for name in model.parameter_names}),
-        "outputs": outputs,
+        "inputs": {name: ds[name].item() for name in model.parameter_names},
+        "outputs": {name: _plain(model, name, ds[name].values[0]) for name in model.outputs},
         "status": {"code": status.label, "meaning": _meaning(ds, status)},
         **names,
     }
 
 
 def _plain(model: Model, name: str, values: Any) -> Any:
+    if not model.outputs[name].is_category:
+        return values.astype(float).tolist()
     if np.ndim(values):
         return [_plain(model, name, value) for value in values]
-    if model.outputs[name].is_category:
-        return model.outputs[name].categories[int(values)] if values >= 0 else None
-    return float(values) if np.isfinite(values) else None
+    return model.outputs[name].categories[int(values)] if values >= 0 else None
 
 
 def _states(ds: xr.Dataset, name: str) -> Iterator[tuple[str, float, str]]:
@@ -119,7 +115,11 @@ def _show(model: Model, ds: xr.Dataset) -> None:
             continue
         grid(
             [
-                (key[len(name) :].strip("[]"), _shown(value, state), _time(output.unit, value))
+                (
+                    key[len(name) :].strip("[]"),
+                    _shown(value, state),
+                    duration(value) if output.unit == "s" else "",
+                )
                 for key, value, state in _states(ds, name)
             ]
         )
@@ -129,10 +129,6 @@ def _shown(value: float, state: str) -> str:
     if state == "censored":
         return f"more than {number(value)}"
     return state or ("failed" if np.isnan(value) else number(value))
-
-
-def _time(unit: str, value: float) -> str:
-    return duration(value) if unit == "s" else ""
 
 
 def _meaning(ds: xr.Dataset, status: Status) -> str:

@@ -1,4 +1,4 @@
-"""What differs between a study and the one that rows were computed for."""
+"""What differs between a study and the one for which rows were computed."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -8,18 +8,18 @@ from uq.literals import read_toml, shown
 from uq.study.definition import Study
 
 _FREE = {("study", "name"), ("study", "description"), ("design", "samples"), ("design", "until")}
-"""Entries that decide no row."""
+"""Entries on which no row depends."""
 
 
 def what_changed(text: str, model_version: str, study: Study) -> str:
-    """Name what makes a study another one.
+    """Return why a study is another one than that of some rows.
 
     Parameters
     ----------
     text : str
-        The study file of the rows that there are.
+        The study file of the rows.
     model_version : str
-        Of the model that computed them.
+        The version of the model that computed them.
     study : Study
         With another identity.
 
@@ -33,7 +33,7 @@ def what_changed(text: str, model_version: str, study: Study) -> str:
     except (ValueError, OverflowError, RecursionError):
         before = {}
     now = dict(_entries(read_toml(study.text)))
-    for place in (*before, *(place for place in now if place not in before)):
+    for place in before | now:
         if before.get(place) != now.get(place):
             *tables, name = place
             old, new = (
@@ -54,12 +54,12 @@ def refusal_to_extend(study: Study) -> str | None:
         return None
     return (
         f"a '{method}' design cannot be extended: all its rows change with their number; run it "
-        "anew, into another output or with --fresh"
+        "again, into another output or with --fresh"
     )
 
 
 def _entries(table: dict[str, Any], path: tuple[str, ...] = ()) -> Iterator[tuple[Any, Any]]:
-    """Yield place and value of every entry that decides rows."""
+    """Yield place and value of every entry on which rows depend."""
     for name, value in table.items():
         place = (*path, name)
         if (

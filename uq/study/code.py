@@ -1,6 +1,6 @@
-"""The code of a model, as one number: what two codes have computed is no one result.
+"""A hash of the code of a model: rows computed by different code do not form one result.
 
-A model's version is its author's promise; this is what the files say.
+The version of a model is its author's promise; the hash comes from the files.
 """
 
 from collections.abc import Mapping
@@ -12,23 +12,23 @@ from uq.study.sources import fingerprint
 
 
 def made_here(reference: str) -> dict[str, str]:
-    """Return what makes the rows of a model here: processor, versions and the model's code.
+    """Return what determines the rows of a model here: processor, versions and the model's code.
 
     Parameters
     ----------
     reference : str
-        What `uq.study.registry.find_model` finds the model by.
+        As for `uq.study.registry.find_model`.
     """
     return provenance() | {"code": code_of(reference)}
 
 
 def is_other_code(made: Mapping[str, object], reference: str) -> bool:
-    """Return whether rows were made by other code than is here.
+    """Return whether rows were computed by code other than that installed here.
 
     Parameters
     ----------
     made : dict
-        What made them, as `made_here` told then; without ``code``, nothing is known.
+        What determined them, as recorded by `made_here`; without ``code``, nothing is known.
     reference : str
         As above.
     """
@@ -39,22 +39,22 @@ def is_other_code(made: Mapping[str, object], reference: str) -> bool:
 def code_of(reference: str) -> str:
     """Return a hash of the sources of a model: its module, and what that imports.
 
-    Counted are sources of its package, and of what lies beside that in the same folder.
+    Only the sources of its package, and of its neighbours in the same folder, count.
 
     Parameters
     ----------
     reference : str
-        What `uq.study.registry.find_model` finds the model by.
+        As for `uq.study.registry.find_model`.
 
     Returns
     -------
     str
-        The same wherever the package lies. Once asked for it stays, as does what was imported.
+        Independent of where the package lies. It is computed once per process, like the import.
 
     Raises
     ------
     InputError
-        When no source is found.
+        No source was found.
     """
     module = module_of(reference)
     if not (found := fingerprint(module)):

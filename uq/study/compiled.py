@@ -1,8 +1,8 @@
-"""Compiled code that numba keeps on disk, apart for each state of the sources it was made from.
+"""numba's cache on disk, with a separate folder for each state of the sources.
 
-numba's own ``cache=True`` looks at the file of a function alone: after an edit of a file that it
-calls into, code made from the old one would come back. Here a folder is named by all sources that a
-function can come from.
+numba's own ``cache=True`` checks the file of a function only: after an edit of a file that it calls
+into, it would load stale code. Here the name of the folder is a hash of all sources on which a
+function can depend.
 """
 
 import os
@@ -22,12 +22,12 @@ _models: set[str] = set()
 
 
 def keep_apart(module: str) -> None:
-    """Have numba keep compiled code so, from now on in this process.
+    """Have numba cache compiled code in this way from now on in this process.
 
     Parameters
     ----------
     module : str
-        In which a model is: what lies in its package counts also where that is installed.
+        The module of a model: its package counts even if it is installed.
     """
     _models.add(module.partition(".")[0])
     _watch()
@@ -49,13 +49,13 @@ def _install() -> None:
 
 
 class SourcesLocator:
-    """Where the compiled code of one function is, as numba asks for it.
+    """The place of the compiled code of one function, as numba asks for it.
 
     Parameters
     ----------
     function : callable
     module : str
-        In which it is defined.
+        The module that defines it.
     """
 
     def __init__(self, function: Callable[..., Any], module: str) -> None:
@@ -68,7 +68,7 @@ class SourcesLocator:
 
     @classmethod
     def from_function(cls, function: Callable[..., Any], file: str) -> Self | None:
-        """Return the place for a function; None for what is left to numba."""
+        """Return the place for a function; None if numba is to decide."""
         module = function.__module__
         if module == "__main__" or not os.path.isfile(file):
             return None
@@ -87,7 +87,7 @@ class SourcesLocator:
         return found
 
     def ensure_cache_path(self) -> None:
-        """Make the folder, if need be; see that something can be written there."""
+        """Make the folder, if need be, and check that it is writable."""
         self._path.mkdir(parents=True, exist_ok=True)
         os.utime(self._path.parent)
         tempfile.TemporaryFile(dir=self._path).close()
@@ -97,16 +97,16 @@ class SourcesLocator:
         return str(self._path)
 
     def get_source_stamp(self) -> str:
-        """Return what is to be the same besides the folder: nothing."""
+        """Return what else must match: nothing."""
         return ""
 
     def get_disambiguator(self) -> str:
-        """Return what tells functions of one name in one module apart."""
+        """Return what distinguishes functions of one name in one module."""
         return self._line
 
 
 def key_of(module: str) -> str:
-    """Return a hash of all that code compiled from a module may come from.
+    """Return a hash of everything on which the compiled code of a module can depend.
 
     Parameters
     ----------

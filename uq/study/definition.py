@@ -11,7 +11,7 @@ from typing import Any, Self
 from uq.contract import Model
 from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import InputError, nearest
-from uq.inputs.data_files import Columns, columns_of_files, numbers, with_columns
+from uq.inputs.data_files import columns_of_files, numbers, with_columns
 from uq.inputs.distributions import Law
 from uq.inputs.faults import Fault
 from uq.inputs.values import read_settings
@@ -28,33 +28,33 @@ __all__ = ["Study", "load_study", "read_study_text", "study_from_text"]
 
 @dataclass(frozen=True)
 class Study:
-    """Everything a run needs to know, and nothing that depends on where it runs.
+    """Everything that a run needs to know, independent of where it runs.
 
     Attributes
     ----------
     name : str
     model : Model
     model_reference : str
-        What `uq.study.registry.find_model` finds the model by, in another process too.
+        By which `uq.study.registry.find_model` finds the model, in another process too.
     description : str
     design : DesignTable
         method, samples, replicates, second_order, seed, until.
     fixed : dict of str to float
         Parameters that override their nominal values.
     uncertain : dict of str to Law
-        In the file's order, which is the order of the design's columns. Of a parameter that is
-        another times a factor this is the law of the factor.
+        In the file's order, which is the order of the design's columns. For a parameter that is a
+        multiple of another, the law of the factor.
     settings : object
         An instance of ``model.settings``.
     analysis : AnalysisTable
         outputs (all of them if the file names none), quantiles, max_failed, tolerance,
         thresholds, twin, sensitivity.
     text : str
-        The whole study file, with the numbers of the files that it names.
+        The whole study file, with the contents of the files that it names.
     path : str
         Where it was read from.
     tied : dict of str to Tied
-        Parameters that have the value of another.
+        Parameters that equal another.
     dependence : DependenceTable or None
     imported : dict of str to str
         For an imported design: parameter -> its column, for `uq.inputs.data_files.numbers`.
@@ -76,7 +76,7 @@ class Study:
     imported: Mapping[str, str] = field(default_factory=dict)
 
     def bounds(self, name: str) -> tuple[float, float]:
-        """Return the bounds of a parameter and of those that are tied to it, together."""
+        """Return the bounds that a parameter shares with those tied to it."""
         names = [name, *(other for other, tied in self.tied.items() if tied.equals == name)]
         lows, highs = zip(*(self.model.parameter(one).bounds for one in names), strict=True)
         return max(lows), min(highs)
@@ -92,27 +92,21 @@ class Study:
 
     @property
     def identity(self) -> str:
-        """SHA-256 of what decides the rows: not how many, comments or [analysis]."""
+        """SHA-256 of what the rows depend on, so not of their number, comments or [analysis]."""
         design = self.design.model_dump(exclude={"samples", "file", "until", "independent"})
         constants = {
             name: self.fixed.get(name, nominal)
             for name, nominal in self.model.nominal.items()
             if name not in self.uncertain and name not in self.tied
         }
-        # What files are called does not matter, what they hold does.
+        # The contents of files count, their names do not.
         laws = [
             [name, law.model_dump(exclude={"source", "file", "column"}, exclude_none=True)]
             for name, law in self.uncertain.items()
         ]
-        parts = [
-            self.model.name,
-            self.model.version,
-            design,
-            constants,
-            laws,
-            asdict(self.settings),
-        ]
-        # Each only where there is any: studies without them keep the identity that they had.
+        parts = [self.model.name, self.model.version, design, constants, laws]
+        parts.append(asdict(self.settings))
+        # Added only where present: studies without them keep their identity.
         if self.tied:
             parts.append({name: tied.equals for name, tied in self.tied.items()})
         if self.dependence:
@@ -157,7 +151,7 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
     path : path-like
         A TOML file.
     model : str, optional
-        Use this model (``"package.module:ATTRIBUTE"`` or an installed name) in place of the
+        Use this model (``"package.module:ATTRIBUTE"`` or an installed name) instead of the
         file's.
 
     Returns
@@ -167,7 +161,7 @@ def load_study(path: str | PathLike[str], model: str | None = None) -> Study:
     Raises
     ------
     InputError
-        Everything that is wrong with the file, one line each.
+        Everything that is wrong with the file, one line per fault.
 
     Examples
     --------
@@ -188,10 +182,10 @@ def study_from_text(
     text : str
         The whole TOML.
     source : str
-        Where it comes from: what error lines call it.
+        The name of the text in error lines.
     model : str, optional
     folder : Path, optional
-        What the files that it names are relative to; the text in a result needs none.
+        The folder to which names of files are relative; the text in a result needs none.
 
     Returns
     -------
@@ -233,7 +227,9 @@ def study_from_text(
     file = StudyFile.model_validate(data)
     settings, _ = read_settings(found, file.settings)
     outputs = file.analysis.outputs or tuple(found.outputs)
-    imported = _imported(file, columns)
+    uncertain = {name: law for name, law in entries.items() if not isinstance(law, Tied)}
+    table = columns[file.design.file] if file.design.file and file.design.method in IMPORTED else {}
+    imported = {name: table[name] for name in uncertain if table}
     rows = min((len(numbers(column)) for column in imported.values()), default=0)
     return Study(
         name=file.study.name,
@@ -242,7 +238,7 @@ def study_from_text(
         description=file.study.description,
         design=file.design.model_copy(update={"samples": file.design.samples or rows}),
         fixed=file.fixed,
-        uncertain={name: law for name, law in entries.items() if not isinstance(law, Tied)},
+        uncertain=uncertain,
         settings=settings,
         analysis=file.analysis.model_copy(update={"outputs": outputs}),
         text=with_columns(text, columns, file.data),
@@ -253,20 +249,12 @@ def study_from_text(
     )
 
 
-def _imported(file: StudyFile, columns: Columns) -> dict[str, str]:
-    """Return the columns of an imported design, those that are uncertain, in the file's order."""
-    if file.design.method not in IMPORTED or file.design.file is None:
-        return {}
-    table = columns[file.design.file]
-    return {name: table[name] for name, e in file.uncertain.items() if not isinstance(e, Tied)}
-
-
 def _read(path: Path) -> str:
     try:
         with path.open("rb") as file:
             content = file.read(_LONGEST + 1)
         if len(content) > _LONGEST:
-            raise InputError(f"{path}: no study is longer than {_LONGEST // 1_000_000} MB")
+            raise InputError(f"{path}: a study is at most {_LONGEST // 1_000_000} MB long")
         return content.decode("utf-8-sig")
     except FileNotFoundError:
         folder = path.parent

@@ -1,4 +1,4 @@
-"""The models this installation knows, found through entry points."""
+"""The models installed here, found through entry points."""
 
 import importlib
 import os
@@ -19,7 +19,7 @@ def model_names() -> tuple[str, ...]:
 
 
 def find_model(reference: str) -> Model:
-    """Return a model by its name or, while it is being written, by where it lives.
+    """Return a model by its name or, while it is being written, by its place in a package.
 
     Parameters
     ----------
@@ -33,23 +33,23 @@ def find_model(reference: str) -> Model:
     Raises
     ------
     InputError
-        There is no such model, or its package cannot be imported. A model that is broken does not
-        stand in the way of the others.
+        There is no such model, or its package cannot be imported. A broken model does not affect
+        the others.
     """
     label = f"--model {reference}" if ":" in reference else f"model '{reference}'"
     return _load(_point(reference), label)
 
 
 def module_of(reference: str) -> str:
-    """Return the full name of the module in which a model lives; see `find_model`."""
+    """Return the full name of the module of a model; see `find_model`."""
     return _point(reference).value.partition(":")[0]
 
 
 def _point(reference: str) -> EntryPoint:
-    """Return where a model lives; whoever asks can import it from there."""
+    """Return the place of a model, from which it can be imported."""
     if ":" in reference:
-        # A model under development usually lies in the folder one works in, which an installed
-        # command does not search.
+        # A model under development is usually in the working folder, which an installed command
+        # does not search.
         if os.getcwd() not in sys.path:
             sys.path.append(os.getcwd())
         return EntryPoint(reference, reference, GROUP)
@@ -74,16 +74,12 @@ def _load(point: EntryPoint, label: str) -> Model:
     try:
         found = getattr(importlib.import_module(module_name), attribute)
     except (Exception, SystemExit) as error:
-        reason = " ".join(str(error).split())
-        remedy = ""
+        problem = f"{type(error).__name__}: {' '.join(str(error).split())}"
         if isinstance(error, ModuleNotFoundError):
-            remedy = "; install it, or name its folder in PYTHONPATH"
-        raise InputError(
-            f"{label} cannot be imported from {point.value}: {type(error).__name__}: {reason}"
-            f"{remedy}"
-        ) from error
+            problem += "; install it, or name its folder in PYTHONPATH"
+        raise InputError(f"{label} cannot be imported from {point.value}: {problem}") from error
     if module_name.partition(".")[0] not in own_packages():
-        fingerprint(module_name)  # of what was imported, not of what it is edited to afterwards
+        fingerprint(module_name)  # now, before anything is edited
     if not isinstance(found, Model):
         raise InputError(
             f"{label}: {point.value} is a {type(found).__name__}, not a uq.contract.Model"

@@ -1,5 +1,6 @@
 """JSON Schema of a study file, for editors: keys, choices, and the names each model knows."""
 
+from contextlib import suppress
 from math import isfinite
 from typing import Any
 
@@ -67,10 +68,8 @@ class _WithoutNull(GenerateJsonSchema):
 def _models() -> list[Model]:
     models = []
     for name in model_names():
-        try:
+        with suppress(InputError):  # a broken model keeps its name, without the names it knows
             models.append(find_model(name))
-        except InputError:  # a broken model keeps its name, without the names it knows
-            continue
     return models
 
 
@@ -84,12 +83,15 @@ def _when(table: str, key: str, value: str, then: dict[str, Schema]) -> Schema:
 
 def _model_schema(model: Model) -> dict[str, Schema]:
     known_outputs = {"enum": list(model.outputs)}
-    settings = _table(
-        {name: _setting(model, name, kind) for name, kind in setting_types(model).items()}
-    )
+    settings = _table({name: _setting(model, name, k) for name, k in setting_types(model).items()})
     return {
         "fixed": _table({name: _fixed(model, name) for name in model.parameter_names}),
-        "uncertain": _table({name: _uncertain(model, name) for name in model.parameter_names}),
+        "uncertain": _table(
+            {
+                name: {"allOf": [{"$ref": "#/definitions/Entry"}], **_texts(model, name)}
+                for name in model.parameter_names
+            }
+        ),
         "settings": settings,
         "analysis": {
             "properties": {
@@ -102,25 +104,22 @@ def _model_schema(model: Model) -> dict[str, Schema]:
 
 
 def _design_schema(design: Design) -> dict[str, Schema]:
-    table: Schema = {}
+    absent: Schema = {"not": {}}
+    powers = {"enum": [2**k for k in range(MAX_SAMPLES.bit_length())]}
+    may_be_stated = design.independent or design.imported  # that rows are independent
+    rules: list[tuple[str, bool, Schema]] = [
+        ("samples", design.power_of_two, powers),
+        ("second_order", not design.crossed, {"const": False}),
+        ("samples", design.least > 1, {"minimum": design.least}),
+        ("replicates", design.imported, {"const": 1}),
+        ("file", not design.imported, absent),
+        ("independent", not design.imported, {"const": False}),
+        ("until", not design.append_only, absent),
+    ]
+    table = {key: rule for key, holds, rule in rules if holds}
     analysis: Schema = {"sensitivity": {"items": {"enum": list(fed_by(design))}}}
-    if design.power_of_two:
-        table["samples"] = {"enum": [2**k for k in range(MAX_SAMPLES.bit_length())]}
-    if not design.crossed:
-        table["second_order"] = {"const": False}
-    if design.least > 1:
-        table["samples"] = {"minimum": design.least}
-    if design.imported:
-        table["replicates"] = {"const": 1}
-    else:
-        table["file"] = {"not": {}}
-        table["independent"] = {"const": False}
-    if not design.append_only:
-        table["until"] = {"not": {}}
-    if not design.independent:
-        analysis["twin"] = {"const": ""}
-        if not design.imported:  # that imported rows are independent may be stated
-            analysis["tolerance"] = {"not": {}}
+    analysis |= {} if design.independent else {"twin": {"const": ""}}
+    analysis |= {} if may_be_stated else {"tolerance": absent}
     needed: Schema = {} if design.imported else {"required": ["samples"]}
     return {"design": {"properties": table} | needed, "analysis": {"properties": analysis}}
 
@@ -142,10 +141,6 @@ def _fixed(model: Model, name: str) -> Schema:
     default = {"default": nominal} if isfinite(nominal) else {}  # JSON has no infinity
     limits = _limits(model.parameter(name).bounds)
     return {"type": "number", **limits, **default, **_texts(model, name)}
-
-
-def _uncertain(model: Model, name: str) -> Schema:
-    return {"allOf": [{"$ref": "#/definitions/Entry"}], **_texts(model, name)}
 
 
 def _setting(model: Model, name: str, kind: Any) -> Schema:

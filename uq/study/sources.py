@@ -1,7 +1,7 @@
-"""The source files that a module of a model consists of: its own, and what it imports.
+"""The source files of a module of a model: its own, and those that it imports.
 
-That is its package, and what it imports of packages that are not installed, wherever they lie. What
-is installed in other packages has a version; the platform itself is no part of any model.
+These are the files of its package and of imported packages that are not installed, wherever they
+are. Other installed packages have a version; the platform itself is not part of any model.
 """
 
 import ast
@@ -19,22 +19,22 @@ from typing import NamedTuple
 DISTRIBUTION = "vibrolife"
 _INSTALLED = ("site-packages", "dist-packages")
 _PLATFORM = __name__.partition(".")[0]
-_COMPUTED = "*"  # a module whose name is known when the import is carried out
+_COMPUTED = "*"  # a module whose name is computed at run time
 _IMPORTERS = ("import_module", "__import__")
 _FILES = ("/__init__.py", ".py", *EXTENSION_SUFFIXES)
 
 
 class Sources(NamedTuple):
-    """What a module is made from.
+    """The sources of a module.
 
     Attributes
     ----------
     own : dict of str to bytes
         Module -> its source, or the machine code of an extension; empty if none was found.
     root : Path or None
-        The folder in which the package lies.
+        The folder that contains the package.
     others : set of str
-        Modules from elsewhere that they import.
+        Modules imported from elsewhere.
     """
 
     own: dict[str, bytes]
@@ -43,12 +43,12 @@ class Sources(NamedTuple):
 
 
 def sources_of(module: str) -> Sources:
-    """Return what a module is made from: its source and those that it imports, in turn.
+    """Return the sources of a module: its own and those that it imports, recursively.
 
     Parameters
     ----------
     module : str
-        Its full name; it can be imported, and need not be yet.
+        Its full name; it need not have been imported.
     """
     package = module.partition(".")[0]
     root = _root(package)
@@ -84,7 +84,7 @@ def sources_of(module: str) -> Sources:
 def fingerprint(module: str) -> str:
     """Return a hash of the sources of a module, see `sources_of`; "" if none was found.
 
-    Once asked for it stays, as does what was imported: an edit counts in the next process.
+    It is computed once per process, like the import: an edit counts in the next process.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def fingerprint(module: str) -> str:
 
 
 def digest(sources: Mapping[str, bytes]) -> "hashlib._Hash":
-    """Return a hash of some sources by name, to which more may be added."""
+    """Return a hash of sources by name, which can be extended."""
     whole = hashlib.sha256()
     for name, source in sorted(sources.items()):
         whole.update(b"%s %d\n" % (name.encode(), len(source)))
@@ -105,16 +105,16 @@ def digest(sources: Mapping[str, bytes]) -> "hashlib._Hash":
 
 
 def signature(package: str, modules: Set[str]) -> list[tuple[str, int, int]]:
-    """Return what changes when a package from elsewhere does: files, times and sizes.
+    """Return what changes with a package from elsewhere: files, times and sizes.
 
-    Of an installed package its first file says enough: all are written together. Our own models
-    count where they are imported, and what they share always does.
+    The first file of an installed package is enough: all are written together. Our own models
+    count only where they are imported, what they share always.
 
     Parameters
     ----------
     package : str
     modules : set of str
-        Those that are imported from elsewhere.
+        The modules imported from elsewhere.
     """
     root = _root(package) if package not in sys.stdlib_module_names else None
     if root is None:
@@ -128,19 +128,19 @@ def signature(package: str, modules: Set[str]) -> list[tuple[str, int, int]]:
             for file in sorted(folder.rglob("*.py"))
             if not any(one in (file.with_suffix(""), *file.parents) for one in unused)
         ]
-    looks = ((str(file), file.stat()) for file in files)
-    return [(name, look.st_mtime_ns, look.st_size) for name, look in looks]
+    found = ((str(file), file.stat()) for file in files)
+    return [(name, status.st_mtime_ns, status.st_size) for name, status in found]
 
 
 def is_installed(package: str) -> bool:
-    """Return whether a package is not one that somebody may be editing."""
+    """Return whether a package is installed, and so not being edited."""
     root = _root(package) if package not in sys.stdlib_module_names else None
     return root is None or root.name in _INSTALLED
 
 
 @cache
 def own_models() -> set[str]:
-    """Return the modules of our own models, which see to their compiled code themselves."""
+    """Return the modules of our own models, which manage their compiled code themselves."""
     points = entry_points(group="vibrolife.models")
     names = ((point.dist.name if point.dist else "", point.module) for point in points)
     return {module for name, module in names if name == DISTRIBUTION}
@@ -148,31 +148,28 @@ def own_models() -> set[str]:
 
 @cache
 def own_packages() -> set[str]:
-    """Return the packages in which our own models lie."""
+    """Return the packages of our own models."""
     return {module.partition(".")[0] for module in own_models()}
 
 
 def _above(modules: Iterable[str]) -> set[str]:
-    """Return some modules, and the packages in which they lie."""
+    """Return some modules, and the packages that contain them."""
     parts = (name.split(".") for name in modules)
     return {".".join(names[: i + 1]) for names in parts for i in range(len(names))}
 
 
 def _root(package: str) -> Path | None:
-    """Return the folder in which a package lies, or a module that is a file."""
+    """Return the folder that contains a package, or a module that is a file."""
     try:
         spec = find_spec(package)
     except (ImportError, ValueError):
         return None
-    if spec is None:
-        return None
-    if spec.submodule_search_locations:
-        return Path(next(iter(spec.submodule_search_locations))).parent
-    return Path(spec.origin).parent if spec.origin else None
+    places = [*(spec.submodule_search_locations or []), spec.origin] if spec else []
+    return Path(places[0]).parent if places and places[0] else None
 
 
 def _edited(package: str) -> Path | None:
-    """Return the folder of a package that somebody may be editing; None for all others."""
+    """Return the folder of a package that may be edited; None for all others."""
     return None if package in own_packages() or is_installed(package) else _root(package)
 
 
@@ -188,7 +185,7 @@ def _is_module(root: Path, name: str) -> bool:
 
 @lru_cache(maxsize=1000)
 def _imported(source: bytes, within: str) -> tuple[str, ...]:
-    """Return the modules that a source imports anywhere, and names that might be some."""
+    """Return the modules that a source imports anywhere, and names that may be modules."""
     try:
         return tuple(_imports(source, within))
     except (ImportError, SyntaxError, ValueError):  # reported by whoever imports it

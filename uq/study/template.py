@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from itertools import islice
 from math import isfinite
 from typing import Any
 
@@ -10,15 +11,16 @@ from pydantic import BaseModel
 from uq.contract import Model, Parameter
 from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import law_problem
-from uq.inputs.distributions import Law, LogNormal, Normal, Uniform
+from uq.inputs.distributions import Law, LogNormal
 from uq.inputs.law import BaseLaw
 from uq.inputs.observed import Empirical
 from uq.inputs.values import bounds_of
 from uq.literals import toml
-from uq.study.file import LAWS, AnalysisTable, DesignTable
+from uq.study.file import LAW, LAWS, AnalysisTable, DesignTable
 
 _DESIGN = {"method": "monte-carlo", "samples": 1000, "seed": 1}
 _UNCERTAIN = 3
+_SOURCE = "example: replace by what you know"
 
 
 def template(model: Model) -> str:
@@ -36,7 +38,9 @@ def template(model: Model) -> str:
     str
         TOML.
     """
-    laws = _example_laws(model)
+    suited = ((n, _example_law(model.parameter(n), x)) for n, x in model.nominal.items())
+    laws = dict(islice(((name, law) for name, law in suited if law), _UNCERTAIN))
+    numbers = [name for name, output in model.outputs.items() if not output.is_category]
     return "\n".join(
         [
             "#:schema vibrolife-study.schema.json",
@@ -50,14 +54,10 @@ def template(model: Model) -> str:
             "",
             "[design]",
             *(f"# {name}: {design.meaning}" for name, design in DESIGNS.items()),
-            *_entries(
-                DesignTable,
-                {"method": "monte-carlo", "samples": 1000, "seed": 1},
-                {"until": {"output": _numbers(model)[0], "half_width": 1.0}},
-            ),
+            *_entries(DesignTable, _DESIGN, {"until": {"output": numbers[0], "half_width": 1.0}}),
             "",
             "[fixed]",
-            "# Parameters that keep one value; the nominal one unless given here.",
+            "# Parameters with a fixed value: the nominal one unless given here.",
             *_fixed(model, laws),
             "",
             *_uncertain(model, laws),
@@ -68,37 +68,36 @@ def template(model: Model) -> str:
             *_settings(model),
             "",
             "[analysis]",
-            *_entries(AnalysisTable, {}, _analysis_examples(model)),
+            *_entries(
+                AnalysisTable,
+                {},
+                {
+                    "outputs": list(model.outputs),
+                    "tolerance": {"coverage": 0.95, "confidence": 0.95},
+                    "thresholds": {numbers[0]: 1.0},
+                    "sensitivity": ["rbd-fast"],
+                },
+            ),
             "",
         ]
     )
 
 
-def _example_laws(model: Model) -> dict[str, Law]:
-    laws: dict[str, Law] = {}
-    for name, nominal in model.nominal.items():
-        law = _example_law(model.parameter(name), nominal)
-        if law is not None and len(laws) < _UNCERTAIN:
-            laws[name] = law
-    return laws
-
-
 def _example_law(parameter: Parameter, nominal: float) -> Law | None:
-    """Return a law around the nominal value that the bounds allow: 10 % scatter if it can be.
+    """Return a law around the nominal value that the bounds allow, if possible of 10 % scatter.
 
-    A parameter that is infinite unless given has none.
+    A parameter that is infinite by default has none.
     """
     if not isfinite(nominal):
         return None
-    source = "example: replace by what you know"
-    candidates: list[Law] = []
-    if nominal > 0:
-        candidates.append(LogNormal(distribution="lognormal", mean=nominal, cv=0.1, source=source))
     low, high = parameter.bounds
+    candidates: list[dict[str, Any]] = [{"distribution": "normal", "mean": nominal, "sd": 1.0}]
     if low < high and isfinite(high - low):
-        candidates.append(Uniform(distribution="uniform", lower=low, upper=high, source=source))
-    candidates.append(Normal(distribution="normal", mean=nominal, sd=1.0, source=source))
-    return next((law for law in candidates if law_problem(law, parameter) is None), None)
+        candidates.insert(0, {"distribution": "uniform", "lower": low, "upper": high})
+    if nominal > 0:
+        candidates.insert(0, {"distribution": "lognormal", "mean": nominal, "cv": 0.1})
+    laws: Iterator[Law] = (LAW.validate_python(one | {"source": _SOURCE}) for one in candidates)
+    return next((law for law in laws if law_problem(law, parameter) is None), None)
 
 
 def _fixed(model: Model, laws: dict[str, Law]) -> Iterator[str]:
@@ -127,9 +126,9 @@ def _menu() -> Iterator[str]:
         elif law is Empirical:
             arguments = ["file, column", "or values"]
         yield f"# {name}: {', '.join(arguments)}"
-    yield "# Any of them may be cut: truncate = [lower, upper]"
-    yield '# A law may be that of a factor on another uncertain parameter: times = "other"'
-    yield '# A parameter may be the same as another, instead of a law: equals = "other"'
+    yield "# Any of them may be truncated: truncate = [lower, upper]"
+    yield '# A parameter may be a multiple of another, the law that of the factor: times = "other"'
+    yield '# A parameter may equal another, instead of having a law: equals = "other"'
     yield ""
     yield "# Rank correlations, with ones on the diagonal:"
     yield "# [dependence]"
@@ -143,44 +142,22 @@ def _settings(model: Model) -> Iterator[str]:
     default = model.settings()
     for name in model.setting_names:
         declared = model.setting(name)
-        allowed = ""
-        if declared.choices:
-            allowed = f"; one of {', '.join(declared.choices)}"
-        elif declared.bounds is not None:
+        allowed = f"; one of {', '.join(declared.choices)}" if declared.choices else ""
+        if declared.bounds is not None and not allowed:
             allowed = f"; {declared.bounds[0]!r} to {declared.bounds[1]!r}"
         unit = "" if declared.unit == "1" else f" [{declared.unit}]"
         yield f"# {_line(declared.meaning)}{unit}{allowed}"
         yield f"#{name} = {toml(getattr(default, name))}"
 
 
-def _numbers(model: Model) -> list[str]:
-    return [name for name, output in model.outputs.items() if not output.is_category]
-
-
-def _design_examples(model: Model) -> dict[str, Any]:
-    return {"until": {"output": _numbers(model)[0], "half_width": 1.0}}
-
-
-def _analysis_examples(model: Model) -> dict[str, Any]:
-    return {
-        "outputs": list(model.outputs),
-        "tolerance": {"coverage": 0.95, "confidence": 0.95},
-        "thresholds": {name: 1.0 for name in _numbers(model)[:1]},
-        "sensitivity": ["rbd-fast"],
-    }
-
-
 def _entries(
-    table: type[BaseModel], given: dict[str, Any], examples: dict[str, Any] | None = None
+    table: type[BaseModel], given: dict[str, Any], examples: dict[str, Any]
 ) -> Iterator[str]:
     for name, field in table.model_fields.items():
-        if field.default is None and name not in (examples or {}):
-            continue  # what few studies have, and TOML has no word for nothing
-        yield f"# {field.description}"
-        if name in given:
-            yield f"{name} = {toml(given[name])}"
-        else:
-            yield f"#{name} = {toml((examples or {}).get(name, field.default))}"
+        value = (examples | given).get(name, field.default)
+        if value is not None:  # few studies have the others, and TOML has no word for nothing
+            yield f"# {field.description}"
+            yield f"{'' if name in given else '#'}{name} = {toml(value)}"
 
 
 def _about(parameter: Parameter) -> str:

@@ -1,4 +1,4 @@
-"""The verbs of ``uq``: what each is given, and what it calls.
+"""The verbs of ``uq``: what each takes, and what it calls.
 
-Heavy modules are imported inside the verbs, so that ``uq --help`` answers at once.
+Heavy modules are imported inside the verbs, so that ``uq --help`` responds at once.
 """

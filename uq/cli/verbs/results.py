@@ -7,19 +7,19 @@ from typing import Annotated
 
 import typer
 
-from uq.cli.options import Json, ModelReference, Regime, ResultFile
+from uq.cli import options as given
 from uq.literals import plain_line
 
 
 def summary(
-    result: ResultFile,
-    regime: Regime = None,
+    result: given.ResultFile,
+    regime: given.Regime = None,
     fits: Annotated[
         bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
     ] = False,
-    json: Json = False,
+    json: given.Json = False,
 ) -> None:
-    """Show how rows ended, and the statistics of each output."""
+    """Show how rows ended, and statistics of each output."""
     from uq.analysis.as_json import summary_json
     from uq.analysis.summary import summarise
     from uq.cli import tables
@@ -32,16 +32,16 @@ def summary(
 
 
 def sensitivity(
-    result: ResultFile,
+    result: given.ResultFile,
     output: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Only this output, or of it log(NAME), rank(NAME), ..."),
+        typer.Option(metavar="NAME", help="Only this output, or log(NAME), rank(NAME), ... of it."),
     ] = None,
     method: Annotated[str | None, typer.Option(metavar="M", help="Default: the study's.")] = None,
-    regime: Regime = None,
-    json: Json = False,
+    regime: given.Regime = None,
+    json: given.Json = False,
 ) -> None:
-    """Show which inputs the scatter comes from."""
+    """Show from which inputs the scatter comes."""
     from uq.cli.printing import print_json
     from uq.cli.sensitivity import plain, show
     from uq.indices.sensitivities import sensitivities
@@ -52,11 +52,11 @@ def sensitivity(
 
 
 def convergence(
-    result: ResultFile,
+    result: given.ResultFile,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
-    json: Json = False,
+    json: given.Json = False,
 ) -> None:
-    """Show whether it is enough: running estimates."""
+    """Show running estimates, to judge whether there are enough rows."""
     from uq.cli import estimates
 
     estimates.convergence(result, output, json)
@@ -65,23 +65,25 @@ def convergence(
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A.nc", help="A result of 'uq run'.")],
     second: Annotated[Path, typer.Argument(metavar="B.nc", help="Another, of the same model.")],
-    json: Json = False,
+    json: given.Json = False,
 ) -> None:
-    """Show what two studies of one model have different."""
+    """Show how two studies of one model differ."""
     from uq.cli import comparing
 
     comparing.compare(first, second, json)
 
 
-def twin(result: ResultFile, model: ModelReference = None, json: Json = False) -> None:
-    """Sharpen estimates by many rows of a cheap output."""
+def twin(
+    result: given.ResultFile, model: given.ModelReference = None, json: given.Json = False
+) -> None:
+    """Sharpen estimates with many rows of a cheap output."""
     from uq.cli import estimates
 
     estimates.twin(result, model, json)
 
 
 def plot(
-    result: ResultFile,
+    result: given.ResultFile,
     folder: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Default: OUT.nc without its ending."),
@@ -96,18 +98,18 @@ def plot(
 
 
 def report(
-    result: ResultFile,
+    result: given.ResultFile,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE", help="Default: OUT.html beside OUT.nc."),
     ] = None,
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
-    """Write all that a result says into one page for a browser."""
+    """Write everything that a result says to one page for a browser."""
     from uq.report import write_report
 
     path = output or result.with_suffix(".html")
     write_report(result, path)
     print(plain_line(str(path)))
     if show and not webbrowser.open(path.resolve().as_uri()):
-        print("no browser was found; open this file yourself", file=sys.stderr)
+        print("no browser found; open this file yourself", file=sys.stderr)
