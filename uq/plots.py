@@ -1,7 +1,7 @@
-"""All figures; those of a result stand in one table, which `uq plot` and the report read.
+"""All figures; one table lists those of a result, for `uq plot` and the report.
 
 A figure is a function ``f(ds, output, *, axes=None)`` that returns a matplotlib figure: a new one,
-or that of the axes given. To add one of a result: its file, and an entry of `FIGURES`.
+or that of the given axes. To add one of a result: its file, and an entry of `FIGURES`.
 """
 
 import os
@@ -78,7 +78,7 @@ FIGURES: dict[str, Entry] = {
     "inputs": Entry(
         inputs,
         of.the_result,
-        "Inputs, as stated and as the rows have them",
+        "Inputs, as stated and in the rows",
         section="inputs",
         applies=(of.follows_laws, of.has_numbers),
         in_report=(of.follows_laws,),

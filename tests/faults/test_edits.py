@@ -40,7 +40,7 @@ def test_comments_and_analysis_may_change(study, undisturbed, under_way, call, i
     assert "rows were done already" in said
     assert OUT.read_bytes() != undisturbed  # it holds the new text
     study.write_text(study.read_text().removesuffix("# a comment\nquantiles = [0.5]\n"))
-    assert "complete already" in call("run", study, *MODEL[:-1])[1]
+    assert "already complete" in call("run", study, *MODEL[:-1])[1]
     assert call("verify", OUT, *MODEL[:2])[0] == 0
 
 

@@ -70,7 +70,7 @@ def test_kills_during_the_merge(write_study, start, call, injected, kills):
     assert OUT.read_bytes() == (OUT.parents[1] / "undisturbed.nc").read_bytes()
     # Killed just before the rows are removed: they are of no use any more.
     shutil.copytree("copy", ROWS)
-    assert "complete already" in call("run", study)[1]
+    assert "already complete" in call("run", study)[1]
     assert [path.name for path in OUT.parent.iterdir()] == [OUT.name]
 
 

@@ -44,7 +44,7 @@ def test_init_gives_a_study_that_checks_and_runs(uq, folder):
     Path("linear.toml").write_text(uq("init", "linear").out)
     ended = uq("check", "linear.toml")
     assert ended.code == 0
-    assert ended.out.startswith("linear.toml: in order")
+    assert ended.out.startswith("linear.toml: valid")
     assert everything(folder) == ["linear.toml"]
 
 
@@ -71,7 +71,7 @@ def test_run_ends_with_the_summary_and_what_to_type_next(uq, write_study, folder
     assert shown in first.out
     again = uq("run", path)
     assert again.code == 0
-    assert "complete already" in again.out
+    assert "already complete" in again.out
     assert shown in again.out
     assert everything(folder) == ["results", "results/small.nc", "small.toml"]
 

@@ -59,5 +59,5 @@ def test_who_looks_at_a_terminal_is_told(folder):
     os.close(ours)
     assert (ended.returncode, said) == (
         0,
-        "compiling the model: once, and it may take a minute\r\n",
+        "compiling the model (once; it may take a minute)\r\n",
     )

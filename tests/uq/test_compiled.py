@@ -146,7 +146,7 @@ def test_edited_code_gives_new_numbers_and_says_so(plant, write_study, decorator
     assert call("run", study, "--quiet").returncode == 0
     said = call("verify", "results/small.nc").stdout
     assert "versions  the same as here" in said, said
-    assert "3 of 3 computed again are equal to the bit" in said
+    assert "3 of 3 recomputed are equal to the bit" in said
     helper = plant / "helper.py"
     helper.write_text(helper.read_text().replace("3.0", "5.0"))
     assert factor() == 10.0

@@ -21,7 +21,7 @@ PATIENCE = 30.0
 """How long a busy machine may take for what should take a moment [s]."""
 
 COMMAND = Path(sys.executable).with_name("uq")
-COMPILING = "compiling the model: once, and it may take a minute"
+COMPILING = "compiling the model (once; it may take a minute)"
 
 
 @pytest.fixture

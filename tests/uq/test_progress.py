@@ -43,7 +43,7 @@ def test_progress_tells_how_rows_ended_and_what_they_say():
     ]
     assert details(Progress(1, 2, 0)) == []
     never, short = ("other", float("inf")), ("short", 0.25)
-    assert details(Progress(1, 2, 0, median=never)) == ["median other: most rows do not end"]
+    assert details(Progress(1, 2, 0, median=never)) == ["median other: most rows never end"]
     assert details(Progress(1, 2, 0, median=short)) == ["median short: 0.25 s"]
 
 
@@ -137,7 +137,7 @@ def test_a_model_that_compiles_is_told_of_once(capsys):
     with progress.shown(quiet=False) as show:
         for _ in range(3):  # one kernel after the other
             show(Progress(0, 4, 0, compiling=True))
-    assert capsys.readouterr().err == "compiling the model: once, and it may take a minute\n"
+    assert capsys.readouterr().err == "compiling the model (once; it may take a minute)\n"
 
 
 def test_progress_is_a_sentence():

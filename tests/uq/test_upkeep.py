@@ -63,7 +63,7 @@ def test_a_grown_study_extends_its_result(uq, write_study):
     ended = uq("run", path, "-o", "out.nc")
     assert ended.err == "out.nc: 40 of 100 rows were done already\n"
     words = " ".join(ended.out.split())
-    assert re.search(r"out.nc: 60 rows computed in [0-9.]+ s; 40 were there already", words)
+    assert re.search(r"out.nc: 60 rows computed in [0-9.]+ s; 40 had been computed before", words)
     uq("run", path, "-o", "once.nc", "--quiet")
     assert Path("out.nc").read_bytes() == Path("once.nc").read_bytes()
 
@@ -121,7 +121,7 @@ def test_failed_rows_run_again_as_they_were_change_no_bit(uq, result):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ((), "uq rerun: say which rows: --failed\n"),
+        ((), "uq rerun: give --failed, the rows to compute again\n"),
         (("--failed", "--setting", "fail_abov=1"), "--setting fail_abov = 1: no such setting of"),
         (("--failed", "--setting", "fail_how=no"), "--setting fail_how = 'no': must be one of"),
     ],
@@ -163,7 +163,7 @@ def test_verify_finds_a_flipped_bit_wherever_it_is(uq, result):
     sound = uq("verify", "out.nc")
     assert sound.code == 0
     assert "checksum  right" in sound.out
-    assert "16 of 16 computed again are equal to the bit" in sound.out
+    assert "16 of 16 recomputed are equal to the bit" in sound.out
     content = Path("out.nc").read_bytes()
     values = api.open_result("out.nc")["y"].values.tobytes()
     for wanted in (values, b"uniform"):  # an output, and the text of the study
@@ -196,8 +196,8 @@ def test_verify_finds_rows_that_would_come_out_otherwise_and_names_versions(uq, 
     assert ended.code == 1
     assert "checksum  WRONG" in ended.out
     assert "numpy  0.9 made it, " in ended.out
-    assert "computed again, differs in row 3: y" in ended.out
-    assert "11 of 12 computed again are equal to the bit" in ended.out
+    assert "recomputed, differs in row 3: y" in ended.out
+    assert "11 of 12 recomputed are equal to the bit" in ended.out
 
 
 def test_a_result_of_another_version_of_the_model_is_not_taken_for_this_one(uq, write_study):

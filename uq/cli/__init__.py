@@ -1,4 +1,4 @@
-"""The command ``uq``: how it starts, what a mistake looks like, how it ends.
+"""The command ``uq``: its start, how it reports mistakes, its end.
 
 Exit codes: 0 done; 1 no usable result; 2 bad input; 130 interrupted.
 """
@@ -18,7 +18,7 @@ _when_interrupted = "interrupted"
 
 
 def main() -> NoReturn:
-    """Run the command line of this process and end it."""
+    """Run the command line and end the process."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _stop)
     for name, value in SINGLE_THREADED.items():
@@ -37,7 +37,7 @@ def main() -> NoReturn:
 
 
 def say_when_interrupted(sentence: str) -> None:
-    """Set what an interrupt at this point means for the user."""
+    """Set the sentence that an interrupt prints from now on."""
     global _when_interrupted
     _when_interrupted = sentence
 
@@ -47,7 +47,7 @@ def _run(arguments: list[str]) -> int:
 
     from uq.cli.app import app
 
-    refusal: Any = typer.BadParameter.__mro__[2]  # the base of all that typer itself refuses
+    refusal: Any = typer.BadParameter.__mro__[2]  # the base of all errors that typer raises
     try:
         return app(arguments, prog_name="uq", standalone_mode=False) or 0
     except refusal as error:
@@ -62,7 +62,7 @@ def _run(arguments: list[str]) -> int:
 
 
 def _stop(number: int, frame: FrameType | None) -> NoReturn:
-    """End now: no exception that somebody might catch on its way, nothing left behind."""
+    """End at once, leaving nothing behind; no exception that could be caught on the way."""
     signal.signal(number, signal.SIG_IGN)
     try:
         undo_all()

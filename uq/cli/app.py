@@ -1,4 +1,4 @@
-"""The command ``uq``: all its verbs, in the order in which ``uq --help`` lists them."""
+"""The command ``uq``: its verbs, in the order of ``uq --help``."""
 
 from typing import Annotated
 

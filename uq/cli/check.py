@@ -12,25 +12,27 @@ from uq.wording import law
 
 
 def check(path: str, model: str | None) -> None:
-    """Print what a study would run, if it is in order."""
+    """Print what a study would run, if it is valid."""
     study = load_study(path, model)
     design = study.design
-    heading(f"{path}: in order", study.description)
+    heading(f"{path}: valid", study.description)
+    kind = DESIGNS[design.method]
     factors = {"replicates": design.replicates, "rows each": group_size(study)}
     parts = [f"{design.samples} samples"]
-    parts += [f"{number} {name}" for name, number in factors.items() if number > 1]
+    parts += [f"{count} {name}" for name, count in factors.items() if count > 1]
     stated = ", stated to be independent" * design.independent
-    unsaid = DESIGNS[design.method].imported and not design.independent
-    dependent = study.dependence is not None or unsaid
-    feeds = ", ".join(fed_by(DESIGNS[design.method], dependent))
+    dependent = study.dependence is not None or (kind.imported and not design.independent)
+    shared = study.random and kind.shares_seeds
+    seeds = "the model is random: rows that are compared share a seed"
+    seeds += "; one more row of each gives the share of noise" * kind.crossed
     grid(
         [
             ("model", f"{study.model.name}, version {study.model.version}"),
-            ("design", f"{design.method}: {DESIGNS[design.method].meaning}{stated}"),
+            ("design", f"{design.method}: {kind.meaning}{stated}"),
             ("rows", f"{rows(study)} = {' x '.join(parts)}" if parts[1:] else str(rows(study))),
-            *_of_random(study),
+            *([("seeds", seeds)] * shared),
             ("outputs", ", ".join(study.analysis.outputs)),
-            ("sensitivity", f"{feeds} can be had from this design"),
+            ("sensitivity", f"this design can provide {', '.join(fed_by(kind, dependent))}"),
             ("result", str(output_path(study))),
         ]
     )
@@ -41,21 +43,13 @@ def check(path: str, model: str | None) -> None:
     _show_sampled(study)
 
 
-def _of_random(study: Study) -> list[tuple[str, str]]:
-    design = DESIGNS[study.design.method]
-    if not study.random or not design.shares_seeds:
-        return []
-    more = "; one more row of each tells the share of noise" if design.crossed else ""
-    return [("seeds", f"the model is random: rows that are compared share a seed{more}")]
-
-
 def _unit(study: Study, name: str) -> str:
     times = study.uncertain[name].times
     return study.model.parameter(name).unit if times is None else f"x {times}"
 
 
 def _show_sampled(study: Study) -> None:
-    """Print each input as stated and as the rows have it."""
+    """Print the law of each input as stated and in the rows."""
     from uq.analysis.sampled_inputs import MAX_ROWS, sampled_inputs, sampled_ranks
 
     count = min(rows(study), MAX_ROWS)
@@ -64,7 +58,7 @@ def _show_sampled(study: Study) -> None:
         print(f"\nThe rows of a '{study.design.method}' design do not follow these laws.")
         return
     heading(
-        f"\nAs {count} rows have them",
+        f"\nIn {count} rows",
         f"(independent rows would be less than {1.36 / count**0.5:.2g} off in 19 of 20 cases)",
     )
     lines = []

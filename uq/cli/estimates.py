@@ -8,11 +8,12 @@ from uq.cli.printing import console, grid, heading, number, paragraph, print_jso
 from uq.estimate import Estimate
 from uq.wording import estimated, failed_interval
 
+_ENDS = ("value", "low", "high")
 _SHOWN = 6  # sizes of each estimate on a terminal
 
 
 def twin(result: Path, model: str | None, json: bool) -> None:
-    """Show means and probabilities sharpened by the study's cheap output."""
+    """Show means and probabilities sharpened with the study's twin."""
     from uq.analysis.twin import with_twin
     from uq.rows.results import open_result
 
@@ -33,10 +34,9 @@ def twin(result: Path, model: str | None, json: bool) -> None:
                     number(entry["value"]),
                     _interval(entry),
                     _interval(entry["plain"]),
-                    times,
+                    f"{entry['reduction']:.3g}",
                 )
                 for label, entry in estimates.items()
-                for times in [f"{entry['reduction']:.3g}"]
             ],
             header=("", "value", "95 % interval", "without twin", "worth"),
         )
@@ -48,8 +48,8 @@ def twin(result: Path, model: str | None, json: bool) -> None:
     console.print()
     per_row = 1 + found["cheap_rows"] / found["rows"]
     paragraph(
-        "worth: how many times more rows without twin would do the same. The twin's own rows are"
-        " not counted as cost: it pays where one of them takes less than (worth - 1) /"
+        "worth: without twin, so many times the rows would be as accurate. The twin's own rows are"
+        " not counted: it pays if one of them takes less than (worth - 1) /"
         f" {per_row:.3g} of the time of a row",
         indent=0,
     )
@@ -62,13 +62,12 @@ def _failed(entry: dict[str, Any]) -> Estimate | None:
 
 
 def _interval(entry: dict[str, Any]) -> str:
-    if None in (entry["low"], entry["high"]):
-        return ""
-    return f"{number(entry['low'])} to {number(entry['high'])}"
+    known = None not in (entry["low"], entry["high"])
+    return f"{number(entry['low'])} to {number(entry['high'])}" if known else ""
 
 
 def convergence(result: Path, output: str | None, json: bool) -> None:
-    """Show estimates as the rows came in, and whether sampling is still the largest error."""
+    """Show running estimates, and whether sampling is still the largest error."""
     from uq.analysis.convergence import enough, running_estimates
     from uq.rows.results import open_result
 
@@ -76,10 +75,10 @@ def convergence(result: Path, output: str | None, json: bool) -> None:
     running, errors = running_estimates(ds, output), enough(ds, output)
     found: dict[str, Any] = {}
     for line in running.to_dict("records"):
-        entry = found.setdefault(line["output"], {"estimates": {}})
-        numbers = {end: json_form.number(line[end]) for end in ("value", "low", "high")}
-        lines = entry["estimates"].setdefault(line["estimate"], [])
-        lines.append({"samples": line["samples"]} | numbers)
+        entry = found.setdefault(line.pop("output"), {"estimates": {}})
+        entry["estimates"].setdefault(line.pop("estimate"), []).append(
+            {name: json_form.number(one) if name in _ENDS else one for name, one in line.items()}
+        )
     for name, errors_of in errors.to_dict("index").items():
         if entry := found.get(str(name)):
             entry["sampling_error"] = json_form.number(errors_of["sampling"])
@@ -101,7 +100,7 @@ def _show_convergence(found: dict[str, Any]) -> None:
             )
         if entry.get("own_error") is not None:
             paragraph(
-                f"error of sampling {number(entry['sampling_error'])}, of the rows themselves"
+                f"sampling error {number(entry['sampling_error'])}, error of the rows themselves"
                 f" {number(entry['own_error'])}",
                 indent=2,
             )

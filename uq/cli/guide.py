@@ -1,4 +1,4 @@
-"""What ``uq`` says when it is asked nothing: what to do next."""
+"""What ``uq`` without a command says: what to do next."""
 
 import shlex
 from pathlib import Path
@@ -6,20 +6,19 @@ from pathlib import Path
 from uq.cli.printing import console, grid, heading, paragraph
 
 _STEPS = (
-    ("uq models", "what there is to study"),
+    ("uq models", "the models that can be studied"),
     ("uq init beam > mine.toml", "a study to edit, each entry explained"),
-    ("uq check mine.toml", "is it in order, and what would it run?"),
+    ("uq check mine.toml", "is it valid, and what would it run?"),
     ("uq run mine.toml", "compute it, into results/NAME.nc"),
-    ("uq report results/NAME.nc --open", "all that it says, in the browser"),
+    ("uq report results/NAME.nc --open", "everything it says, in the browser"),
 )
 
 
 def guide() -> None:
-    """Print the way from nothing to a report, and what can be done with the files that are here."""
+    """Print the steps to a report, and what can be done with the files in this folder."""
     heading("uq", "lifetime and sensitivity studies of vibro-impact machines")
     grid(_STEPS)
-    here = list(_with_what_is_here())
-    if here:
+    if here := _with_what_is_here():
         heading("\nWith what is here")
         for command, words in here:
             console.print(f"  {command}", soft_wrap=True)

@@ -1,4 +1,4 @@
-"""How far a run is: a few moving lines on a terminal, plain lines now and then elsewhere."""
+"""The progress of a run: a live display on a terminal, occasional plain lines elsewhere."""
 
 import sys
 import time
@@ -13,7 +13,7 @@ from uq.wording import duration, number
 
 _PLAIN_SECONDS = 10.0
 _PLAIN_WIDTH = 120
-_COMPILING = "compiling the model: once, and it may take a minute"
+_COMPILING = "compiling the model (once; it may take a minute)"
 
 
 @contextmanager
@@ -29,19 +29,19 @@ def shown(quiet: bool) -> Iterator[Report]:
 
 @cache
 def say_compiling() -> None:
-    """Say once, to somebody who looks, that a model is being compiled."""
+    """Report once, on a terminal only, that a model is being compiled."""
     if sys.stderr.isatty():
         _print(_COMPILING)
 
 
 class Pace:
-    """Rows per second since the first arrived: before that, a model may have been compiled."""
+    """Rows per second since the first arrived: compilation does not count."""
 
     def __init__(self) -> None:
         self._first: tuple[int, float] | None = None
 
     def __call__(self, progress: Progress, now: float) -> float:
-        """Return the pace at some time [s]; 0 while it is not known."""
+        """Return the pace at a time [s]; 0 while it is unknown."""
         if self._first is None:
             self._first = progress.done, now
         done, began = self._first
@@ -111,7 +111,7 @@ def _moving() -> Iterator[Report]:
 
 
 def sentence(progress: Progress, pace: float) -> str:
-    """Say how far a run is, at some rows per second; 0 if that is not known."""
+    """Return the progress of a run at a pace in rows per second; 0 if that is unknown."""
     said = f"{progress.done} of {progress.total} rows, "
     if pace:
         left = (progress.total - progress.done) / pace
@@ -120,14 +120,14 @@ def sentence(progress: Progress, pace: float) -> str:
 
 
 def details(progress: Progress) -> list[str]:
-    """Say how rows ended that are not sound, and what the others say so far; a line for each."""
+    """Return lines on how failed rows ended, and on what the others show so far."""
     lines = []
-    if lost := {label: n for label, n in progress.status.items() if n and label != "ok"}:
-        lines.append(", ".join(f"{label} {n}" for label, n in lost.items()))
+    if lost := [f"{label} {n}" for label, n in progress.status.items() if n and label != "ok"]:
+        lines.append(", ".join(lost))
     if progress.median is not None:
         name, median = progress.median
         told = duration(median) or f"{number(median)} s"
-        lines.append(f"median {name}: {'most rows do not end' if isinf(median) else told}")
+        lines.append(f"median {name}: {'most rows never end' if isinf(median) else told}")
     if progress.shares:
         lines.append(", ".join(f"{name} {share:.0%}" for name, share in progress.shares.items()))
     return lines

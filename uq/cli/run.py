@@ -1,4 +1,4 @@
-"""What ``uq run`` does, and how any verb that computes rows shows it."""
+"""What ``uq run`` does, and what all verbs that compute rows show."""
 
 import shlex
 import sys
@@ -39,7 +39,7 @@ def run(
         study = study.with_samples(samples)
     target = output_path(study, output)
     if not options.fresh and (ds := finished(study, target)) is not None:
-        note = f"{target} is complete already; nothing was computed (--fresh computes it again)"
+        note = f"{target} is already complete; nothing was computed (--fresh recomputes it)"
     else:
         ds, note = carried_out(target, quiet, options, partial(runner.run_study, study, target))
     return end(study, ds, target, quiet, note, options.mixed)
@@ -48,7 +48,7 @@ def run(
 def carried_out(
     target: Path, quiet: bool, options: RunOptions, action: Callable[[RunOptions], xr.Dataset]
 ) -> tuple[xr.Dataset, str]:
-    """Show how a run goes on; return its result and a line on what was done."""
+    """Show the progress of a run; return its result and a line on what was done."""
     began = time.monotonic()
     computed = found = 0
     with progress.shown(quiet) as show:
@@ -69,7 +69,7 @@ def carried_out(
 
         say_when_interrupted("interrupted; nothing was written")
         ds = action(replace(options, progress=report, say=say))
-    before = f"; {found} were there already" if found else ""
+    before = f"; {found} had been computed before" if found else ""
     seconds = time.monotonic() - began
     return ds, f"{target}: {computed} rows computed in {seconds:.1f} s{before}"
 
@@ -77,8 +77,7 @@ def carried_out(
 def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixed: bool) -> int:
     """Show the summary of a result; return the exit code.
 
-    Rows that other code computed are named, also where all else is to be quiet, unless they are
-    wanted.
+    Rows computed by other code are reported even where all else is quiet, unless they are wanted.
     """
     say_when_interrupted(f"interrupted; the result is complete in {target}")
     if not mixed and (line := made_elsewhere(study, target, ds)):
@@ -92,10 +91,6 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixe
         name = shlex.quote(str(target))
         console.print(f"Next: uq report {name} --open", soft_wrap=True)
         console.print(f"      uq sensitivity {name}", soft_wrap=True)
-    return _verdict(study, ds)
-
-
-def _verdict(study: Study, ds: Any) -> int:
     failed = int(np.count_nonzero(results.failed(ds)))
     share = failed / ds.sizes["sample"]
     if share <= study.analysis.max_failed:

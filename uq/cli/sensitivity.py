@@ -12,7 +12,7 @@ from uq.methods.indices import S1, Kind, Null
 
 
 def plain(found: Sensitivities) -> dict[str, Any]:
-    """Return indices as plain data, ready for JSON."""
+    """Return indices as plain data, for JSON."""
     return {
         "method": found.method,
         "rows_used": found.rows_used,
@@ -40,7 +40,7 @@ def _plain_target(one: TargetIndices) -> dict[str, Any]:
 
 
 def show(found: Sensitivities) -> None:
-    """Print the indices of each target, or why it has none."""
+    """Print the indices of each target, or why there are none."""
     dropped = found.groups_dropped
     more = f"of {found.rows_used} rows" + (f", {dropped} groups dropped" if dropped else "")
     heading(f"Sensitivity by {found.method}", more)

@@ -1,4 +1,4 @@
-"""Standard streams that are closed, full, or no longer read: said in a line, not a traceback."""
+"""Standard streams that are closed, full or no longer read: one line, no traceback."""
 
 import errno
 import io
@@ -13,7 +13,7 @@ _PLACES = ((0, os.O_RDONLY), (1, os.O_RDONLY), (2, os.O_WRONLY))
 
 
 class Watched(io.TextIOWrapper):
-    """A stream that remembers why it could not be written.
+    """A stream that records why writing failed.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class Watched(io.TextIOWrapper):
             raise
 
     def flush(self) -> None:
-        """Write what waits to be written."""
+        """Write what is buffered."""
         try:
             super().flush()
         except OSError as error:
@@ -40,10 +40,10 @@ class Watched(io.TextIOWrapper):
 
 
 def watch() -> None:
-    """Watch over the standard streams, and fill the places of closed ones.
+    """Watch the standard streams, and replace closed ones.
 
-    Else the next file opened would stand for one. What is then written to standard output fails;
-    what is said to standard error is lost.
+    Otherwise the next file opened would take the place of one. Writing to standard output then
+    fails; what goes to standard error is lost.
     """
     for number, way in _PLACES:  # each opens at the lowest number that is free
         try:
@@ -52,10 +52,10 @@ def watch() -> None:
             os.open(os.devnull, way)
     for number, name in ((1, "stdout"), (2, "stderr")):
         stream = getattr(sys, name)
-        if stream is None or type(stream) is io.TextIOWrapper:  # else somebody else sees to it
+        if stream is None or type(stream) is io.TextIOWrapper:  # else it has been replaced already
             watched = _watched(stream, number)
             setattr(sys, name, watched)
-            setattr(sys, f"__{name}__", watched)  # of which the terminal's width is asked
+            setattr(sys, f"__{name}__", watched)  # which is asked for the width of the terminal
 
 
 def _watched(stream: io.TextIOWrapper | None, number: int) -> Watched:
@@ -66,23 +66,23 @@ def _watched(stream: io.TextIOWrapper | None, number: int) -> Watched:
 
 
 def complain(*lines: str) -> None:
-    """Print lines to standard error, if that takes any."""
+    """Print lines to standard error, if it can be written."""
     with suppress(OSError):
         for line in lines:
             print(plain_line(line), file=sys.stderr)
 
 
 def are_lost() -> bool:
-    """Return whether something printed had nowhere to go: then that is what went wrong."""
+    """Return whether writing to a standard stream has failed."""
     return any(getattr(stream, "failure", None) for stream in (sys.stdout, sys.stderr))
 
 
 def finish(code: int) -> int:
-    """Write what is left to be written; return the exit code of a process that is about to end."""
+    """Flush the standard streams; return the exit code of the ending process."""
     error = _failure(sys.stdout)
     if error is not None:
         code = code or 1
-        if error.errno != errno.EPIPE:  # else whoever read it, such as "head", has had enough
+        if error.errno != errno.EPIPE:  # else the reader, such as "head", has closed it
             complain(f"uq: standard output cannot be written: {error.strerror}")
         _discard(sys.stdout)
     if _failure(sys.stderr) is not None:
@@ -97,5 +97,5 @@ def _failure(stream: TextIO) -> OSError | None:
 
 
 def _discard(stream: TextIO) -> None:
-    """Have the interpreter lose, without a word, what it would write when it ends."""
+    """Discard what the interpreter would write on exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -19,7 +19,7 @@ from uq.upkeep.stored_study import study_of
 
 
 def status(path: Path, json: bool) -> None:
-    """Print where a run stands."""
+    """Print the progress of a run."""
     found = run_status(path)
     print_json(asdict(found)) if json else _show_status(found)
 
@@ -41,11 +41,11 @@ def _show_status(found: RunStatus) -> None:
         ]
     )
     if found.state != "complete" and found.complete_rows is not None:
-        console.print(f"\nUntil then the result with {found.complete_rows} rows stays.")
+        console.print(f"\nUntil then the result with {found.complete_rows} rows is kept.")
 
 
 def extend(path: Path, samples: int, model: str | None, quiet: bool, options: RunOptions) -> int:
-    """Give a result more samples and show it; return the exit code."""
+    """Add samples to a result and show it; return the exit code."""
     ds, note = carried_out(
         path, quiet, options, lambda chosen: extending.extend(path, samples, model, chosen)
     )
@@ -60,9 +60,9 @@ def rerun(
     quiet: bool,
     options: RunOptions,
 ) -> int:
-    """Compute failed rows again and show the result; return the exit code."""
+    """Recompute failed rows and show the result; return the exit code."""
     if not failed:
-        raise InputError("uq rerun: say which rows: --failed")
+        raise InputError("uq rerun: give --failed, the rows to compute again")
     changes = dict(literal(text) for text in settings)
     ds, note = carried_out(
         path, quiet, options, lambda chosen: rerun_failed(path, changes, model, chosen)
@@ -73,7 +73,7 @@ def rerun(
 def verify(path: Path, model: str | None) -> int:
     """Check a result and print what was found; return the exit code."""
     holds = verification.checksum_holds(path)
-    words = {True: "right", False: "WRONG: the file is not what was written", None: "none"}
+    words = {True: "right", False: "WRONG: the file has changed since it was written", None: "none"}
     console.print(f"checksum  {words[holds]}")
     ds = results.open_result(path)
     others = verification.other_versions(ds, model)
@@ -84,7 +84,7 @@ def verify(path: Path, model: str | None) -> int:
     with compilation(progress.say_compiling):
         rows, differences = verification.recompute(path, model)
     for line in differences:
-        console.print(f"computed again, differs in {line}")
+        console.print(f"recomputed, differs in {line}")
     equal = len(rows) - len(differences)
-    console.print(f"rows      {equal} of {len(rows)} computed again are equal to the bit")
+    console.print(f"rows      {equal} of {len(rows)} recomputed are equal to the bit")
     return 1 if differences or holds is False else 0
