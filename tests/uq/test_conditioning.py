@@ -106,21 +106,21 @@ def test_a_law_within_wide_bounds_suits(name):
 
 def test_a_mean_outside_the_bounds_names_the_mean():
     found = problem((100.0, 1e7), "normal", mean=-5.0, sd=1.0)
-    assert found.argument == ("mean",)
+    assert found.path == ("mean",)
     assert found.value == -5.0
-    assert "100.0 to 10000000.0 [N m-1]" in found.text
+    assert "100.0 to 10000000.0 [N m-1]" in found.problem
 
 
 def test_a_wide_normal_is_told_of_the_truncated_one():
     found = problem((100.0, 1e7), "normal", mean=500.0, sd=100.0)
-    assert found.text.startswith("has 3.2e-05 of its probability outside the parameter's bounds")
-    assert "truncated-normal" in found.text
+    assert found.problem.startswith("has 3.2e-05 of its probability outside the parameter's bounds")
+    assert "truncated-normal" in found.problem
 
 
 def test_a_law_with_ends_is_told_to_move_them():
     found = problem((100.0, 1e7), "uniform", lower=50.0, upper=200.0)
-    assert "has 0.33 of its probability outside" in found.text
-    assert "lower = 50.0 and upper = 200.0 must lie within them" in found.text
+    assert "has 0.33 of its probability outside" in found.problem
+    assert "lower = 50.0 and upper = 200.0 must lie within them" in found.problem
 
 
 def test_the_line_is_drawn_at_one_in_a_million():
@@ -143,7 +143,7 @@ def test_without_an_upper_bound_the_lower_tail_alone_counts(name, arguments):
     frozen = law(name, **arguments).frozen()
     suits, leaves, cuts = (float(frozen.ppf(p)) for p in (0.99e-6, 1.01e-6, 0.25))
     assert problem((suits, inf), name, **arguments) is None
-    assert problem((leaves, inf), name, **arguments).text.startswith(
+    assert problem((leaves, inf), name, **arguments).problem.startswith(
         "has 1e-06 of its probability outside the parameter's bounds, "
         f"{leaves!r} to inf [N m-1] (allowed: 1e-06)"
     )
@@ -164,4 +164,6 @@ def test_a_truncated_normal_may_have_its_peak_outside():
     ],
 )
 def test_numbers_beyond_arithmetic_are_refused(name, arguments):
-    assert problem((0.0, 10.0), name, **arguments).text.startswith("these numbers are too extreme")
+    assert problem((0.0, 10.0), name, **arguments).problem.startswith(
+        "these numbers are too extreme"
+    )

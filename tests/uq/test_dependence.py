@@ -63,14 +63,14 @@ def test_dependent_rows_are_the_same_however_they_are_cut(cuts):
     ],
 )
 def test_a_matrix_that_is_none_says_what_is_wrong(ranks, said):
-    assert said in matrix_problem(("a", "b"), ranks).text
+    assert said in matrix_problem(("a", "b"), ranks).problem
 
 
 def test_a_near_miss_is_told_what_would_do():
     ranks = ((1.0, 0.9, 0.1), (0.9, 1.0, 0.9), (0.1, 0.9, 1.0))
     problem = matrix_problem(("a", "b", "c"), ranks)
-    assert problem.text == (
-        "no inputs can have these rank correlations together; as the others are,"
+    assert problem.problem == (
+        "no inputs can have these rank correlations together; given the others,"
         " that of 'a' with 'b', 0.9, must lie between -0.308 and 0.494"
     )
     for entry, good in ((-0.309, False), (-0.308, True), (0.494, True), (0.495, False)):
@@ -78,7 +78,10 @@ def test_a_near_miss_is_told_what_would_do():
         assert (matrix_problem(("a", "b", "c"), mended) is None) == good
     # Four inputs of which no two can be made to fit by one entry alone.
     ranks = tuple(tuple(1.0 if i == j else -0.6 for j in range(4)) for i in range(4))
-    assert "multiplied by 0.53 or less" in matrix_problem(tuple("abcd"), ranks).text
+    assert (
+        "multiply all but the diagonal by 0.53 or less"
+        in matrix_problem(tuple("abcd"), ranks).problem
+    )
     weaker = tuple(tuple(1.0 if i == j else -0.6 * 0.53 for j in range(4)) for i in range(4))
     assert matrix_problem(tuple("abcd"), weaker) is None
 

@@ -1,4 +1,4 @@
-"""A design: which points of the unit cube a study visits."""
+"""A design: the points of the unit cube that a study visits."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from uq.designs.layouts import CROSSED, PLAIN, Layout
 from uq.designs.streams import Points
 
 MAX_SAMPLES = 2**30
-"""Points of one replicate: what the 30 bits of a Sobol' sequence can tell apart."""
+"""Points of one replicate: the 30 bits of a Sobol' sequence distinguish no more."""
 
 
 @dataclass(frozen=True)
@@ -27,19 +27,19 @@ class Design:
         Replicates are independent. A crossed design draws 2 d columns. None: the rows are
         imported.
     layout : Layout
-        How its rows belong together, which decides what sensitivity methods it feeds.
+        How its rows are grouped, which decides which sensitivity methods it feeds.
     append_only : bool
-        Whether the first points stay as they are when more are asked for.
+        Whether the first points stay the same when more are drawn.
     power_of_two : bool
         Whether `samples` must be a power of two.
     independent : bool
-        Whether rows are independent, which formulas for confidence and tolerance bounds need.
+        Whether rows are independent, as formulas for confidence and tolerance bounds assume.
     follows_laws : bool
-        Whether the rows of a replicate, A and B of a crossed design, are spread as the laws say.
+        Whether the rows of a replicate, or A and B of a crossed design, follow the laws.
     least : int
         The smallest number of samples.
     caution : str
-        A sentence that stands beside every index from its rows, or "".
+        A sentence shown with every index from its rows, or "".
     """
 
     meaning: str
@@ -59,7 +59,7 @@ class Design:
 
     @property
     def crossed(self) -> bool:
-        """Whether each point becomes a group of rows A, AB_1 .. AB_d, (BA_1 .. BA_d,) B."""
+        """Whether each point gives a group of rows A, AB_1 .. AB_d, (BA_1 .. BA_d,) B."""
         return self.layout is CROSSED
 
     @property
@@ -98,7 +98,7 @@ class Design:
         return cross(points[..., :d], points[..., d:], second_order, random)
 
     def size_problem(self, samples: int) -> str | None:
-        """Say why `samples` is not a legal size, or return None."""
+        """Return why `samples` is not a legal size, or None."""
         if not self.least <= samples <= MAX_SAMPLES:
             return f"must be between {self.least} and {MAX_SAMPLES}"
         legal = 1 << (samples - 1).bit_length()

@@ -11,12 +11,12 @@ NOISE = "noise"
 
 @dataclass(frozen=True)
 class Layout:
-    """What makes a group of rows.
+    """How rows are grouped.
 
     Attributes
     ----------
     needs : str
-        What a group must be for an estimate to use it, as in "3 of 8 *paths are whole*".
+        What a group needs for an estimate to use it, as in "3 of 8 *paths are whole*".
     labels : callable
         ``labels(parameters, second_order, random)`` -> the names of the blocks of rows, in order.
     shared_seeds : callable

@@ -1,7 +1,7 @@
 """The designs by name.
 
-To add one: a function that draws its points, and an entry here that says what it may be asked for
-and how its rows belong together; what sensitivity methods it feeds follows from that.
+To add one: a function that draws its points, and an entry here with its properties and the layout
+of its rows, which determines the sensitivity methods it feeds.
 """
 
 from uq.designs.curves import LEAST_POINTS, fast_curves, random_balance

@@ -1,8 +1,8 @@
 """Which rows of a random model share a seed: those that its design compares with each other.
 
-Their difference is then what the input does, at that seed, and never the noise's. Each rule takes
-group and block of rows, and the labels of the blocks, and returns group and block of the row whose
-seed they take.
+Their difference is then the effect of the input at that seed, not of noise. Each rule takes group
+and block of rows, and the labels of the blocks; it returns group and block of the row whose seed
+they take.
 """
 
 from collections.abc import Callable

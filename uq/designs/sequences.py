@@ -1,7 +1,7 @@
-"""Points of the unit cube that fill it: at random, in strata, by sequences of low discrepancy.
+"""Points that fill the unit cube: at random, stratified, by low-discrepancy sequences.
 
-Every function draws points start..stop of each replicate, shape (stop - start, replicates, d), the
-same bits for any start and stop.
+Each function draws points start..stop of each replicate, shape (stop - start, replicates, d), with
+the same bits for any start and stop.
 """
 
 from copy import copy
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from uq.designs.streams import Points, generator, inside, replicate_seed
+from uq.designs.streams import Points, drawn_at_once, generator, inside, replicate_seed
 
 
 def monte_carlo(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
@@ -28,27 +28,17 @@ def paths(seed: int, replicates: int, d: int, samples: int, start: int, stop: in
     """Draw paths between two independent points, one input after the other in random order."""
     points = monte_carlo(seed, replicates, 3 * d, samples, start, stop)
     first, last, order = np.split(points[:, :, None], 3, axis=-1)
-    step = np.argsort(np.argsort(order, axis=-1), axis=-1)  # at which an input changes
+    step = np.argsort(np.argsort(order, axis=-1), axis=-1)  # at which each input changes
     return np.where(step < np.arange(d + 1)[:, None], last, first)
 
 
-def latin_hypercube(
-    seed: int, replicates: int, d: int, samples: int, start: int, stop: int
-) -> Points:
+@drawn_at_once
+def latin_hypercube(seed: int, replicates: int, d: int, samples: int) -> Points:
     """Draw a part of a Latin hypercube."""
-    return _whole_latin_hypercube(seed, replicates, d, samples)[start:stop]
-
-
-@lru_cache(maxsize=1)  # cannot be drawn in parts, and its rows are asked for in chunks
-def _whole_latin_hypercube(seed: int, replicates: int, d: int, samples: int) -> Points:
     from scipy.stats import qmc
 
-    engines = [
-        qmc.LatinHypercube(d, rng=generator(seed, replicate)) for replicate in range(replicates)
-    ]
-    points = np.stack([inside(engine.random(samples)) for engine in engines], axis=1)
-    points.setflags(write=False)
-    return points
+    engines = (qmc.LatinHypercube(d, rng=generator(seed, i)) for i in range(replicates))
+    return np.stack([inside(engine.random(samples)) for engine in engines], axis=1)
 
 
 def sobol(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
@@ -77,7 +67,7 @@ def halton(seed: int, replicates: int, d: int, samples: int, start: int, stop: i
 
 
 def _sequences(name: str, seed: int, replicates: int, d: int) -> list[Any]:
-    """Return a sequence of `scipy.stats.qmc` for each replicate, at its beginning."""
+    """Return a sequence of `scipy.stats.qmc` for each replicate, at its start."""
     scrambled = [_scrambled(name, seed, replicate, d) for replicate in range(replicates)]
     return [copy(engine).reset() for engine in scrambled]
 

@@ -1,10 +1,11 @@
-"""Trajectories of Morris: from point to point one input changes, by the same step in probability.
+"""Morris trajectories: from point to point one input changes, by a fixed step in probability.
 
-SALib draws them, and on request keeps those that lie far apart. Its search becomes slow beyond a
+SALib draws them, and on request selects those that are far apart. Its search is slow beyond a
 dozen, so such a design consists of bundles of at most eight, each the best of four times as many.
 """
 
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,7 +15,7 @@ LEVELS = 4
 """Levels of each input."""
 
 TAIL = 0.005
-"""Probability below the lowest and above the highest level: ends of a law may be infinite."""
+"""Probability below the lowest and above the highest level: a law may be unbounded."""
 
 STEP = (1 - 2 * TAIL) * LEVELS / (2 * (LEVELS - 1))
 """Step of an input, in probability."""
@@ -45,8 +46,8 @@ def optimised_trajectories(
 ) -> Points:
     """Draw trajectories start..stop of each replicate, chosen far apart [1]_, [2]_.
 
-    They favour the corners of the cube: mean effects of the Ishigami function come out 45 % too
-    large for x1 and 50 % too small for x3.
+    They favour the corners of the cube: mean effects of the Ishigami function are 45 % too large
+    for x1 and 50 % too small for x3.
 
     Returns
     -------
@@ -66,15 +67,13 @@ def optimised_trajectories(
 def _joined(
     seed: int, replicates: int, d: int, samples: int, start: int, stop: int, pool: int
 ) -> Points:
-    """Return the bundles that hold the trajectories start..stop, cut to them."""
+    """Return the trajectories start..stop from the bundles that contain them."""
     edges = np.linspace(0, samples, -(-samples // _BUNDLE) + 1).astype(int)
     found = [np.empty((0, replicates, d + 1, d))]
-    for bundle, (first, last) in enumerate(zip(edges, edges[1:], strict=False)):
+    for bundle, (first, last) in enumerate(pairwise(edges)):
         if first < stop and start < last:
-            parts = [
-                _bundle(seed, replicate, bundle, d, int(last - first), pool)
-                for replicate in range(replicates)
-            ]
+            size = int(last - first)
+            parts = [_bundle(seed, i, bundle, d, size, pool) for i in range(replicates)]
             found.append(np.stack(parts, axis=1)[max(start - first, 0) : stop - first])
     return np.concatenate(found)
 
@@ -87,7 +86,7 @@ def _bundle(seed: int, replicate: int, bundle: int, d: int, size: int, pool: int
     rng = generator(seed, replicate, bundle)
     best = size if pool > 1 else None
     levels = sample(problem, pool * size, LEVELS, optimal_trajectories=best, seed=rng)
-    # Whole thirds once more: SALib's arithmetic leaves their last bits to chance.
+    # Exact thirds again: SALib's arithmetic leaves their last bits to chance.
     steps = np.rint(levels * (LEVELS - 1)).reshape(size, d + 1, d)
     points: Points = TAIL + (1 - 2 * TAIL) * steps / (LEVELS - 1)
     points.setflags(write=False)

@@ -1,4 +1,4 @@
-"""A law inside the bounds of its parameter: does it fit, and its quantiles given that it does."""
+"""A law within the bounds of its parameter: whether it fits, and its quantiles given the bounds."""
 
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -17,13 +17,17 @@ from uq.inputs.distributions import (
     TruncatedNormal,
     Uniform,
 )
+from uq.inputs.faults import Fault
 from uq.inputs.observed import Listed
+from uq.inputs.values import bounds_of
 
 OUTSIDE_AT_MOST = 1e-6
-"""Probability a law may have outside its parameter's bounds."""
+"""Probability that a law may have outside its parameter's bounds."""
+
+TOO_EXTREME = "these numbers are too extreme to compute with; use others"
 
 _LEAST_KEPT = 1e-290
-"""A truncation that keeps less of its parent reaches into denormal numbers."""
+"""A truncation that keeps less of its parent would need denormal numbers."""
 
 
 def ppf_within(
@@ -53,7 +57,7 @@ def ppf_within(
 def ppf_between(
     law: Law, u: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Map the unit interval to a law conditioned on ends that differ from row to row.
+    """Map the unit interval to a law conditioned on ends that differ between rows.
 
     Parameters
     ----------
@@ -101,13 +105,13 @@ def factor_of(law: Law, product: NDArray[np.float64], other: Any) -> NDArray[np.
 
 
 def support(law: Law, bounds: tuple[float, float]) -> tuple[float, float]:
-    """Return the least and the greatest value that a row can have."""
+    """Return the smallest and the largest value that a row can have."""
     ends = ppf_within(law, np.array([2.0**-54, 1.0 - 2.0**-53]), bounds)
     return float(ends[0]), float(ends[1])
 
 
 class _Condition(NamedTuple):
-    """Where a law may lie, and how much of its parent lies below and above either end.
+    """The range of a law, and the probability of its parent below and above either end.
 
     Each is a number, or an array with one number per row.
     """
@@ -136,47 +140,29 @@ def _quantiles(to: _Condition, u: NDArray[np.float64]) -> NDArray[np.float64]:
 @lru_cache(maxsize=1024)  # making a scipy distribution costs more than a thousand quantiles
 def _condition(law: Law, bounds: tuple[float, float]) -> _Condition:
     low, high = map(float, _tightened(law, *bounds))
-    if isinstance(law, Listed):  # rounding must not lead to an end that is none of the values
+    if isinstance(law, Listed):  # rounding must not end between the values
         low, high = law.between(low, high) or (low, high)
     found = _shares(law, low, high)
     return _Condition(found.parent, *map(float, found[1:]))
 
 
 def _tightened(law: Law, low: Any, high: Any) -> tuple[Any, Any]:
-    """Return where a law may lie: within some ends, and within its own truncation."""
+    """Return the range of a law: given ends, tightened by its own truncation."""
     _, lower, upper = law.parent()
     return np.maximum(low, lower), np.minimum(high, upper)
 
 
 def _shares(law: Law, low: Any, high: Any) -> _Condition:
     parent, _, _ = law.parent()
-    # The value at the lower end is inside, which matters where it has a probability of its own.
+    # The lower end itself is inside, which matters where it has a probability of its own.
     end = np.nextafter(low, -np.inf) if law.discrete else low
     with np.errstate(all="ignore"):
         shares = parent.cdf(end), parent.sf(end), parent.cdf(high), parent.sf(high)
     return _Condition(parent, low, high, *shares)
 
 
-class LawProblem(NamedTuple):
-    """Why a law does not suit a parameter.
-
-    Attributes
-    ----------
-    text : str
-        What is wrong and what to do.
-    argument : tuple of str
-        The guilty argument, if it is one.
-    value : float or None
-        Its value.
-    """
-
-    text: str
-    argument: tuple[str, ...] = ()
-    value: float | None = None
-
-
-def law_problem(law: Law, parameter: Parameter) -> LawProblem | None:
-    """Say why a law does not suit a parameter, or return None.
+def law_problem(law: Law, parameter: Parameter) -> Fault | None:
+    """Return why a law does not suit a parameter, or None.
 
     Parameters
     ----------
@@ -185,30 +171,29 @@ def law_problem(law: Law, parameter: Parameter) -> LawProblem | None:
 
     Returns
     -------
-    LawProblem or None
+    Fault or None
+        Its path is the argument at fault, or empty.
     """
     low, high = parameter.bounds
-    bounds = f"the parameter's bounds, {low!r} to {high!r} [{parameter.unit}]"
+    bounds = f"the parameter's bounds, {bounds_of(parameter)}"
     cut = law.truncate is not None or isinstance(law, TruncatedNormal)
     for argument in ("mean", "median", "mode"):
         value = getattr(law, argument, None)
         if value is not None and not low <= value <= high and not cut:
-            return LawProblem(f"must lie within {bounds}", (argument,), value)
+            return Fault((argument,), f"must lie within {bounds}", value)
     if isinstance(law, Listed) and law.between(*map(float, _tightened(law, low, high))) is None:
-        return LawProblem(f"has no value within {bounds}")
+        return Fault((), f"has no value within {bounds}")
     outside = outside_share(law, low, high)
     if outside is None:
-        return LawProblem("these numbers are too extreme to compute with; use others")
+        return Fault((), TOO_EXTREME)
     if outside <= OUTSIDE_AT_MOST:
         return None
-    return LawProblem(
-        f"has {outside:.2g} of its probability outside {bounds}"
-        f" (allowed: {OUTSIDE_AT_MOST:g}); {_remedy(law)}"
-    )
+    share = f"{outside:.2g} of its probability outside {bounds} (allowed: {OUTSIDE_AT_MOST:g})"
+    return Fault((), f"has {share}; {_remedy(law)}")
 
 
 def outside_share(law: Law, low: Any, high: Any) -> Any:
-    """Return how much of a law, after its truncation, lies outside some ends.
+    """Return the share of a law, after its truncation, that lies outside given ends.
 
     Parameters
     ----------

@@ -1,32 +1,18 @@
 """Dependent inputs: a Gaussian copula with given rank correlations."""
 
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uq.designs.streams import Points, inside
+from uq.inputs.faults import Fault
 
 Matrix = tuple[tuple[float, ...], ...]
 Floats = NDArray[np.float64]
 Places = NDArray[np.int_]
 
 _LEAST_EIGENVALUE = 1e-9
-
-
-class MatrixProblem(NamedTuple):
-    """What is wrong with a matrix of rank correlations.
-
-    Attributes
-    ----------
-    text : str
-    place : tuple of int
-        Row and column of the guilty entry, if it is one.
-    """
-
-    text: str
-    place: tuple[int, ...] = ()
 
 
 def normal_correlations(ranks: Matrix) -> Floats:
@@ -52,8 +38,8 @@ def normal_correlations(ranks: Matrix) -> Floats:
     return found
 
 
-def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> MatrixProblem | None:
-    """Say why a matrix is not one of rank correlations, or return None.
+def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> Fault | None:
+    """Return why a matrix is not one of rank correlations, or None.
 
     Parameters
     ----------
@@ -63,22 +49,26 @@ def matrix_problem(names: tuple[str, ...], ranks: Matrix) -> MatrixProblem | Non
 
     Returns
     -------
-    MatrixProblem or None
+    Fault or None
+        Its path is row and column of the entry at fault, or empty.
     """
     k = len(names)
     if [len(row) for row in ranks] != [k] * k:
-        return MatrixProblem(f"must have {k} rows of {k} numbers, one for each of the parameters")
+        return Fault((), f"must have {k} rows of {k} numbers, one for each of the parameters")
     for i, j in np.ndindex(k, k):
-        if i == j and ranks[i][i] != 1:
-            return MatrixProblem(f"must be 1: that of '{names[i]}' with itself", (i, i))
-        if not -1 < ranks[i][j] < 1 and i != j:
-            return MatrixProblem("must lie between -1 and 1; for 1 use equals", (i, j))
-        if ranks[i][j] != ranks[j][i]:
-            return MatrixProblem(f"must be the same as [{j}][{i}] = {ranks[j][i]!r}", (i, j))
+        value, problem = ranks[i][j], ""
+        if i == j and value != 1:
+            problem = f"must be 1: that of '{names[i]}' with itself"
+        elif i != j and not -1 < value < 1:
+            problem = "must lie between -1 and 1; for 1 use equals"
+        elif value != ranks[j][i]:
+            problem = f"must be the same as [{j}][{i}] = {ranks[j][i]!r}"
+        if problem:
+            return Fault((i, j), problem, value)
     if _is_definite(normal_correlations(ranks)):
         return None
-    return MatrixProblem(
-        f"no inputs can have these rank correlations together; {_remedy(names, ranks)}"
+    return Fault(
+        (), f"no inputs can have these rank correlations together; {_remedy(names, ranks)}"
     )
 
 
@@ -94,12 +84,12 @@ def correlated(u: Points, ranks: Matrix) -> Points:
     Returns
     -------
     ndarray, shape (n, k)
-        Each column is uniform as before; the first is left as it is.
+        Each column stays uniform; the first is unchanged.
     """
     from scipy.special import ndtr, ndtri
 
     factor = np.linalg.cholesky(normal_correlations(ranks))
-    # Sums column by column on contiguous copies: a matrix product may round a row by its place.
+    # Sums of contiguous columns: a matrix product may round a row according to its place.
     z = [ndtri(np.ascontiguousarray(column)) for column in u.T]
     found = u.copy()
     for i in range(1, len(z)):
@@ -115,10 +105,10 @@ def _is_definite(matrix: Floats) -> bool:
 
 
 def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
-    """Say what would mend a matrix: one entry if that is enough, else how much weaker all must be.
+    """Return how to correct a matrix: by one entry if possible, else by weakening all of them.
 
-    With all other entries given, one entry may lie within the sum and difference of what the other
-    inputs explain and of what they leave open: the range of a partial correlation from -1 to 1.
+    Given all others, the range of one entry is the part explained by the other inputs plus or minus
+    the unexplained part: a partial correlation from -1 to 1.
     """
     matrix, found = normal_correlations(ranks), []
     k = len(matrix)
@@ -139,8 +129,8 @@ def _remedy(names: tuple[str, ...], ranks: Matrix) -> str:
         _, i, j, low, high = min(found)
         between = f"between {low:.3f} and {high:.3f}"
         which = f"that of '{names[i]}' with '{names[j]}', {ranks[i][j]!r},"
-        return f"as the others are, {which} must lie {between}"
-    return f"they are possible if all but the diagonal are multiplied by {_most(ranks):.2f} or less"
+        return f"given the others, {which} must lie {between}"
+    return f"multiply all but the diagonal by {_most(ranks):.2f} or less"
 
 
 def _part(matrix: Floats, rows: Places, columns: Places) -> Floats:
@@ -148,7 +138,7 @@ def _part(matrix: Floats, rows: Places, columns: Places) -> Floats:
 
 
 def _most(ranks: Matrix) -> float:
-    """Return the largest factor, in steps of 0.01, by which all correlations are possible."""
+    """Return the largest factor, in steps of 0.01, that makes the correlations possible."""
     off = np.array(ranks) - np.eye(len(ranks))
     for percent in range(99, 0, -1):
         weaker = normal_correlations(tuple(map(tuple, np.eye(len(off)) + percent / 100 * off)))

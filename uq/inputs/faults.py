@@ -1,4 +1,4 @@
-"""One fault of a study file, and the line that tells it."""
+"""One fault of a study file, and its line for the user."""
 
 from typing import Any, NamedTuple
 
@@ -11,16 +11,20 @@ class Fault(NamedTuple):
     Attributes
     ----------
     path : tuple of str or int
-        Where it stands: table, key, place in a list.
+        Its place: table, key, index in a list. Of a part of the file: the place in that part.
     problem : str
         What is wrong, what is allowed, what to do.
     value : object
-        As it stands in the file; None if it is not worth showing.
+        The value in the file; None if it is not to be shown.
     """
 
     path: tuple[str | int, ...]
     problem: str
     value: Any = None
+
+    def within(self, *path: str) -> "Fault":
+        """Return the fault with its place in the whole file."""
+        return self._replace(path=(*path, *self.path))
 
     @property
     def line(self) -> str:

@@ -10,6 +10,7 @@ from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import nearest
 from uq.inputs.conditioning import (
     OUTSIDE_AT_MOST,
+    TOO_EXTREME,
     factor_ends,
     law_problem,
     outside_share,
@@ -79,7 +80,7 @@ def input_faults(model: Model, entries: Entries) -> Iterator[Fault]:
         parameter, other = model.parameter(name), _followed(entry)
         if other is None:
             if unsuited := law_problem(entry, parameter):
-                yield Fault(("uncertain", name, *unsuited.argument), unsuited.text, unsuited.value)
+                yield unsuited.within("uncertain", name)
             continue
         path = ("uncertain", name, "equals" if isinstance(entry, Tied) else "times")
         if other not in leaders:
@@ -95,7 +96,7 @@ def input_faults(model: Model, entries: Entries) -> Iterator[Fault]:
                 problem = f"is in another unit, {there.unit}, than '{name}', {parameter.unit}"
                 yield Fault(path, problem, other)
             elif unsuited := law_problem(law, parameter):
-                yield Fault(path, f"'{name}' cannot follow it: {unsuited.text}", other)
+                yield Fault(path, f"'{name}' cannot follow it: {unsuited.problem}", other)
         elif not law_problem(law, there):  # else reported at that parameter
             low, high = support(law, there.bounds)
             if low <= 0 <= high:
@@ -124,8 +125,7 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
             problem = "follows another parameter already; only laws of their own can be correlated"
             yield Fault(("dependence", "parameters"), problem, name)
     if names and ranks is not None and (wrong := matrix_problem(tuple(names), ranks)):
-        value = ranks[wrong.place[0]][wrong.place[1]] if wrong.place else None
-        yield Fault(("dependence", "rank_correlation", *wrong.place), wrong.text, value)
+        yield wrong.within("dependence", "rank_correlation")
     method = tables["design"].get("method")
     if method in IMPORTED:
         yield Fault(("dependence",), "imported rows carry their own dependence; leave it out")
@@ -184,7 +184,7 @@ def _product_problem(parameter: Parameter, factor: Law, law: Law, there: Paramet
     other = ppf_within(law, norm.cdf(z), there.bounds)
     share = outside_share(factor, *factor_ends(other, parameter.bounds))
     if share is None:
-        return "these numbers are too extreme to compute with; use others"
+        return TOO_EXTREME
     outside = float(np.average(share, weights=norm.pdf(z)))
     if outside <= OUTSIDE_AT_MOST:
         return None
