@@ -54,9 +54,9 @@ def test_the_identity_is_of_what_the_file_holds_not_of_its_name(springs):
         (None, "no such file in"),
         ("", "has no column 'k' (its columns: none)"),
         ("kk\n1\n", "has no column 'k'; did you mean 'kk'? (its columns: kk)"),
-        ("k,k\n1,2\n", "has several columns 'k'; give each a name of its own (they are: k, k)"),
-        ("k, note\n0.5, a\n0.6\n", "line 3: has 1 cell, and the first line has 2; each row"),
-        ("k, note\n0.5, a\n0.6, b, c\n", "line 3: has 3 cells, and the first line has 2; each"),
+        ("k,k\n1,2\n", "has several columns 'k'; give each its own name (its columns: k, k)"),
+        ("k, note\n0.5, a\n0.6\n", "line 3: has 1 cell, the first line 2; all rows"),
+        ("k, note\n0.5, a\n0.6, b, c\n", "line 3: has 3 cells, the first line 2; all"),
         ("note, k\na, 0,5\n", "numbers a decimal point, not a comma"),
         (
             'k\n"0,5"\n',
@@ -71,7 +71,7 @@ def test_the_identity_is_of_what_the_file_holds_not_of_its_name(springs):
         ("k\n0.5\nabc\n", "line 3: column 'k' must be a finite number: 'abc'"),
         ("k\n0.5\nnan\n", "line 3: column 'k' must be a finite number: 'nan'"),
         ("k\n", "has 0 rows (allowed: 1 to 1000000)"),
-        ("k\n0.5\n0.5\n", "needs two different values at least"),
+        ("k\n0.5\n0.5\n", "needs at least two different values"),
         ('k\n"0.5\n', "not CSV"),
     ],
 )

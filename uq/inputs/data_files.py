@@ -1,7 +1,7 @@
-"""Columns of numbers that a study file names: read from CSV or netCDF, kept in the study's text.
+"""Columns of numbers named by a study file: read from CSV or netCDF, kept in the study's text.
 
-A result carries the text of its study. With the numbers at its end that text is complete: it gives
-the same rows when the files have changed or are gone.
+A result contains the text of its study. With the numbers at its end that text is complete: it gives
+the same rows after the files have changed or are gone.
 """
 
 import csv
@@ -22,7 +22,7 @@ from uq.literals import key
 from uq.places import node
 
 MAX_NUMBERS = 1_000_000
-"""Numbers in a column: they become part of every result."""
+"""Most numbers in a column: they become part of every result."""
 
 Columns = dict[str, dict[str, str]]
 """File -> column -> numbers, as text."""
@@ -31,14 +31,14 @@ Columns = dict[str, dict[str, str]]
 def columns_of_files(
     tables: Mapping[str, Mapping[str, Any]], folder: Path | None
 ) -> tuple[Columns, list[Fault]]:
-    """Return every column that a study file names.
+    """Return all columns that a study file names.
 
     Parameters
     ----------
     tables : dict
-        The sound entries of a study file; where its [data] has a file, that is not read.
+        The sound entries of a study file; files contained in its [data] are not read.
     folder : Path or None
-        What names of files are relative to; None if there are no files, only [data].
+        The folder to which names of files are relative; None if there is only [data].
 
     Returns
     -------
@@ -55,7 +55,7 @@ def columns_of_files(
                 found = _as_text(_read(folder, file, column))
         except ValueError as error:
             fault = Fault(path, str(error), file)
-            if fault not in faults:  # the same for each column of a file that cannot be read
+            if fault not in faults:  # one for all columns of a file that cannot be read
                 faults.append(fault)
         else:
             columns.setdefault(file, {})[column] = found
@@ -63,19 +63,19 @@ def columns_of_files(
 
 
 def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
-    """Return the text of a study file with the columns it names at its end.
+    """Return the text of a study file with the columns that it names at its end.
 
     Parameters
     ----------
     text : str
     columns : dict
     kept : dict
-        What its [data] has already.
+        Its [data].
 
     Returns
     -------
     str
-        TOML; the same text if there is nothing to add.
+        TOML; unchanged if there is nothing to add.
     """
     lines = [] if text.endswith("\n") else [""]
     for file, table in columns.items():
@@ -87,14 +87,14 @@ def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
 
 @lru_cache(maxsize=128)
 def numbers(text: str) -> NDArray[np.float64]:
-    """Return the numbers of a column; read-only."""
+    """Return the numbers of a column, read-only."""
     found = np.array(text.split(), dtype=float)
     found.setflags(write=False)
     return found
 
 
 def _named(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[tuple[str, ...], str, str]]:
-    """Yield where a file is named, its name, and each column that is wanted of it."""
+    """Yield the place of each file name, the name, and each column needed from it."""
     uncertain, design = tables["uncertain"], tables["design"]
     for name, entry in uncertain.items():
         if "file" in entry:
@@ -111,7 +111,7 @@ def _kept(columns: Mapping[str, str], column: str) -> str:
     try:
         _checked(numbers(columns[column]))
     except ValueError:
-        raise ValueError(f"[data] is spoilt: column '{column}' must be numbers") from None
+        raise ValueError(f"[data] is damaged: column '{column}' must be numbers") from None
     return columns[column]
 
 
@@ -122,7 +122,7 @@ def _as_text(values: NDArray[np.float64]) -> str:
 def _read(folder: Path | None, file: str, column: str) -> NDArray[np.float64]:
     """Read a column; a `ValueError` says what is wrong."""
     if folder is None:
-        raise ValueError("the text of this study does not hold the file's numbers")
+        raise ValueError("the text of this study does not contain the file's numbers")
     path = folder / file
     if what := node(path):
         raise ValueError(f"is {what}, not a file")
@@ -149,8 +149,8 @@ def _read_csv(path: Path, column: str) -> NDArray[np.float64]:
         try:
             for mark, name in ((";", "semicolons"), ("\t", "tabs")):
                 if column in _names(lines, mark):
-                    problem = f"has cells separated by {name}; write commas, and a decimal point"
-                    raise ValueError(f"{problem} in numbers")
+                    remedy = "write commas, and a decimal point in numbers"
+                    raise ValueError(f"has cells separated by {name}; {remedy}")
             lines.seek(0)
             rows = csv.reader(lines, skipinitialspace=True, strict=True)
             names = [name.strip() for name in next(rows, [])]
@@ -165,19 +165,19 @@ def _read_csv(path: Path, column: str) -> NDArray[np.float64]:
 
 
 def _names(lines: TextIO, mark: str) -> list[str]:
-    """Return the names of several columns, if it is some other mark that separates them."""
+    """Return the names of the columns, if there are several with this separator."""
     lines.seek(0)
     names = next(csv.reader(lines, delimiter=mark, skipinitialspace=True), [])
     return [name.strip() for name in names] if names[1:] else []
 
 
 def _number(row: list[str], names: list[str], place: int, line: int) -> float:
-    """Return the number in one place of a row; a `ValueError` says what is wrong."""
+    """Return the number in one cell of a row; a `ValueError` says what is wrong."""
     if len(row) != len(names):
         cells = "1 cell" if len(row) == 1 else f"{len(row)} cells"
         raise ValueError(
-            f"line {line}: has {cells}, and the first line has {len(names)}; each row must have as "
-            "many, and numbers a decimal point, not a comma"
+            f"line {line}: has {cells}, the first line {len(names)}; all rows must have as many, "
+            "and numbers a decimal point, not a comma"
         )
     cell = row[place].strip()
     try:
@@ -208,7 +208,7 @@ def _read_netcdf(path: Path, column: str) -> NDArray[np.float64]:
 
 
 def _no_column(column: str, names: list[str]) -> str:
-    known = ", ".join(names) if names else "none"
+    known = ", ".join(names) or "none"
     if column in names:
-        return f"has several columns '{column}'; give each a name of its own (they are: {known})"
+        return f"has several columns '{column}'; give each its own name (its columns: {known})"
     return f"has no column '{column}'{nearest(column, names)} (its columns: {known})"

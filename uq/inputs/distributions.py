@@ -1,7 +1,7 @@
-"""The laws an uncertain parameter can follow: names and arguments; scipy.stats does the rest.
+"""The laws of an uncertain parameter: names and arguments; scipy.stats does the rest.
 
-Each law is a small frozen table as it stands in a study file, and names its `scipy.stats`
-counterpart. To add one: write the class, add it to `Law`, state its moments in the tests.
+Each law is a small frozen table, as in a study file, that names its `scipy.stats` counterpart. To
+add one: write the class, add it to `Law`, state its moments in the tests.
 """
 
 from math import exp, log, log1p, sqrt
@@ -14,7 +14,7 @@ from uq.inputs.observed import DiscreteChoice, Empirical, Histogram, IntegerRang
 
 
 class Uniform(BaseLaw):
-    """Equally likely everywhere between two ends."""
+    """Uniform between two ends."""
 
     _ascending = ("lower", "upper")
 
@@ -27,7 +27,7 @@ class Uniform(BaseLaw):
 
 
 class LogUniform(BaseLaw):
-    """Equally likely in every octave between two positive ends."""
+    """Uniform in the logarithm between two positive ends."""
 
     _ascending = ("lower", "upper")
 
@@ -40,7 +40,7 @@ class LogUniform(BaseLaw):
 
 
 class Normal(BaseLaw):
-    """Gaussian law of a mean and a standard deviation."""
+    """Normal law of a mean and a standard deviation."""
 
     distribution: Literal["normal"]
     mean: float
@@ -51,7 +51,7 @@ class Normal(BaseLaw):
 
 
 class TruncatedNormal(BaseLaw):
-    """Gaussian law, with mean and sd before the cut, given that it falls between two ends."""
+    """Normal law truncated to two ends; mean and sd are those before truncation."""
 
     _ascending = ("lower", "upper")
 
@@ -70,7 +70,7 @@ class TruncatedNormal(BaseLaw):
         }
 
     def parent(self) -> tuple[Any, float, float]:
-        """Return the normal law before the cut, and the ends of the cut."""
+        """Return the normal law before truncation, and the ends of the truncation."""
         from scipy import stats
 
         lower, upper = self.truncate or (self.lower, self.upper)
@@ -78,7 +78,7 @@ class TruncatedNormal(BaseLaw):
 
 
 class LogNormal(BaseLaw):
-    """Law whose logarithm is Gaussian, by mean and cv or by median and sigma."""
+    """Law whose logarithm is normal, by mean and cv or by median and sigma."""
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -108,7 +108,7 @@ class LogNormal(BaseLaw):
 
 
 class Triangular(BaseLaw):
-    """Linear rise from one end to the mode, linear fall to the other."""
+    """Triangular law between two ends."""
 
     _ascending = ("lower", "mode", "upper")
 
@@ -123,7 +123,7 @@ class Triangular(BaseLaw):
 
 
 class Pert(BaseLaw):
-    """Smooth bell between two ends: a beta law of mean (lower + 4 mode + upper) / 6."""
+    """PERT law between two ends: a beta law of mean (lower + 4 mode + upper) / 6."""
 
     _ascending = ("lower", "mode", "upper")
 
@@ -143,7 +143,7 @@ class Pert(BaseLaw):
 
 
 class Beta(BaseLaw):
-    """Beta law of two shapes, stretched between two ends."""
+    """Beta law of two shapes, scaled to two ends."""
 
     _ascending = ("lower", "upper")
 
@@ -185,7 +185,7 @@ class Gamma(BaseLaw):
 
 
 class Gumbel(BaseLaw):
-    """Law of largest values: P(X <= x) = exp(-exp(-(x - mode)/scale))."""
+    """Gumbel law of maxima: P(X <= x) = exp(-exp(-(x - mode)/scale))."""
 
     distribution: Literal["gumbel"]
     mode: float
@@ -196,7 +196,7 @@ class Gumbel(BaseLaw):
 
 
 class Exponential(BaseLaw):
-    """Law without memory: P(X > x) = exp(-x/mean)."""
+    """Exponential law: P(X > x) = exp(-x/mean)."""
 
     distribution: Literal["exponential"]
     mean: Positive

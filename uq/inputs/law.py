@@ -1,4 +1,4 @@
-"""What all laws of an uncertain parameter have in common."""
+"""What all laws of an uncertain parameter share."""
 
 from math import inf
 from typing import Annotated, Any, ClassVar, Self
@@ -26,10 +26,10 @@ class BaseLaw(BaseModel):
 
     source: str = Field("", description="where the numbers come from; shown in every result")
     truncate: Annotated[tuple[float, float] | None, LIST] = Field(
-        None, description="[lower, upper]: the law given that it falls between them"
+        None, description="[lower, upper]: the law given that the value lies between them"
     )
     times: str | None = Field(
-        None, description="another uncertain parameter: this one is that times the law"
+        None, description="another uncertain parameter; the law is that of its factor"
     )
 
     def frozen(self) -> Any:
@@ -42,8 +42,8 @@ class BaseLaw(BaseModel):
     def parent(self) -> tuple[Any, float, float]:
         """Return the frozen law before any truncation, and the ends of the truncation.
 
-        Quantiles of a truncated law are best computed from its parent's: faster, and accurate in
-        both tails.
+        Quantiles of a truncated law are best computed from those of its parent: that is faster,
+        and accurate in both tails.
         """
         return (self.frozen(), *(self.truncate or (-inf, inf)))
 
@@ -55,10 +55,8 @@ class BaseLaw(BaseModel):
         names = self._ascending
         values = [getattr(self, name) for name in names]
         if values and (values != sorted(values) or values[0] == values[-1]):
-            wanted = " <= ".join(names) if len(names) > 2 else " < ".join(names)
-            given = ", ".join(
-                f"{name} = {value!r}" for name, value in zip(names, values, strict=True)
-            )
+            wanted = (" <= " if len(names) > 2 else " < ").join(names)
+            given = ", ".join(f"{name} = {getattr(self, name)!r}" for name in names)
             raise ValueError(f"must have {wanted}: {given}")
         return self
 

@@ -1,6 +1,7 @@
-"""Laws of listed values: choices, whole numbers, measured values as they are or counted in bins."""
+"""Laws of listed values: choices, whole numbers, measured values or their histogram."""
 
 from functools import lru_cache
+from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
@@ -13,20 +14,20 @@ Floats = NDArray[np.float64]
 Numbers = Annotated[tuple[float, ...], LIST]
 
 MAX_VALUES = 100_000
-"""Values of an empirical law; a histogram says the same of more."""
+"""Most values of an empirical law; more are as well described by a histogram."""
 
 
 class Steps(NamedTuple):
     """A discrete distribution with the methods of `scipy.stats` that are used here.
 
-    That of scipy compares every probability with every value.
+    scipy's own compares each probability with each value.
 
     Attributes
     ----------
     values : ndarray, shape (k,)
         Ascending.
     cumulated : ndarray, shape (k,)
-        Probability up to and including each value; the last is 1.
+        Probability up to and including each value, ending with 1.
     """
 
     values: Floats
@@ -67,7 +68,7 @@ def _steps(values: tuple[float, ...], weights: tuple[float, ...] | None) -> Step
 
 
 class Listed(BaseLaw):
-    """A law that takes some values only."""
+    """A discrete law."""
 
     discrete: ClassVar[bool] = True
 
@@ -78,14 +79,14 @@ class Listed(BaseLaw):
         return (float(inside[0]), float(inside[-1])) if len(inside) else None
 
     def nearest(self, x: Floats) -> Floats:
-        """Return the value next to each of x: what a rounded value was."""
+        """Return the value nearest to each of x, which undoes rounding."""
         values = self.frozen().values
         found = values[np.searchsorted((values[1:] + values[:-1]) / 2, x)]
         return np.asarray(found)
 
 
 class DiscreteChoice(Listed):
-    """One of some values, each with its weight; alike if no weights are given."""
+    """One of several values, each with its weight; equally likely if no weights are given."""
 
     distribution: Literal["discrete-choice"]
     values: Annotated[Numbers, Field(min_length=1)]
@@ -107,7 +108,7 @@ class DiscreteChoice(Listed):
 
 
 class IntegerRange(Listed):
-    """A whole number between two ends, both included, all alike."""
+    """A whole number between two ends, both included; all equally likely."""
 
     _ascending = ("lower", "upper")
 
@@ -124,12 +125,12 @@ class IntegerRange(Listed):
         return (float(first), float(last)) if first <= last else None
 
     def nearest(self, x: Floats) -> Floats:
-        """Return the whole number next to each of x."""
+        """Return the whole number nearest to each of x."""
         return np.rint(x)
 
 
 class Empirical(Listed):
-    """The values in a column of a CSV file, all alike: sampling them is drawing one of them."""
+    """The values in a column of a CSV file, each equally likely to be drawn."""
 
     distribution: Literal["empirical"]
     file: str | None = Field(None, description="CSV file with a header, beside the study file")
@@ -138,10 +139,8 @@ class Empirical(Listed):
 
     @model_validator(mode="after")
     def _check_values(self) -> Self:
-        if {"file", "column", "values"} & self.model_fields_set not in (
-            {"file", "column"},
-            {"values"},
-        ):
+        given = {"file", "column", "values"} & self.model_fields_set
+        if given not in ({"file", "column"}, {"values"}):
             raise ValueError("an empirical law takes either file and column, or values")
         if self.values is not None and (problem := values_problem(self.values)):
             raise ValueError(problem)
@@ -154,16 +153,16 @@ class Empirical(Listed):
 
 
 def values_problem(values: tuple[float, ...]) -> str | None:
-    """Say why values make no empirical law, or return None."""
+    """Return why values make no empirical law, or None."""
     if len(set(values)) < 2:
-        return "needs two different values at least"
+        return "needs at least two different values"
     if len(values) > MAX_VALUES:
         return f"has {len(values)} values (at most {MAX_VALUES}); use a histogram"
     return None
 
 
 class Histogram(BaseLaw):
-    """Counts of values in bins, alike within each bin."""
+    """Counts of values in bins, uniform within each bin."""
 
     distribution: Literal["histogram"]
     edges: Numbers = Field(description="ends of the bins, ascending, one more than counts")
@@ -174,11 +173,9 @@ class Histogram(BaseLaw):
     @model_validator(mode="after")
     def _check_bins(self) -> Self:
         if len(self.edges) != len(self.counts) + 1:
-            raise ValueError(
-                f"must have one edge more than counts: {len(self.edges)} edges,"
-                f" {len(self.counts)} counts"
-            )
-        if not all(low < high for low, high in zip(self.edges, self.edges[1:], strict=False)):
+            sizes = f"{len(self.edges)} edges, {len(self.counts)} counts"
+            raise ValueError(f"must have one edge more than counts: {sizes}")
+        if not all(low < high for low, high in pairwise(self.edges)):
             raise ValueError("edges must ascend")
         if not sum(self.counts) > 0:
             raise ValueError("all counts are zero")

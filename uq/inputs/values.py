@@ -1,9 +1,10 @@
-"""Values given by name, for a model's parameters and settings: the same checks for every road in.
+"""Checks of values given by name for the parameters and settings of a model.
 
-A study file, ``uq simulate --set`` and the Python API all come through here.
+Study files, ``uq simulate --set`` and the Python API share them.
 """
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from typing import Any, get_args, get_type_hints
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
@@ -13,21 +14,21 @@ from uq.errors import nearest
 
 
 def unknown_name(kind: str, name: str, model: Model, known: tuple[str, ...]) -> str:
-    """Say that a model has no such parameter, setting or output."""
+    """Return that a model has no such parameter, setting or output."""
     allowed = f" (allowed: {', '.join(known)})" if known else ", which has none"
     return f"no such {kind} of model '{model.name}'{nearest(name, known) or allowed}"
 
 
 def parameter_problem(model: Model, name: str, value: Any) -> str | None:
-    """Say why a parameter cannot have this value, or return None.
+    """Return why a parameter cannot have this value, or None.
 
     Parameters
     ----------
     model : Model
     name : str
-        Known or not.
+        Known or unknown.
     value : object
-        As it was given.
+        As given.
 
     Returns
     -------
@@ -67,14 +68,14 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
     ----------
     model : Model
     given : dict
-        Setting -> value as it stands in a file.
+        Setting -> value as in a file.
 
     Returns
     -------
     settings : object or None
         None if anything is wrong.
     problems : dict of str to str
-        Setting -> what is wrong with it; under ``""`` what is wrong with them together.
+        Setting -> what is wrong with it; under ``""`` what is wrong with the combination.
     """
     types = setting_types(model)
     values, problems = {}, {}
@@ -82,24 +83,17 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
         if name not in types:
             problems[name] = unknown_name("setting", name, model, model.setting_names)
             continue
-        try:
-            values[name] = _coerced(types[name], value)
-        except ValidationError:
-            problems[name] = f"must be {_type_in_words(model, name, types[name])}"
-            continue
-        if not _allowed(model, name, values[name]):
+        with suppress(ValidationError):
+            strict: TypeAdapter[Any] = TypeAdapter(types[name], config=ConfigDict(strict=True))
+            values[name] = strict.validate_python(_frozen(value))
+        if name not in values or not _allowed(model, name, values[name]):
             problems[name] = f"must be {_type_in_words(model, name, types[name])}"
     if problems:
         return None, problems
     try:
         return model.settings(**values), {}
-    except ValueError as error:  # what the model says about several settings together
+    except ValueError as error:  # of the model, about a combination of settings
         return None, {"": " ".join(str(error).split())}
-
-
-def _coerced(kind: Any, value: Any) -> Any:
-    strict: TypeAdapter[Any] = TypeAdapter(kind, config=ConfigDict(strict=True))
-    return strict.validate_python(_frozen(value))
 
 
 def _frozen(value: Any) -> Any:
@@ -108,7 +102,7 @@ def _frozen(value: Any) -> Any:
 
 
 def _numbers(value: Any) -> Iterator[Any]:
-    """Yield what stands in a setting that may be a list, or a list of lists."""
+    """Yield the items of a setting that may be a list, or a list of lists."""
     if isinstance(value, tuple):
         for item in value:
             yield from _numbers(item)
@@ -123,7 +117,7 @@ def _allowed(model: Model, name: str, value: Any) -> bool:
     if declared.bounds is not None:
         low, high = declared.bounds
         return all(low <= number <= high for number in _numbers(value))
-    return all(number == number for number in _numbers(value))  # nan is never meant
+    return all(number == number for number in _numbers(value))  # nan is never intended
 
 
 def _type_in_words(model: Model, name: str, kind: Any) -> str:
