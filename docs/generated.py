@@ -16,6 +16,7 @@ from pydantic import BaseModel
 
 from uq.cli.app import app
 from uq.contract import Status
+from uq.designs.design import Design
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
@@ -270,6 +271,25 @@ def designs() -> str:
         can = "yes" if design.append_only else "no"
         lines.append((f'`"{name}"`', design.meaning, can, feeds))
     return table(("`method`", "rows", "extend", "sensitivity methods, the default first"), lines)
+
+
+def confidence() -> str:
+    """Tabulate what the intervals come from, of statistics and of indices, by design."""
+    lines = []
+    for name, design in DESIGNS.items():
+        indices = {METHODS[method].intervals for method in fed_by(design)} - {""}
+        lines.append((f"`{name}`", _of_statistics(design), "; ".join(indices) or "none"))
+    return table(("design", "intervals of statistics", "of sensitivity indices"), lines)
+
+
+def _of_statistics(design: Design) -> str:
+    if design.independent:
+        return "formulas for independent rows"
+    if design.imported:
+        return "none: how its rows came about is not known; if stated to be independent, formulas"
+    if not design.follows_laws:
+        return "no statistics: its rows do not follow the laws of the inputs"
+    return "the scatter between replicates; with one replicate none, and the summary says so"
 
 
 def methods() -> str:

@@ -13,7 +13,9 @@ sys.path[:0] = [str(HOUSE / "docs"), str(HOUSE / "tests" / "uq")]
 import generated  # noqa: E402
 from computed import kinds  # noqa: E402
 
-from uq import open_result, plots, sensitivity  # noqa: E402
+from uq import open_result, plots, sensitivity, summary  # noqa: E402
+from uq.analysis.statistics.statistic import Statistic  # noqa: E402
+from uq.analysis.statistics.table import STATISTICS  # noqa: E402
 from uq.designs.design import Design  # noqa: E402
 from uq.designs.registry import DESIGNS  # noqa: E402
 from uq.designs.sequences import monte_carlo  # noqa: E402
@@ -120,7 +122,7 @@ def test_a_design_is_accepted_explained_and_documented(toy_design, uq, write_stu
     refused = uq("check", asking(write_study, "mirrored", "sobol"))
     assert "'mirrored' feeds 'rbd-fast' or" in refused.err
     assert '| `"mirrored"` | pairs of opposite points | yes | rbd-fast' in generated.designs()
-    assert "`mirrored`" in generated.questions()
+    assert "`mirrored`" in generated.questions() and "`mirrored`" in generated.confidence()
 
 
 def test_a_sensitivity_method_is_accepted_explained_and_documented(toy_method, uq, write_study):
@@ -152,3 +154,39 @@ def test_a_study_of_both_is_run_and_shown(toy_design, toy_method, uq, write_stud
     text = page(ds, "out.nc")
     assert "mirrored: pairs of opposite points" in text
     assert "squared correlation (R2)" in text and f"{values[3]:.3f}" in text
+
+
+# A statistic
+
+
+def _geometric_mean(element, context):
+    """Yield exp(mean(log)) of an output whose values are all positive."""
+    if (element.at_least > 0).all():
+        logarithms = np.log(element.at_least)
+        reach = 1.96 * logarithms.std() / np.sqrt(len(logarithms))
+        value = logarithms.mean()
+        found = Estimate(*np.exp([value, value - reach, value + reach]).tolist())
+        yield Statistic(("geometric_mean",), "geometric mean", found, element.units)
+
+
+def test_a_statistic_is_one_entry_of_a_table(uq, write_study, monkeypatch):
+    monkeypatch.setitem(STATISTICS, "geometric_mean", _geometric_mean)
+    for name, seed in (("one", 1), ("other", 2)):
+        assert uq("run", write_study("linear", seed=seed), "-o", f"{name}.nc").code == 0
+
+    entry = json.loads(uq("summary", "one.nc", "--json").out)["outputs"]["y"]["geometric_mean"]
+    assert entry["low"] < entry["value"] < entry["high"]
+    (line,) = (x for x in uq("summary", "one.nc").out.splitlines() if "geometric mean" in x)
+    assert f"{entry['value']:.5g}" in line and f"{entry['low']:.5g}" in line
+    table = summary(open_result("one.nc"))
+    assert table.loc["y", "geometric mean"] == pytest.approx(entry["value"])
+    assert table.loc["y", "geometric mean_high"] == pytest.approx(entry["high"])
+
+    compared = json.loads(uq("compare", "one.nc", "other.nc", "--json").out)
+    pair = compared["outputs"]["y"]["geometric_mean"]
+    assert pair["a"] == entry
+    apart = pair["difference"]
+    assert apart["low"] < apart["value"] == pytest.approx(pair["b"]["value"] - entry["value"])
+    assert "geometric mean" in uq("compare", "one.nc", "other.nc").out
+
+    assert f">{entry['value']:.5g}<" in page(open_result("one.nc"), "one.nc")

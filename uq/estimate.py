@@ -13,18 +13,31 @@ class Estimate:
     value, low, high : float
         NaN where it is not known; infinite where it is known to be.
     reason : str
-        Why the value or its interval is missing, or what both assume; "" if neither.
+        Why the value or its interval is missing, "" if neither is.
+    assumes : str
+        What all three rest on, beyond the rows; "" if nothing.
+    beyond : tuple of str
+        Which of the three are infinite only because rows are censored: they lie somewhere beyond
+        the horizon.
     """
 
     value: float = nan
     low: float = nan
     high: float = nan
     reason: str = ""
+    assumes: str = ""
+    beyond: tuple[str, ...] = ()
 
     @property
     def numbers(self) -> tuple[float, float, float]:
         """Value and both ends."""
         return self.value, self.low, self.high
+
+    @property
+    def finite(self) -> "Estimate":
+        """The same, with every number unknown that is not finite."""
+        value, low, high = (one if isfinite(one) else nan for one in self.numbers)
+        return Estimate(value, low, high, self.reason, self.assumes)
 
     @property
     def has_interval(self) -> bool:

@@ -1,6 +1,7 @@
-"""Estimates as JSON has them: a number that is not finite is null."""
+"""Estimates as JSON has them: a number that is not finite is null, with the reason beside it."""
 
 from math import isfinite
+from typing import Any
 
 from uq.estimate import Estimate
 
@@ -18,3 +19,32 @@ def numbers(estimate: Estimate) -> dict[str, float | None]:
 def ends(estimate: Estimate) -> dict[str, float | None]:
     """Return the interval alone."""
     return {"low": number(estimate.low), "high": number(estimate.high)}
+
+
+def whole(estimate: Estimate) -> dict[str, Any]:
+    """Return value and interval, why each of the three is null, and what they rest on."""
+    found: dict[str, Any] = numbers(estimate)
+    for name in ("value", "low", "high"):
+        found |= flag("" if name == "value" else f"{name}_", estimate, name)
+    if estimate.reason:
+        found["reason"] = estimate.reason
+    if estimate.assumes:
+        found["assumes"] = estimate.assumes
+    return found
+
+
+def flag(prefix: str, estimate: Estimate, name: str) -> dict[str, bool]:
+    """Say that a life never ends, or beyond the horizon, instead of its number."""
+    if getattr(estimate, name) != float("inf"):
+        return {}
+    return {f"{prefix}{'censored' if name in estimate.beyond else 'never'}": True}
+
+
+def failed(bounds: Estimate | None) -> dict[str, Any]:
+    """Return the ends of an interval with the failed rows at best and at worst."""
+    found: dict[str, Any] = {}
+    if bounds is not None:
+        for name in ("low", "high"):
+            found[f"failed_{name}"] = number(getattr(bounds, name))
+            found |= flag(f"failed_{name}_", bounds, name)
+    return found

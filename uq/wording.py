@@ -1,9 +1,11 @@
 """Numbers, intervals and laws in the words of a table, on a terminal and in a report."""
 
+import re
 from collections.abc import Mapping
-from math import floor, isfinite, log10
+from math import floor, inf, isfinite, log10
 from typing import Any, NamedTuple
 
+from uq.estimate import Estimate
 from uq.literals import shown
 
 Entry = Mapping[str, Any]
@@ -33,13 +35,13 @@ def duration(seconds: float | None) -> str:
     return "" if unit.name == "seconds" else f"{seconds / unit.seconds:.3g} {unit.name}"
 
 
-def known(entry: Entry, key: str = "value", per: float = 1.0) -> str:
-    """Return one number of an entry, or why there is none.
+def known(estimate: Estimate, end: str = "value", per: float = 1.0) -> str:
+    """Return one number of an estimate, or why there is none.
 
     Parameters
     ----------
-    entry : dict
-    key : str
+    estimate : Estimate
+    end : {"value", "low", "high"}
     per : float
         What the number is divided by: the length of a unit.
 
@@ -47,29 +49,25 @@ def known(entry: Entry, key: str = "value", per: float = 1.0) -> str:
     -------
     str
     """
-    if entry[key] is not None:
-        return number(entry[key] / per)
-    if key == "value" and "rows_needed" in entry:
-        return f"needs {entry['rows_needed']} rows"
-    if key == "value" and "kaplan_meier" in entry:  # it may lie within the horizon
+    value = getattr(estimate, end)
+    if isfinite(value):
+        return number(value / per)
+    if value != inf:
         return "-"
-    prefix = "" if key == "value" else f"{key}_"
-    if entry.get(f"{prefix}never"):
-        return "never"
-    return "beyond the horizon" if entry.get(f"{prefix}censored") else "-"
+    return "beyond the horizon" if end in estimate.beyond else "never"
 
 
-def interval(entry: Entry, per: float = 1.0) -> str:
-    """Return the ends of the interval of an entry; nothing where it has none, or both never."""
-    ends = [known(entry, end, per) if end in entry else "-" for end in ("low", "high")]
+def interval(estimate: Estimate, per: float = 1.0) -> str:
+    """Return the ends of an interval; nothing where none is known, or both are never."""
+    ends = [known(estimate, end, per) for end in ("low", "high")]
     return "" if ends == ["-", "-"] or ends[0] == "never" else " to ".join(ends)
 
 
-def failed_interval(entry: Entry, per: float = 1.0) -> str:
+def failed_interval(bounds: Estimate | None, per: float = 1.0) -> str:
     """Return the bounds with failed rows at best and at worst; nothing where no row failed."""
-    if "failed_low" not in entry:
+    if bounds is None:
         return ""
-    low, high = (known(entry, f"failed_{end}", per) for end in ("low", "high"))
+    low, high = (known(bounds, end, per) for end in ("low", "high"))
     if low == "-":
         return "no bound" if high == "-" else f"up to {high}"
     return f"from {low} on" if high == "-" else f"{low} to {high}"
@@ -77,17 +75,19 @@ def failed_interval(entry: Entry, per: float = 1.0) -> str:
 
 def estimated(label: str, per: float = 1.0) -> str:
     """Return what is estimated: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours."""
-    if not label.startswith("P("):
-        return label
-    return f"{label[:3]} {number(float(label[3:-1]) / per)})"
+    return re.sub(
+        r"^P\(([<>])(.+?)\)",
+        lambda found: f"P({found[1]} {number(float(found[2]) / per)})",
+        label,
+    )
 
 
-def brief(entry: Entry, per: float = 1.0) -> tuple[str, str]:
+def brief(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
     """Return an estimate for a sentence, no more exact than it is known, and its interval.
 
     Parameters
     ----------
-    entry : dict
+    estimate : Estimate
     per : float
         What the numbers are divided by: the length of a unit.
 
@@ -96,13 +96,13 @@ def brief(entry: Entry, per: float = 1.0) -> tuple[str, str]:
     tuple of str
         The interval is "" where there is none.
     """
-    found: list[Any] = [entry.get(key) for key in ("value", "low", "high")]
-    if None in found or not found[2] > found[1]:
-        told = known(entry, per=per) if found[0] is None else f"{found[0] / per:.3g}"
-        return told, interval(entry, per)
-    decimals = -floor(log10((found[2] - found[1]) / per / 3))
-    value, low, high = (_rounded(one / per, decimals) for one in found)
-    return value, f"{low} to {high}"
+    value, low, high = estimate.numbers
+    if not (isfinite(value) and estimate.has_interval and high > low):
+        told = f"{value / per:.3g}" if isfinite(value) else known(estimate, per=per)
+        return told, interval(estimate, per)
+    decimals = -floor(log10((high - low) / per / 3))
+    told, *ends = (_rounded(one / per, decimals) for one in estimate.numbers)
+    return told, " to ".join(ends)
 
 
 def _rounded(value: float, decimals: int) -> str:
@@ -118,32 +118,20 @@ def percent(share: float) -> str:
     return f"{100 * share:.{-floor(log10(100 * rest)) if 0 < rest < 0.001 else 1}f} %"
 
 
-def percent_with_interval(entry: Entry) -> str:
-    """Return a share in per cent, with its interval where it has one."""
-    ends = [entry[end] for end in ("low", "high")]
-    told = percent(entry["value"])
-    if None in ends:
+def percent_with_interval(estimate: Estimate, failed: Estimate | None = None) -> str:
+    """Return a share in per cent, with its interval and the bounds with failed rows, if it has."""
+    told = percent(estimate.value)
+    if not estimate.has_interval:
         return told
-    bounds = [entry[end] for end in ("failed_low", "failed_high") if entry.get(end) is not None]
-    worst = f"; with failed rows {percent_interval(*bounds)}" if len(bounds) == 2 else ""
-    return f"{told} ({percent_interval(*ends)}{worst})"
+    worst = ""
+    if failed is not None and failed.has_interval:
+        worst = f"; with failed rows {percent_interval(failed.low, failed.high)}"
+    return f"{told} ({percent_interval(estimate.low, estimate.high)}{worst})"
 
 
 def percent_interval(low: float, high: float) -> str:
     """Return the ends of the interval of a share in per cent."""
     return f"{percent(low).removesuffix(' %')} to {percent(high)}"
-
-
-def accuracy_not_reached(accuracy: Entry) -> str:
-    """Return in how many rows the stated error exceeds the accuracy asked for."""
-    missed, share = accuracy["missed"], percent(accuracy["share"])
-    rows = f"{missed} row{'s' if missed > 1 else ''} ({share})"
-    return f"accuracy {accuracy['asked']:g} not reached in {rows}"
-
-
-def variance_between(split: Entry) -> str:
-    """Return the share of variance between regimes, less what chance makes of it."""
-    return number(split["value"]) if split["value"] > 0 else "none seen"
 
 
 def law(stated: Any) -> str:

@@ -6,6 +6,7 @@ import numpy as np
 
 from benchmarks.coverage.problems import computed, study_of, with_seed
 from benchmarks.coverage.tally import Tally
+from uq.analysis.as_json import comparison_json
 from uq.analysis.comparison import comparison
 
 UNIFORM = {"distribution": "uniform", "lower": 0.0, "upper": 1.0}
@@ -29,7 +30,7 @@ def differences(repetitions):
         wide, narrow = _studies(*design)
         for seed in range(repetitions):
             pair = computed(with_seed(wide, seed)), computed(with_seed(narrow, seed + apart))
-            found = comparison(*pair)["outputs"]["y"]
+            found = comparison_json(comparison(*pair))["outputs"]["y"]
             entries = {f"quantile {p}": found["quantiles"][p] for p in QUANTILES} | {
                 "sd": found["sd"],
                 f"P(> {THRESHOLD})": found["thresholds"][str(THRESHOLD)]["above"],

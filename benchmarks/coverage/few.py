@@ -7,7 +7,8 @@ from scipy import stats
 
 from benchmarks.coverage.problems import NAME, ishigami_ppf, repeated, study_of
 from benchmarks.coverage.tally import Tally
-from uq.analysis.statistics import summarise
+from uq.analysis.as_json import summary_json
+from uq.analysis.summary import summarise
 from uq.analysis.twin import with_twin
 from uq.estimate import NOTHING
 from uq.indices.few_hits import few_hits
@@ -153,7 +154,7 @@ def failed(repetitions):
         ds = blank.copy(deep=True)
         ds["life"].values[:] = np.where(lost, np.nan, life)
         ds["status"].values[lost] = 2
-        entry = summarise(ds)["outputs"]["life"]
+        entry = summary_json(summarise(ds))["outputs"]["life"]
         above = entry["thresholds"]["5.0"]["above"]
         median, b10 = entry["quantiles"]["0.5"], entry["b_lives"]["B10"]
         for what, truth, one in (

@@ -9,9 +9,10 @@ from scipy import stats
 
 from benchmarks.coverage.problems import ENDS, LIFE, MIXED, computed, never_cdf, repeated, study_of
 from benchmarks.coverage.tally import Tally
+from uq.analysis.as_json import summary_json
 from uq.analysis.life_fit import fitted_laws
 from uq.analysis.lifetime import survival
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import summarise
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
 TIMES = (0.3, 0.8)
@@ -50,7 +51,7 @@ def lives(design, repetitions):
         )
     }
     for ds in repeated(study, repetitions):
-        outputs = summarise(ds)["outputs"]
+        outputs = summary_json(summarise(ds))["outputs"]
         for name, tally in tallies.items():
             cdf = never_cdf if name == "never" else LIFE.cdf  # alike below the plateau
             for label, p in B_LIVES.items():
@@ -94,7 +95,7 @@ def mixed(design, samples, repetitions):
     rows = f"{design}, {replicates} replicates of " * (replicates > 1) + f"{samples} rows"
     tally = Tally(f"60 % never end, known at once, the others may be censored; {rows}")
     for ds in repeated(study, repetitions):
-        found = summarise(ds)["outputs"]["mixed"]
+        found = summary_json(summarise(ds))["outputs"]["mixed"]
         tally.entry("B10", MIXED.ppf(0.1 / ENDS), found["b_lives"]["B10"])
         for time in LIMITS:
             below = found["thresholds"][repr(time)]["kaplan_meier"]["below"]

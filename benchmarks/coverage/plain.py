@@ -16,7 +16,8 @@ from benchmarks.coverage.problems import (
     study_of,
 )
 from benchmarks.coverage.tally import Tally
-from uq.analysis.statistics import summarise
+from uq.analysis.as_json import summary_json
+from uq.analysis.summary import summarise
 
 QUANTILES = (0.05, 0.5, 0.95)
 THRESHOLDS = {"ishigami": [9.0], "jump": [2.5], "life": [1.0]}
@@ -82,7 +83,7 @@ def plain(design, repetitions):
         for name in TRUTH
     }
     for number, ds in enumerate(repeated(study, repetitions)):
-        found = summarise(ds)
+        found = summary_json(summarise(ds))
         for name, tally in tallies.items():
             _summary(tally, found["outputs"][name], *TRUTH[name])
         shares = tallies["jump"]
@@ -90,7 +91,7 @@ def plain(design, repetitions):
         between = found["outputs"]["jump"]["between_regimes"]
         shares.entry("variance between regimes", jump()["between"], between)
         if independent:
-            within = summarise(ds, regime="upper")["outputs"]["jump"]
+            within = summary_json(summarise(ds, regime="upper"))["outputs"]["jump"]
             shares.entry("mean in a regime", jump()["within"]["upper"], within["mean_interval"])
             found = within["quantiles"]["0.5"]
             shares.entry("median in a regime", jump_ppf(0.5, "upper"), found)

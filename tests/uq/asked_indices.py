@@ -41,6 +41,6 @@ def values(entry, kind):
     return [index["value"] for index in entry[kind].values()]
 
 
-def of_plain_sample(method, x, y, quantiles=None):
+def of_plain_sample(method, x, y, quantiles):
     """Return the indices by one method of an output of a plain sample."""
-    return METHODS[method].indices(Sample.plain(y, x, quantiles))
+    return METHODS[method].indices(Sample.plain(y, x, quantiles=quantiles))

@@ -4,6 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from uq.analysis.as_json import comparison_json, summary_json
+from uq.analysis.comparison import comparison
+from uq.analysis.summary import summarise
 from uq.literals import toml
 from uq.rows import results, sampling
 from uq.rows.evaluate import evaluate
@@ -55,6 +58,16 @@ def kinds(method="monte-carlo", samples=64, replicates=1, analysis=None):
         "analysis": analysis or {},
     }
     return computed(study_of(tables, "sample_models:KINDS"))
+
+
+def summarised(ds, **asked):
+    """Return the summary of a result as JSON has it."""
+    return summary_json(summarise(ds, **asked))
+
+
+def compared(*pair):
+    """Return the comparison of two results as JSON has it."""
+    return comparison_json(comparison(*pair))
 
 
 def with_seed(study, seed):

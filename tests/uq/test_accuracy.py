@@ -6,15 +6,16 @@ from typing import Annotated
 import numpy as np
 import pytest
 import sample_models
-from computed import asking, computed, linear, study_of, with_output
+from computed import asking, computed, linear, study_of, summarised, with_output
 
 import uq
-from uq.analysis.accuracy import accuracy_missed
-from uq.analysis.statistics import summarise
+from uq.analysis.statistics.counts import accuracy
+from uq.analysis.statistics.statistic import Context
+from uq.analysis.summary import summarise
 from uq.cli.tables import show_summary
 from uq.contract import Output, Setting
 from uq.report.outcomes import outcomes, result_tables
-from uq.rows.elements import elements_of
+from uq.rows.elements import analysis_of, elements_of
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,13 @@ ROUGH = replace(
     coordinates=lambda settings: {"side": ("left",)},
     simulate=None,
 )
+
+
+def accuracy_of(ds, name):
+    """Return what is said of the accuracy of an output without dimensions."""
+    (element,) = elements_of(ds, [name])
+    (found,) = accuracy(element, Context(ds, analysis_of(ds), None))
+    return found.facts["accuracy"]
 
 
 def rough(accuracy=0.04):
@@ -71,7 +79,7 @@ def test_rows_beyond_the_accuracy_are_counted_and_told(capsys):
     expected = int((ds["x1"] > 2 / 3).sum())
     assert 0 < expected < 60
     summary = summarise(ds)
-    assert summary["outputs"]["y[side=left]"]["accuracy"] == {
+    assert summarised(ds)["outputs"]["y[side=left]"]["accuracy"] == {
         "asked": 0.04,
         "rows": 60,
         "missed": expected,
@@ -81,16 +89,15 @@ def test_rows_beyond_the_accuracy_are_counted_and_told(capsys):
     share = f"{100 * expected / 60:.1f} %"
     assert f"accuracy 0.04 not reached in {expected} rows ({share})" in capsys.readouterr().out
     assert uq.summary(ds).loc["y[side=left]", "accuracy_missed"] == expected
-    table = next(result_tables(outcomes(ds, summary), None))
+    table = next(result_tables(outcomes(ds, summary)))
     column = table.header.index("rows short of the accuracy")
     assert (table.rows[0][column].text, table.rows[0][column].more) == (str(expected), share)
 
 
 def test_nothing_is_told_where_every_row_reaches_its_accuracy(capsys):
     ds = rough(0.05)
-    summary = summarise(ds)
-    assert summary["outputs"]["y[side=left]"]["accuracy"]["missed"] == 0
-    show_summary(ds, summary)
+    assert summarised(ds)["outputs"]["y[side=left]"]["accuracy"]["missed"] == 0
+    show_summary(ds, summarise(ds))
     assert "not reached" not in capsys.readouterr().out
 
 
@@ -98,18 +105,16 @@ def test_rows_that_never_end_or_are_censored_or_failed_have_no_accuracy():
     values = [1.0, 1.0, np.inf, 1.0, np.nan, -1.0]
     errors = [0.2, np.nan, np.nan, np.nan, np.nan, -0.05]
     ds = with_errors(values, errors, kind="lifetime", censored=[0, 0, 0, 1, 0, 0])
-    (element,) = elements_of(ds, ["life"])
-    told = accuracy_missed(ds, element)["accuracy"]
+    told = accuracy_of(ds, "life")
     assert (told["rows"], told["missed"]) == (3, 2)
 
 
 @pytest.mark.parametrize("values", [[np.inf, np.inf]])
 def test_without_a_finite_life_there_is_no_share(values):
     ds = with_errors(values, [np.nan, np.nan], kind="lifetime", censored=[0, 0])
-    (element,) = elements_of(ds, ["life"])
-    assert accuracy_missed(ds, element)["accuracy"]["share"] is None
+    assert accuracy_of(ds, "life")["share"] is None
 
 
 def test_outputs_of_which_no_accuracy_is_asked_say_nothing_of_one():
     ds = asking(with_output(linear(), "y_error", np.ones(64)), outputs=["y"])
-    assert "accuracy" not in summarise(ds)["outputs"]["y"]
+    assert "accuracy" not in summarised(ds)["outputs"]["y"]

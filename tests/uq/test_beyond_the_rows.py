@@ -4,17 +4,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from computed import asking, kinds, linear, with_output
+from computed import asking, compared, kinds, linear, summarised, with_output
 from scipy import stats
 
 import uq as api
 from uq import order_statistics
-from uq.analysis.comparison import comparison
 from uq.analysis.life_fit import fitted_laws
 from uq.analysis.overview import summary
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import summarise
 from uq.analysis.widths import expected_widths
-from uq.report.outcomes import life_table, outcomes
+from uq.report.outcomes import outcomes, result_tables
 from uq.store import write
 
 
@@ -38,7 +37,7 @@ def test_ranks_reach_from_one_in_n_plus_one_to_n(rows):
     "design", [{}, {"method": "latin-hypercube"}, {"method": "sobol", "replicates": 8}]
 )
 def test_a_quantile_beyond_the_rows_has_a_reason_and_no_value(design):
-    output = summarise(lives(64, **design))["outputs"]["life"]
+    output = summarised(lives(64, **design))["outputs"]["life"]
     for entry in (output["quantiles"]["0.001"], output["b_lives"]["B1"]):
         assert entry["value"] is None and entry["low"] is None
         assert "64 rows" in entry["reason"]
@@ -48,13 +47,13 @@ def test_a_quantile_beyond_the_rows_has_a_reason_and_no_value(design):
 
 
 def test_the_rows_needed_are_enough():
-    output = summarise(lives(999))["outputs"]["life"]
+    output = summarised(lives(999))["outputs"]["life"]
     assert output["quantiles"]["0.001"]["value"] is not None
     assert "reason" not in output["quantiles"]["0.001"]
 
 
 def test_independent_rows_still_bound_it_from_one_side():
-    entry = summarise(lives(64))["outputs"]["life"]["quantiles"]["0.001"]
+    entry = summarised(lives(64))["outputs"]["life"]["quantiles"]["0.001"]
     assert entry["high"] is not None
 
 
@@ -64,9 +63,14 @@ def test_every_reader_says_how_many_rows_it_takes(uq, folder):
     out = uq("summary", "life.nc").out
     assert "needs 999 rows" in out and "needs 99 rows" in out
     assert np.isnan(summary(ds).loc["life", "B1"])
-    cells = dict(zip(*(lambda t: (t.header, t.rows[0]))(life_table(found(ds))), strict=True))
+    cells = dict(
+        zip(
+            *(lambda t: (t.header, t.rows[0]))(*result_tables(found(ds), of_lives=True)),
+            strict=True,
+        )
+    )
     assert cells["B1"].text == "needs 99 rows"
-    assert comparison(ds, ds)["outputs"]["life"]["b_lives"]["B1"]["difference"]["value"] is None
+    assert compared(ds, ds)["outputs"]["life"]["b_lives"]["B1"]["difference"]["value"] is None
     assert expected_widths(ds)["life"].quantiles[0.001] is None
 
 

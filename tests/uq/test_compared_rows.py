@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from computed import asking, kinds, linear, with_output, with_status
+from computed import asking, compared, kinds, linear, with_output, with_status
 
-from uq.analysis.comparison import comparison
 from uq.analysis.pairing import Kinship, kinship
 from uq.contract import Status
 from uq.intervals import wilson_interval
@@ -19,8 +18,8 @@ def apart(found):
 
 def test_what_one_study_asks_for_is_compared():
     pair = [linear(analysis={"thresholds": {"y": t}}) for t in (4.0, 6.0)]
-    assert list(comparison(*pair)["outputs"]["y"]["thresholds"]) == ["4.0", "6.0"]
-    found = comparison(pair[0], linear())["outputs"]["y"]["thresholds"]["4.0"]["above"]
+    assert list(compared(*pair)["outputs"]["y"]["thresholds"]) == ["4.0", "6.0"]
+    found = compared(pair[0], linear())["outputs"]["y"]["thresholds"]["4.0"]["above"]
     assert apart(found)[0] == 0.0
 
 
@@ -32,8 +31,8 @@ def test_rows_that_failed_count_no_more_than_rows_that_are_not_there():
     other["regime"][90:120] = 1
     failing = with_status(other, lost, Status.RAISED)
     failing["regime"][lost], failing["angle"][lost], failing["work"][lost] = -1, np.nan, np.nan
-    found = comparison(whole, failing)
-    without = comparison(whole, other.isel(sample=slice(40, None)))
+    found = compared(whole, failing)
+    without = compared(whole, other.isel(sample=slice(40, None)))
     assert found["b"]["status"]["raised"] == 40
     for label in ("slow", "fast"):
         expected = pytest.approx(apart(without["regime"][label]), rel=1e-9)
@@ -59,7 +58,7 @@ def test_shares_that_agree_have_newcombes_interval():
 
     (low_a, high_a), (low_b, high_b) = (wilson_interval(one, n) for one in (a, b))
     expected = [b - a, b - a - end(b - low_b, high_a - a), b - a + end(high_b - b, a - low_a)]
-    found = comparison(*pair)["outputs"]["hit"]["thresholds"]["0.5"]["above"]
+    found = compared(*pair)["outputs"]["hit"]["thresholds"]["0.5"]["above"]
     assert apart(found) == pytest.approx(expected)
 
 
@@ -69,7 +68,7 @@ def test_lives_that_suppose_something_are_reckoned_with_at_their_worst():
         ds = with_output(linear(samples=200), "life", values, "lifetime", np.arange(200) % 3 == 0)
         return asking(ds, outputs=["life"])
 
-    b50 = comparison(lives(1.0), lives(1.5))["outputs"]["life"]["b_lives"]["B50"]
+    b50 = compared(lives(1.0), lives(1.5))["outputs"]["life"]["b_lives"]["B50"]
     a, b = b50["a"], b50["b"]
     assert "assumes" in a and "assumes" in b
     assert apart(b50)[1:] == pytest.approx([b["low"] - a["high"], b["high"] - a["low"]])
@@ -78,7 +77,7 @@ def test_lives_that_suppose_something_are_reckoned_with_at_their_worst():
 def test_elements_of_one_result_alone_are_named():
     both, left = kinds(samples=50), kinds(samples=50).isel(side=[0])
     for pair, which in (((both, left), "A"), ((left, both), "B")):
-        found = comparison(*pair)
+        found = compared(*pair)
         (note,) = [note for note in found["notes"] if note.startswith("only ")]
         assert note.startswith(f"only {which} has work[side=right], life[side=right,depth=0.5]")
         assert "work[side=left]" in found["outputs"]
@@ -94,14 +93,14 @@ def test_replicates_are_pairs_only_where_both_results_have_as_many():
 @pytest.mark.parametrize(("method", "replicates"), [("monte-carlo", 1), ("sobol", 4)])
 def test_identical_rows_are_said_to_be_so_and_have_no_interval_of_no_width(method, replicates):
     ds = asking(linear(method, replicates=replicates), thresholds={"y": 5.0})
-    found = comparison(ds, ds)["outputs"]["y"]
+    found = compared(ds, ds)["outputs"]["y"]
     same = {"value": 0.0, "low": None, "high": None, "identical": True}
     assert found["mean"]["difference"] == found["sd"]["difference"] == same
     assert found["sd"]["ratio"] == same | {"value": 1.0}
     assert found["quantiles"]["0.5"]["difference"] == same
     assert found["thresholds"]["5.0"]["above"]["difference"] == same
     # A shift that is the same in every pair is known, but nothing shows how well.
-    moved = comparison(ds, with_output(ds, "y", ds["y"].values + 0.5))["outputs"]["y"]
+    moved = compared(ds, with_output(ds, "y", ds["y"].values + 0.5))["outputs"]["y"]
     assert moved["mean"]["difference"]["value"] == pytest.approx(0.5)
     assert moved["mean"]["difference"]["low"] is moved["mean"]["difference"]["high"] is None
     assert "identical" not in moved["mean"]["difference"]
@@ -117,19 +116,19 @@ def censored_lives(times, censored=True):
 
 def test_lives_censored_before_a_threshold_can_be_compared():
     early, late = censored_lives(2.0), censored_lives(3.0)
-    below = comparison(early, late)["outputs"]["life"]["thresholds"]["4.0"]["below"]
+    below = compared(early, late)["outputs"]["life"]["thresholds"]["4.0"]["below"]
     assert below["a"]["value"] != below["b"]["value"]
     assert below["difference"]["value"] == pytest.approx(below["b"]["value"] - below["a"]["value"])
     assert below["difference"]["low"] < below["difference"]["value"] < below["difference"]["high"]
-    same = comparison(early, early)["outputs"]["life"]["thresholds"]["4.0"]["below"]["difference"]
+    same = compared(early, early)["outputs"]["life"]["thresholds"]["4.0"]["below"]["difference"]
     assert same == {"value": 0.0, "low": None, "high": None, "identical": True}
     for pair in ((early, censored_lives(9.0)), (censored_lives(9.0), early)):  # known in one alone
-        below = comparison(*pair)["outputs"]["life"]["thresholds"]["4.0"]["below"]
+        below = compared(*pair)["outputs"]["life"]["thresholds"]["4.0"]["below"]
         assert below["difference"]["value"] is not None
 
 
 def test_rows_censored_at_other_times_are_not_identical():
     pair = censored_lives(2.0), censored_lives(3.0)
-    b50 = comparison(*pair)["outputs"]["life"]["b_lives"]["B50"]
+    b50 = compared(*pair)["outputs"]["life"]["b_lives"]["B50"]
     assert b50["a"]["value"] != b50["b"]["value"] and "identical" not in b50["difference"]
     assert b50["difference"]["value"] == pytest.approx(b50["b"]["value"] - b50["a"]["value"])

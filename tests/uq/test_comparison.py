@@ -5,12 +5,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_output, with_status
+from computed import (
+    UNIFORM,
+    asking,
+    compared,
+    computed,
+    kinds,
+    linear,
+    study_of,
+    summarised,
+    with_output,
+    with_status,
+)
 from scipy import stats
 
 import uq as api
-from uq.analysis.comparison import comparison
-from uq.analysis.statistics import summarise
 from uq.contract import Status
 from uq.errors import InputError
 from uq.estimate import Estimate
@@ -88,14 +97,14 @@ def test_paired_replicates_tell_a_quantile_apart_as_well_as_all_their_rows_do():
     one = study(FOUR, method="sobol", samples=32, replicates=8)
     doubled = one.assign(y=one["y"] * 2)
     for p in ("0.05", "0.5", "0.95"):
-        found = comparison(one, doubled)["outputs"]["y"]["quantiles"][p]
+        found = compared(one, doubled)["outputs"]["y"]["quantiles"][p]
         apart, alone = (found[one]["high"] - found[one]["low"] for one in ("difference", "a"))
         assert apart == pytest.approx(alone, rel=1e-6)
 
 
 def test_the_same_numbers_dealt_out_otherwise_are_reckoned_with_at_their_worst():
     three = {name: law for name, law in FOUR.items() if name != "x3"}
-    found = comparison(study(FOUR), study(three))
+    found = compared(study(FOUR), study(three))
     assert found["pairing"] == "unknown" and "another seed" in found["notes"][0]
     output = found["outputs"]["y"]
     for one in (output["mean"], output["sd"], output["quantiles"]["0.5"]):
@@ -109,7 +118,7 @@ def test_an_extended_study_shares_its_first_rows():
     assert width(api.compare(one, other)) < width(
         api.compare(one, study(FOUR, samples=400, seed=3))
     )
-    found = comparison(one, other)
+    found = compared(one, other)
     assert [(c["name"], c["a"], c["b"]) for c in found["changed"]] == [("samples", "200", "400")]
 
 
@@ -129,9 +138,9 @@ def test_results_that_agree_have_no_interval_of_zero_width():
 
 def test_each_side_is_what_its_own_summary_says():
     pair = [study(FOUR), study(FOUR | {"x4": NARROW}, samples=300)]
-    found = comparison(*pair)["outputs"]["y"]
+    found = compared(*pair)["outputs"]["y"]
     for key, ds in zip("ab", pair, strict=True):
-        entry = summarise(ds)["outputs"]["y"]
+        entry = summarised(ds)["outputs"]["y"]
         assert found["mean"][key] == {"value": entry["mean"], **entry["mean_interval"]}
         assert found["sd"][key]["value"] == entry["sd"]
         assert found["quantiles"]["0.5"][key] == entry["quantiles"]["0.5"]
@@ -140,7 +149,7 @@ def test_each_side_is_what_its_own_summary_says():
 
 def test_what_was_changed_is_named_and_what_it_bought():
     one = study(FOUR)
-    found = comparison(one, study(FOUR | {"x4": NARROW}))
+    found = compared(one, study(FOUR | {"x4": NARROW}))
     (change,) = found["changed"]
     assert change == {
         "kind": "input",
@@ -154,24 +163,24 @@ def test_what_was_changed_is_named_and_what_it_bought():
     truth = ((1 + 4 + 9 + 0.16 * 16) / 30) ** 0.5
     assert ratio["low"] < truth < ratio["high"] and ratio["high"] - ratio["low"] < 0.1
     sourced = study(FOUR | {"x4": UNIFORM | {"source": "found in a drawer"}})
-    assert not comparison(one, sourced)["changed"]
+    assert not compared(one, sourced)["changed"]
     fixed = {name: law for name, law in FOUR.items() if name != "x4"}
-    found = comparison(one, study(fixed, {"fixed": {"x4": 0.25}, "settings": {"fail_above": 0.9}}))
+    found = compared(one, study(fixed, {"fixed": {"x4": 0.25}, "settings": {"fail_above": 0.9}}))
     assert [(c["kind"], c["name"], c["b"]) for c in found["changed"]] == [
         ("setting", "fail_above", "0.9"),
         ("input", "x4", "0.25"),
     ]
     assert found["only"] is None  # the setting changes outputs too
     both = study(FOUR | {"x4": NARROW, "x3": NARROW})
-    assert comparison(one, both)["only"] is None
+    assert compared(one, both)["only"] is None
 
 
 def test_ties_and_rank_correlations_are_told():
     one = study({"x1": UNIFORM, "x2": UNIFORM})
     tied = study({"x1": UNIFORM, "x2": {"equals": "x1"}})
-    assert comparison(one, tied)["changed"][0]["b"] == "equals x1"
+    assert compared(one, tied)["changed"][0]["b"] == "equals x1"
     together = {"parameters": ["x1", "x2"], "rank_correlation": [[1.0, 0.5], [0.5, 1.0]]}
-    found = comparison(one, study({"x1": UNIFORM, "x2": UNIFORM}, {"dependence": together}))
+    found = compared(one, study({"x1": UNIFORM, "x2": UNIFORM}, {"dependence": together}))
     assert [(c["kind"], c["b"]) for c in found["changed"]] == [("dependence", "x1, x2")]
     assert found["only"] is None
 
@@ -180,7 +189,7 @@ def test_rows_that_never_end_or_fail_are_no_numbers():
     never = with_output(linear(samples=64), "life", np.full(64, np.inf), "lifetime")
     ends = with_output(linear(samples=64), "life", np.linspace(1, 2, 64), "lifetime")
     never, ends = asking(never, outputs=["life"]), asking(ends, outputs=["life"])
-    found = comparison(never, ends)["outputs"]["life"]
+    found = compared(never, ends)["outputs"]["life"]
     assert found["quantiles"]["0.5"]["a"]["never"] and found["mean"]["a"]["value"] is None
     nothing = {"value": None, "low": None, "high": None}
     assert found["quantiles"]["0.5"]["difference"] == found["sd"]["ratio"] == nothing
@@ -188,14 +197,14 @@ def test_rows_that_never_end_or_fail_are_no_numbers():
         with_output(ends, "life", np.full(64, np.nan), "lifetime"), slice(None), Status.RAISED
     )
     lost = asking(lost, outputs=["life"])
-    found = comparison(ends, lost)
+    found = compared(ends, lost)
     assert found["b"]["status"] == {"ok": 0, "raised": 64}
     assert found["outputs"]["life"]["b_lives"]["B10"]["difference"] == nothing
     assert np.isnan(api.compare(ends, lost)["difference"]).all()
 
 
 def test_regimes_and_elements_that_both_have_are_compared():
-    found = comparison(kinds(samples=100), kinds(samples=200))
+    found = compared(kinds(samples=100), kinds(samples=200))
     assert list(found["regime"]) == ["slow", "fast"]
     assert found["regime"]["slow"]["a"]["count"] + found["regime"]["fast"]["a"]["count"] == 100
     assert "life[side=left,depth=0.5]" in found["outputs"]
@@ -215,7 +224,7 @@ def test_studies_that_cannot_be_compared_are_refused_in_a_line(uq, folder):
         assert (ended.code, ended.out, ended.err.count("\n")) == (2, "", 1)
         assert line in ended.err
     with pytest.raises(InputError, match="no output in common"):
-        comparison(linear(), linear().rename(y="z"))
+        compared(linear(), linear().rename(y="z"))
 
 
 def test_compare_on_the_command_line(uq, folder):

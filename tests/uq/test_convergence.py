@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from asked_indices import sensitivities
-from computed import kinds, linear, with_output
+from computed import kinds, linear, summarised, with_output
 
 from uq import store
 from uq.analysis.convergence import enough, running_estimates
-from uq.analysis.statistics import summarise
 from uq.errors import InputError
 
 
@@ -24,7 +23,7 @@ def test_the_estimates_of_some_samples_are_those_of_a_study_of_as_many(method, r
     table = running_estimates(whole)
     assert sorted(set(table["samples"])) == [16, 32, 64, 128]
     for ds in (whole, half):
-        entry = summarise(ds)["outputs"]["y"]
+        entry = summarised(ds)["outputs"]["y"]
         lines = table[table["samples"] == ds.attrs["samples"]].set_index("estimate")
         assert lines.loc["mean", "value"] == entry["mean"]
         assert lines.loc["quantile 0.5", "low"] == entry["quantiles"]["0.5"]["low"]
@@ -55,7 +54,7 @@ def with_error(size, samples=256):
 
 def test_the_rows_own_error_is_held_against_that_of_sampling():
     half = (
-        np.diff(list(summarise(with_error(0.0))["outputs"]["y"]["mean_interval"].values()))[0] / 2
+        np.diff(list(summarised(with_error(0.0))["outputs"]["y"]["mean_interval"].values()))[0] / 2
     )
     for size, warned in ((0.9 * half, False), (1.1 * half, True)):
         line = enough(with_error(size)).loc["y"]

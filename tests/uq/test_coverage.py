@@ -9,14 +9,13 @@ from math import prod
 import numpy as np
 import pytest
 from asked_indices import sensitivities
-from computed import UNIFORM, asking, computed, study_of, with_output, with_seed
+from computed import UNIFORM, asking, computed, study_of, summarised, with_output, with_seed
 from scipy import stats
 from scipy.optimize import brentq
 
 from uq.analysis.life_fit import fitted_laws
 from uq.analysis.lifetime import survival
 from uq.analysis.regime_split import between_share
-from uq.analysis.statistics import summarise
 
 REPETITIONS = 200
 
@@ -120,7 +119,7 @@ def test_indices_of_ishigami(samples, second_order):
     for ds in repeat("ishigami", design, inputs, second_order=second_order):
         entry = sensitivities(ds)["outputs"]["y"]
         tally_indices(tally, entry, ISHIGAMI | (PAIRS if second_order else {}))
-        tally.add("mean", 3.5, **summarise(ds)["outputs"]["y"]["mean_interval"])
+        tally.add("mean", 3.5, **summarised(ds)["outputs"]["y"]["mean_interval"])
     tally.check()
 
 
@@ -209,7 +208,7 @@ def test_moments_and_quantiles(design):
     tally = Tally(title("linear", design))
     inputs = dict.fromkeys(("x1", "x2", "x3", "x4"), UNIFORM)
     for ds in repeat("linear", design, inputs, analysis=analysis):
-        tally_summary(tally, summarise(ds)["outputs"]["y"], linear_cdf, ppf, mean=5.0)
+        tally_summary(tally, summarised(ds)["outputs"]["y"], linear_cdf, ppf, mean=5.0)
     # A scrambled Sobol' sequence integrates a linear function exactly but for rare scrambles:
     # with so heavy a tail Student's interval nearly always holds. P(y > 1) = 1 - 1/576 is shown
     # by fewer than two rows in a thousand, where every interval is coarse.
@@ -234,7 +233,7 @@ def test_lifetimes(design):
         analysis["tolerance"] = {"coverage": 0.95, "confidence": 0.95}
     tally = Tally(title("wear", design))
     for ds in repeat("exponential-wear", design, WEAR, analysis=analysis):
-        tally_summary(tally, summarise(ds)["outputs"]["life"], LIFE.cdf, LIFE.ppf, LIFE.mean())
+        tally_summary(tally, summarised(ds)["outputs"]["life"], LIFE.cdf, LIFE.ppf, LIFE.mean())
         tally_survival(tally, survival(ds, "life"), LIFE.cdf, (5e5, 1e6, 2e6))
     tally.check()
 
@@ -260,7 +259,7 @@ def test_lifetimes_that_never_end_or_are_censored(design):
     for seed, ds in enumerate(
         repeat("exponential-wear", design, WEAR, fixed=fixed, analysis=analysis)
     ):
-        tally_summary(tally, summarise(ds)["outputs"]["life"], cdf, ppf)
+        tally_summary(tally, summarised(ds)["outputs"]["life"], cdf, ppf)
         life = ds["life"].values
         leaving = np.random.default_rng(seed).exponential(4e6, len(life))
         seen = with_output(ds, "seen", np.minimum(life, leaving), "lifetime", leaving < life)
@@ -275,7 +274,7 @@ def test_b_lives_and_shares_with_censored_rows(design):
         life = ds["life"].values
         leaving = np.random.default_rng(seed).exponential(4e6, len(life))
         ds = with_output(ds, "seen", np.minimum(life, leaving), "lifetime", leaving < life)
-        entry = summarise(asking(ds, thresholds={"seen": [1e6]}))["outputs"]["seen"]
+        entry = summarised(asking(ds, thresholds={"seen": [1e6]}))["outputs"]["seen"]
         for name, p in {"B10": 0.1, "B50": 0.5}.items():
             found = entry["b_lives"][name]
             tally.add(name, LIFE.ppf(p), found["low"], found["high"])

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
-from computed import asking, linear, with_output, with_status
+from computed import asking, linear, summarised, with_output, with_status
 from scipy import stats
 
 import uq
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.overview import summary
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import summarise
+from uq.estimate import Estimate
 from uq.intervals import share_interval
 from uq.wording import failed_interval, percent_with_interval
 
@@ -33,7 +34,7 @@ def lives(method="monte-carlo", failing="long", **more):
 @pytest.mark.parametrize("failing", ["long", "short"])
 def test_bounds_hold_what_the_interval_misses(method, failing):
     ds, whole, _ = lives(method, failing)
-    found = summarise(ds)
+    found = summarised(ds)
     life = found["outputs"]["life"]
     above, below = (life["thresholds"]["5.0"][side] for side in ("above", "below"))
     if failing == "long":
@@ -52,7 +53,7 @@ def test_bounds_hold_what_the_interval_misses(method, failing):
 
 def test_bounds_are_the_ends_of_the_interval_with_failed_rows_on_that_side():
     ds, whole, lost = lives()
-    above = summarise(ds)["outputs"]["life"]["thresholds"]["5.0"]["above"]
+    above = summarised(ds)["outputs"]["life"]["thresholds"]["5.0"]["above"]
     hits = whole > 5.0
     assert above["failed_high"] == pytest.approx(share_interval(hits)[1])  # they were long
     hits[lost] = False
@@ -61,7 +62,7 @@ def test_bounds_are_the_ends_of_the_interval_with_failed_rows_on_that_side():
 
 def test_without_failed_rows_nothing_stands_beside():
     ds = asking(linear(), thresholds={"y": 5.0})
-    found = summarise(ds)
+    found = summarised(ds)
     assert "failed_low" not in str(found) and found["notes"] == []
     assert not any("failed_" in column for column in summary(ds).columns)
 
@@ -75,13 +76,15 @@ def test_values_and_angles_have_bounds_too():
     ds = with_output(ds, "turn", np.where(np.isnan(y), np.nan, y - 5.0))
     ds = ds.assign(turn=ds["turn"].assign_attrs(kind="angle"))
     ds = asking(with_status(ds, lost, 2), thresholds={"y": 7.0, "turn": 2.0}, quantiles=[0.05, 0.5])
-    found = summarise(ds)["outputs"]
+    found = summarised(ds)["outputs"]
     value = found["y"]["quantiles"]
     assert value["0.05"]["failed_low"] is None and value["0.05"]["failed_high"] > 2.0
     assert value["0.5"]["failed_low"] < 5.0 < value["0.5"]["failed_high"]
-    assert failed_interval(value["0.05"]).startswith("up to")
-    highest = summarise(asking(ds, quantiles=[0.95]))["outputs"]["y"]["quantiles"]["0.95"]
+    bounds = summarise(ds).outputs["y"].find("quantiles", "0.05").failed
+    assert failed_interval(bounds).startswith("up to")
+    highest = summarised(asking(ds, quantiles=[0.95]))["outputs"]["y"]["quantiles"]["0.95"]
     assert highest["failed_high"] is None and "failed_high_never" not in highest
+    highest = summarise(asking(ds, quantiles=[0.95])).outputs["y"].find("quantiles", "0.95").failed
     assert failed_interval(highest).startswith("from")
     truth = (whole := linear(samples=100_000)["y"].values > 7.0).mean()
     assert len(whole) and found["y"]["thresholds"]["7.0"]["above"]["failed_high"] > truth
@@ -93,7 +96,7 @@ def test_values_and_angles_have_bounds_too():
 def test_rows_that_all_failed_leave_everything_open():
     ds = with_status(with_output(linear(), "y", np.full(64, np.nan)), slice(None), 2)
     ds = asking(ds, thresholds={"y": 5.0})
-    above = summarise(ds)["outputs"]["y"]["thresholds"]["5.0"]["above"]
+    above = summarised(ds)["outputs"]["y"]["thresholds"]["5.0"]["above"]
     assert above["value"] is None and (above["failed_low"], above["failed_high"]) == (0.0, 1.0)
 
 
@@ -103,7 +106,7 @@ def test_censored_lives_keep_their_bounds():
     cut = life > 4.0
     life[cut], flag[cut] = 4.0, 1
     ds = with_output(ds, "life", life, "lifetime", flag)
-    entry = summarise(ds)["outputs"]["life"]
+    entry = summarised(ds)["outputs"]["life"]
     guess = entry["thresholds"]["5.0"]["kaplan_meier"]
     assert entry["b_lives"]["B10"]["failed_low"] < LIVES.ppf(0.1)
     assert entry["b_lives"]["B10"]["failed_high"] > LIVES.ppf(0.1)
@@ -134,18 +137,18 @@ def test_regimes_count_rows_that_failed_before_they_had_one():
     codes = (np.arange(400) < 100).astype(np.int8)
     codes[lost] = -1
     ds = with_status(ds.assign(regime=("sample", codes, attrs)), lost, 2)
-    high = summarise(ds)["regime"]["high"]
+    high = summarised(ds)["regime"]["high"]
     assert high["share"] == pytest.approx(60 / 360)
     assert high["failed_low"] < 0.15 < 0.25 < high["failed_high"]
 
 
 def test_words_say_what_the_failed_rows_leave_open():
-    entry = {"value": 0.138, "low": 0.117, "high": 0.162, "failed_low": 0.107, "failed_high": 0.23}
-    told = percent_with_interval(entry)
+    bounds = Estimate(low=0.107, high=0.23)
+    told = percent_with_interval(Estimate(0.138, 0.117, 0.162), bounds)
     assert told == "13.8 % (11.7 to 16.2 %; with failed rows 10.7 to 23.0 %)"
-    assert failed_interval(entry) == "0.107 to 0.23"
-    assert failed_interval({"value": 1.0}) == ""
-    assert failed_interval(dict.fromkeys(("failed_low", "failed_high"))) == "no bound"
+    assert failed_interval(bounds) == "0.107 to 0.23"
+    assert failed_interval(None) == ""
+    assert failed_interval(Estimate()) == "no bound"
 
 
 def test_the_table_has_columns_of_the_bounds():
@@ -162,7 +165,7 @@ def test_bounds_are_never_within_the_interval_where_replicates_scatter_less_with
     hit[32] = 0.0
     ds = with_status(with_output(ds, "life", 2.0 - hit, "lifetime"), [32], 2)
     ds["life"][32] = np.nan
-    entry = summarise(asking(ds, thresholds={"life": 1.5}))["outputs"]["life"]
+    entry = summarised(asking(ds, thresholds={"life": 1.5}))["outputs"]["life"]
     for side in entry["thresholds"]["1.5"].values():
         if isinstance(side, dict):
             assert side["failed_low"] <= side["low"] and side["high"] <= side["failed_high"]
@@ -175,4 +178,4 @@ def test_bounds_are_never_within_the_interval_where_replicates_scatter_less_with
         failed_share_bounds(hits, failed, of),
         share_interval(hits[~failed], of[~failed]),
     )
-    assert bounds["failed_low"] <= plain[0] and plain[1] <= bounds["failed_high"]
+    assert bounds.low <= plain[0] and plain[1] <= bounds.high

@@ -4,21 +4,20 @@ import re
 
 import numpy as np
 import pytest
-from computed import asking, kinds, linear, with_output
+from computed import asking, kinds, linear, summarised, with_output
 
 from uq.analysis.findings import Findings
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import summarise
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
 from uq.report.outcomes import outcomes
-from uq.rows.elements import analysis_of
 
 DAY = 86400.0
 
 
 def told(ds, methods=(), failed=0):
     summary = summarise(ds)
-    return headlines(summary, failed, outcomes(ds, summary), methods, analysis_of(ds).tolerance)
+    return headlines(summary, failed, outcomes(ds, summary), methods)
 
 
 def subjects(ds, method, outputs):
@@ -41,7 +40,7 @@ def test_a_median_is_told_in_the_unit_of_its_table_with_its_interval():
     lives = np.r_[np.linspace(5, 15, 54) * DAY, np.full(10, np.inf)]
     ds = with_output(linear(samples=64), "life", lives, "lifetime")
     ds = with_output(ds, "never", np.full(64, np.inf), "lifetime")
-    quantile = summarise(ds)["outputs"]["life"]["quantiles"]["0.5"]
+    quantile = summarised(ds)["outputs"]["life"]["quantiles"]["0.5"]
     _, y, life, never = told(ds)
     numbers = re.fullmatch(
         r"Meaning of life: median (\S+) days \(95 % interval (\S+) to (\S+)\)\.", life
@@ -64,7 +63,7 @@ def test_what_the_study_asks_of_an_output_stands_behind_its_median():
         thresholds={"life": 2 * DAY, "turn": 0.4, "y": 5.0},
     )
     life, turn, y = (one.partition("). ")[2] for one in told(ds)[1:])
-    found = summarise(ds)["outputs"]
+    found = summarised(ds)["outputs"]
     bound = f"{found['life']['tolerance']['lower'] / DAY:.5g}"
     assert life == (
         f"With 95 % confidence, 90 % of all take longer than {bound} days."

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 from asked_indices import indices, values
-from computed import asking, linear, with_output
+from computed import asking, linear, summarised, with_output
 from scipy import stats
 
 import uq
 from uq.analysis.findings import Findings
-from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
 from uq.indices.transforms import HEAVY, heaviness, tail_share
 from uq.report.indices import sensitivity_of
@@ -125,7 +124,7 @@ def test_variance_between_regimes_names_what_it_is_of():
     y = ds["y"].values
     ds = with_output(ds, "life", np.exp(y), "lifetime")
     ds = with_output(ds, "late", np.where(y > 9, np.inf, y), "lifetime")
-    found = summarise(asking(ds, outputs=["y", "life", "late"]))["outputs"]
+    found = summarised(asking(ds, outputs=["y", "life", "late"]))["outputs"]
     of = {name: entry["between_regimes"]["of"] for name, entry in found.items()}
     assert of == {"y": "y", "life": "log(life)", "late": "rank(late)"}
     shares = [found[name]["between_regimes"]["value"] for name in ("y", "life")]

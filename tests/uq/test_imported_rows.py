@@ -4,15 +4,13 @@ import numpy as np
 import pytest
 import xarray as xr
 from asked_indices import sensitivities
-from computed import as_text, computed, with_output
+from computed import as_text, compared, computed, summarised, with_output
 from input_studies import UNIFORM, refusal, tables
 
-from uq.analysis.comparison import comparison
 from uq.analysis.convergence import running_estimates
 from uq.analysis.life_fit import fitted_laws
 from uq.analysis.lifetime import survival
 from uq.analysis.pairing import Kinship, kinship
-from uq.analysis.statistics import summarise
 from uq.errors import InputError
 from uq.rows.sampling import row_block
 from uq.study.definition import study_from_text
@@ -44,7 +42,7 @@ def test_imported_rows_are_those_of_the_file_to_the_bit(table, file):
     np.testing.assert_array_equal(row_block(study, 30, 31).x, drawn[30:31])
     ds = computed(study)
     assert sensitivities(ds)["method"] == "delta"
-    found = summarise(ds)
+    found = summarised(ds)
     assert found["outputs"]["y"]["mean_interval"]["low"] is None
     assert "nothing is known of how imported rows came about" in found["notes"][0]
     assert not any("replicates" in note for note in found["notes"])
@@ -125,8 +123,8 @@ def result_of(folder, **design):
 def test_rows_stated_to_be_independent_feed_what_a_plain_sample_feeds(table):
     folder, _ = table
     ds = result_of(folder, independent=True)
-    found = summarise(ds)
-    plain = summarise(ds.assign_attrs(design="monte-carlo"))
+    found = summarised(ds)
+    plain = summarised(ds.assign_attrs(design="monte-carlo"))
     assert found == plain and found["notes"] == []
     y = found["outputs"]["y"]
     for entry in (y["mean_interval"], y["sd_interval"], y["quantiles"]["0.5"]):
@@ -167,7 +165,7 @@ def test_a_life_of_independent_imported_rows_has_a_curve_and_fits(table):
 
 
 def test_without_the_statement_the_remedy_is_named(table):
-    (note,) = summarise(computed(study_from_text(as_text(imported()), folder=table[0])))["notes"]
+    (note,) = summarised(computed(study_from_text(as_text(imported()), folder=table[0])))["notes"]
     assert "independent = true" in note and "replicates" not in note
 
 
@@ -183,9 +181,9 @@ def test_the_same_imported_rows_are_pairs_and_others_are_not(table):
     folder, x = table
     one = result_of(folder, independent=True)
     assert kinship(one, result_of(folder, independent=True, seed=5)) is Kinship.ROWS_IMPORTED
-    assert comparison(one, one)["pairing"] == "rows"
+    assert compared(one, one)["pairing"] == "rows"
     lines = ["x2,x1", *(f"{a!r},{b!r}" for b, a in (1 - x).tolist())]
     (folder / "rows.csv").write_text("\n".join(lines))
     other = result_of(folder, independent=True, seed=5)
     assert kinship(one, other) is Kinship.UNKNOWN_IMPORTED
-    assert comparison(one, other)["pairing"] == "unknown"
+    assert compared(one, other)["pairing"] == "unknown"

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 import xarray as xr
-from computed import UNIFORM, computed, kinds, study_of
+from computed import UNIFORM, computed, kinds, study_of, summarised
 from until_studies import study, tables
 
-from uq.analysis.statistics import summarise
 from uq.rows import stopping
 from uq.running import runner
 
@@ -57,5 +56,5 @@ def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
 
 
 def test_it_is_said_at_which_look_a_run_knew_enough():
-    (note,) = summarise(runner.compute(study(10.0, samples=500), workers=0))["notes"]
+    (note,) = summarised(runner.compute(study(10.0, samples=500), workers=0))["notes"]
     assert "was reached at look 1 of at most 5" in note

@@ -1,11 +1,10 @@
 import numpy as np
 import pytest
-from computed import asking, kinds, linear, with_output
+from computed import asking, kinds, linear, summarised, with_output
 from scipy import stats
 
 import uq
 from uq.analysis.lifetime import survival
-from uq.analysis.statistics import summarise
 from uq.errors import InputError
 
 
@@ -48,13 +47,13 @@ def test_rows_that_never_end_make_the_plateau():
 
 def test_what_was_censored_is_not_known_never_to_end():
     ds = lives(np.full(16, np.inf), np.arange(16) < 5)
-    entry = summarise(ds)["outputs"]["life"]
+    entry = summarised(ds)["outputs"]["life"]
     assert (entry["never"], entry["censored"]) == (11, 5)
 
 
 def test_curve_agrees_with_the_thresholds_of_the_summary():
     ds = asking(lives(np.random.default_rng(2).exponential(size=80)), thresholds={"life": 0.7})
-    above = summarise(ds)["outputs"]["life"]["thresholds"]["0.7"]["above"]["value"]
+    above = summarised(ds)["outputs"]["life"]["thresholds"]["0.7"]["above"]["value"]
     at = survival(ds, "life").sel(time=0.7, method="ffill")
     assert float(at["survival"]) == pytest.approx(above)
 

@@ -5,14 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from asked_indices import sensitivities
-from computed import asking, linear, with_output
+from computed import asking, compared, linear, summarised, with_output
 from scipy import stats
 
-from uq.analysis.comparison import comparison
 from uq.analysis.convergence import enough
 from uq.analysis.overview import summary
 from uq.analysis.regime_split import between_share
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import summarise
 from uq.analysis.widths import expected_widths
 from uq.cli.tables import show_summary
 from uq.moments import moments, sd_interval, standard_deviation
@@ -30,7 +29,7 @@ def heavy(index, rows=1000, **of_design):
 
 
 def test_a_mean_without_variance_has_no_interval_and_no_sd():
-    entry = summarise(heavy(1.5))["outputs"]["z"]
+    entry = summarised(heavy(1.5))["outputs"]["z"]
     assert entry["mean"] is not None and entry["mean_interval"] == NOTHING
     assert entry["sd"] is None and entry["sd_interval"] == NOTHING
     assert entry["tail"]["side"] == "upper" and entry["tail"]["values"] == 400
@@ -55,28 +54,28 @@ def test_a_mean_whose_variance_is_open_comes_with_a_caution(capsys):
 
     ds = heavy(2.2)
     summary = summarise(ds)
-    entry = summary["outputs"]["z"]
+    entry = summarised(ds)["outputs"]["z"]
     assert entry["mean_interval"]["low"] and "too narrow" in entry["caution"]
-    (table,) = result_tables(outcomes(ds, summary), None)
+    (table,) = result_tables(outcomes(ds, summary))
     assert any(entry["caution"] in cell.more for cell in table.rows[0])
     show_summary(ds, summary)
     assert "may be too narrow" in " ".join(capsys.readouterr().out.split())
 
 
 def test_a_mean_that_does_not_exist_is_refused():
-    entry = summarise(heavy(0.8))["outputs"]["z"]
+    entry = summarised(heavy(0.8))["outputs"]["z"]
     assert entry["mean"] is None and entry["mean_interval"] == NOTHING
     assert "no mean" in entry["reasons"]["mean"]
     assert entry["quantiles"]["0.5"]["low"] is not None
 
 
 def test_replicates_do_not_make_a_heavy_tail_light():
-    entry = summarise(heavy(1.5, method="latin-hypercube", replicates=8))["outputs"]["z"]
+    entry = summarised(heavy(1.5, method="latin-hypercube", replicates=8))["outputs"]["z"]
     assert entry["sd"] is None and entry["mean_interval"] == NOTHING
 
 
 def test_a_light_tail_has_everything():
-    entry = summarise(asking(linear(samples=400), outputs=["y"]))["outputs"]["y"]
+    entry = summarised(asking(linear(samples=400), outputs=["y"]))["outputs"]["y"]
     assert entry["reasons"] == {}
     assert entry["sd_interval"]["low"] < np.sqrt(30 / 12) < entry["sd_interval"]["high"]
     assert entry["tail"]["k"] < 0
@@ -90,7 +89,7 @@ def test_every_reader_is_told():
     )
     assert enough(ds, "z").loc["z", "estimate"] == "median"
     assert expected_widths(ds)["z"].mean is None
-    z = comparison(ds, asking(light, outputs=["z"]))["outputs"]["z"]
+    z = compared(ds, asking(light, outputs=["z"]))["outputs"]["z"]
     for one in (z["mean"]["difference"], z["sd"]["difference"], z["sd"]["ratio"]):
         assert one["low"] is None and one["high"] is None
     value = between_share(ds["z"].values, np.arange(1000) % 2).value
@@ -113,7 +112,7 @@ def test_the_terminal_and_the_report_give_the_reason(uq, folder):
     write(ds, Path("z.nc").absolute())
     out = " ".join(uq("summary", "z.nc").out.split())
     assert "with k above 1 there is no mean; use quantiles" in out
-    table = next(result_tables(outcomes(ds, summarise(ds)), None))
+    table = next(result_tables(outcomes(ds, summarise(ds))))
     cells = dict(zip(table.header, table.rows[0], strict=True))
     assert cells["mean"].text == "none" and "no mean" in cells["mean"].more
     assert "no mean" not in cells["sd"].more and "no variance" in cells["sd"].more

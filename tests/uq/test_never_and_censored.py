@@ -2,16 +2,14 @@
 
 import numpy as np
 import pytest
-from computed import asking, kinds, linear, with_output
+from computed import asking, compared, kinds, linear, summarised, with_output
 from scipy import stats
 
 import uq
 from models.analytic import EXPONENTIAL_WEAR
 from models.beam import MODEL as BEAM
 from models.vibrator import MODEL as VIBRATOR
-from uq.analysis.comparison import comparison
 from uq.analysis.lifetime import survival
-from uq.analysis.statistics import summarise
 from uq.contract import Output
 
 ENDS = 0.4
@@ -35,7 +33,7 @@ def result(values, censored, known_at_once=True, method="monte-carlo", replicate
 
 
 def below(ds):
-    return summarise(ds)["outputs"]["life"]["thresholds"][repr(TIME)]["kaplan_meier"]["below"]
+    return summarised(ds)["outputs"]["life"]["thresholds"][repr(TIME)]["kaplan_meier"]["below"]
 
 
 def test_a_censored_row_is_not_one_that_never_ends():
@@ -51,7 +49,7 @@ def test_a_censored_row_is_not_one_that_never_ends():
 
 
 def test_b_lives_are_those_of_the_rows_that_end():
-    entry = summarise(result(*mixed(20_000)))["outputs"]["life"]["b_lives"]["B10"]
+    entry = summarised(result(*mixed(20_000)))["outputs"]["life"]["b_lives"]["B10"]
     expected = stats.weibull_min(2).ppf(0.1 / ENDS)
     assert entry["value"] == pytest.approx(expected, rel=0.03)
     assert entry["low"] < expected < entry["high"]
@@ -115,7 +113,7 @@ def test_an_end_that_censored_rows_might_have_outlived_has_no_band():
 def test_two_results_are_compared_by_the_same_estimate():
     one, other = (result(*mixed(4000, seed)) for seed in (1, 2))
     other.attrs["seed"] = one.attrs["seed"] + 1
-    threshold = comparison(one, other)["outputs"]["life"]["thresholds"][repr(TIME)]
+    threshold = compared(one, other)["outputs"]["life"]["thresholds"][repr(TIME)]
     found = threshold["below"]
     for which, ds in (("a", one), ("b", other)):
         assert (

@@ -1,10 +1,9 @@
 """The summary of a result as one table: infinity stands for never, NaN for what is not known."""
 
 import numpy as np
-from computed import asking, linear, with_output
+from computed import asking, linear, summarised, with_output
 
 import uq
-from uq.analysis.statistics import summarise
 
 
 def test_each_end_of_an_interval_is_infinite_on_its_own():
@@ -12,7 +11,7 @@ def test_each_end_of_an_interval_is_infinite_on_its_own():
     ds = with_output(linear(samples=64), "life", values, "lifetime")
     ds = asking(ds, outputs=["life"], quantiles=[0.5, 0.8, 0.88], thresholds={"life": [1.5]})
     line = uq.summary(ds).loc["life"]
-    found = summarise(ds)["outputs"]["life"]
+    found = summarised(ds)["outputs"]["life"]
     for probability in ("0.5", "0.8", "0.88"):
         for end in ("low", "high"):
             known = found["quantiles"][probability][end]

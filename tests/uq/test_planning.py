@@ -5,8 +5,8 @@ import os
 
 import numpy as np
 import pytest
+from computed import summarised
 
-from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
 from uq.running import planning, runner
 from uq.study.definition import load_study
@@ -63,7 +63,7 @@ def test_widths_are_those_that_come_out(write_study, method, replicates):
     whole = runner.compute(study, workers=0)
     pilot = whole.isel(sample=slice(0, 400))
     expected = expected_widths(pilot)["y"]
-    found = summarise(whole)["outputs"]["y"]
+    found = summarised(whole)["outputs"]["y"]
     pairs = [(expected.mean, found["mean_interval"])]
     pairs += [(width, found["quantiles"][repr(p)]) for p, width in expected.quantiles.items()]
     pairs += [

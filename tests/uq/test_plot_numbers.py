@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 from asked_indices import sensitivities
-from computed import asking, kinds, linear, with_output
+from computed import asking, kinds, linear, summarised, with_output
 
 from uq import plots
-from uq.analysis.statistics import summarise
 from uq.drawing.figure import COLOURS, thinned
 
 DAY = 86400.0
@@ -26,7 +25,7 @@ def lives(ds):
 
 def median(ds):
     """Return the median of the lives, and the ends of its interval [days]."""
-    found = summarise(ds)["outputs"]["day_long"]["quantiles"]["0.5"]
+    found = summarised(ds)["outputs"]["day_long"]["quantiles"]["0.5"]
     return [found[end] / DAY for end in ("value", "low", "high")]
 
 

@@ -6,13 +6,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from asked_indices import sensitivities
-from computed import asking, kinds, linear, with_output
+from computed import asking, kinds, linear, summarised, with_output
 from IPython.core.formatters import DisplayFormatter
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from uq import plots
-from uq.analysis.statistics import summarise
 from uq.drawing.figure import file_name, lay_out, powers, roomy, sentence
 from uq.errors import InputError
 
@@ -306,7 +305,7 @@ def test_total_indices_converge_in_a_figure():
 
 def test_quantiles_are_a_table_to_print():
     ds = kinds(samples=200)
-    entries = summarise(ds)["outputs"]
+    entries = summarised(ds)["outputs"]
     told = words(plots.quantile_table(ds, "work"))
     assert "Work rate [W]" in told and "left" in told and "95 % intervals" in told
     assert f"{entries['work[side=left]']['quantiles']['0.5']['value']:.5g}" in told

@@ -7,7 +7,7 @@ import numpy as np
 import openturns as ot
 import pytest
 from asked_indices import sensitivities
-from computed import computed, linear, study_of, with_output, with_status
+from computed import computed, linear, study_of, summarised, with_output, with_status
 from published import PORTFOLIO_LAWS, portfolio_indices
 from SALib.analyze import shapley as salib_shapley
 from test_given_data import CASES, FIRST, TOTAL
@@ -162,9 +162,8 @@ def test_steps_between_equal_values_have_no_effect():
 
 
 def test_both_ends_of_each_path_serve_for_statistics():
-    from uq.analysis.statistics import summarise
 
-    told = summarise(linear("shapley", 128, 8))
+    told = summarised(linear("shapley", 128, 8))
     assert told["rows_used"] == 2 * 128 * 8
     mean = told["outputs"]["y"]
     assert mean["mean_interval"]["low"] < 5.0 < mean["mean_interval"]["high"]

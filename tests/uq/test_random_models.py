@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from asked_indices import sensitivities
-from computed import UNIFORM, computed, study_of, with_seed, with_status
+from computed import UNIFORM, computed, study_of, summarised, with_seed, with_status
 
 from uq.analysis.comparison import compare
 from uq.analysis.convergence import running_estimates
-from uq.analysis.statistics import summarise
 from uq.analysis.widths import expected_widths
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
@@ -248,7 +247,7 @@ def test_share_of_noise_covers_its_truth():
 
 def test_plain_statistics_use_a_and_b_alone():
     ds = computed(noisy(samples=64, replicates=4))
-    told = summarise(ds)
+    told = summarised(ds)
     assert (told["samples"], told["rows_used"]) == (64 * 4 * 5, 64 * 4 * 2)
     ends = np.isin(ds["block"].values, [0, 3])
     assert told["outputs"]["y"]["mean"] == pytest.approx(ds["y"].values[ends].mean())
@@ -257,13 +256,13 @@ def test_plain_statistics_use_a_and_b_alone():
 def test_curves_of_one_seed_give_no_plain_statistics(uq, folder):
     # 1040 rows of 16 seeds: of an event of the noise they would tell far too much.
     ds = computed(noisy("fast", 65, 8))
-    told = summarise(ds)
+    told = summarised(ds)
     assert told["rows_used"] == 0 and told["outputs"]["y"]["mean"] is None
     reason = "share seeds along a curve, as the model is random"
     assert told["notes"][0].startswith(f"no statistics: the rows of a 'fast' design {reason}")
     with pytest.raises(InputError, match=f"the rows of the first, a 'fast' design, {reason}"):
         compare(ds, ds)
-    plain = summarise(computed(noisy("fast", 65, 8, model="SLEEPING")))
+    plain = summarised(computed(noisy("fast", 65, 8, model="SLEEPING")))
     assert plain["rows_used"] == 1040 and plain["outputs"]["y"]["mean"] == pytest.approx(0.5, 0.1)
     (folder / "noisy.toml").write_text(noisy("fast", 65, 2).text)
     assert uq("run", "noisy.toml", "-o", "n.nc", "--model", "sample_models:NOISY").code == 0

@@ -1,12 +1,11 @@
 import numpy as np
 import pytest
 from asked_indices import sensitivities
-from computed import asking, kinds, linear, with_output, with_status
+from computed import asking, kinds, linear, summarised, with_output, with_status
 from scipy import stats
 
 import uq
 from uq.analysis.regime_split import between_share
-from uq.analysis.statistics import summarise
 from uq.contract import Status
 from uq.errors import InputError
 from uq.methods.given_data import DUMMIES
@@ -80,11 +79,11 @@ def test_sobol_indices_of_a_regime_are_those_of_its_indicator():
 def test_variance_between_regimes():
     # Of a uniform input cut at its middle, three quarters of the variance lie between the halves.
     for design, replicates in (("monte-carlo", 1), ("latin-hypercube", 8), ("saltelli", 8)):
-        entry = summarise(kinds(design, 128, replicates))["outputs"]["work[side=left]"]
+        entry = summarised(kinds(design, 128, replicates))["outputs"]["work[side=left]"]
         split = entry["between_regimes"]
         assert split["low"] < 0.75 < split["high"], design
         assert split["value"] == pytest.approx(0.75, abs=0.06)
-    assert "between_regimes" not in summarise(linear())["outputs"]["y"]
+    assert "between_regimes" not in summarised(linear())["outputs"]["y"]
 
 
 def test_variance_between_regimes_of_noise_has_no_interval():
@@ -119,7 +118,7 @@ def test_variance_between_regimes_is_as_uncertain_as_the_jackknife_finds_it():
 def test_statistics_within_a_regime():
     ds = kinds(samples=400)
     fast = ds["x1"].values > 0.5
-    found = summarise(ds, regime="fast")
+    found = summarised(ds, regime="fast")
     assert found["rows_used"] == fast.sum() and found["regime"]["slow"]["count"] == 0
     work = found["outputs"]["work[side=left]"]
     assert work["mean"] == pytest.approx(ds["x1"].values[fast].mean())
@@ -128,7 +127,7 @@ def test_statistics_within_a_regime():
     ds["regime"][3] = -1
     ds = with_status(ds, 3, Status.NON_FINITE)
     for name in ("fast", "slow"):
-        assert summarise(ds, regime=name)["outputs"]["work[side=left]"]["failed"] == 1
+        assert summarised(ds, regime=name)["outputs"]["work[side=left]"]["failed"] == 1
 
 
 def test_indices_within_a_regime_suppose_no_independent_inputs():
@@ -145,12 +144,12 @@ def test_indices_within_a_regime_suppose_no_independent_inputs():
 
 def test_regimes_that_are_not_there():
     with pytest.raises(InputError, match="no such regime 'fats'; did you mean 'fast'"):
-        summarise(kinds(), regime="fats")
+        summarised(kinds(), regime="fats")
     with pytest.raises(InputError, match="has no regimes"):
-        summarise(linear(), regime="fast")
+        summarised(linear(), regime="fast")
     with pytest.raises(InputError, match="has no regimes"):
         uq.regimes(linear())
     slow = kinds(samples=64)
     slow = slow.isel(sample=slow["regime"].values == 0)
     with pytest.raises(InputError, match="no row is in the regime 'fast'"):
-        summarise(slow, regime="fast")
+        summarised(slow, regime="fast")

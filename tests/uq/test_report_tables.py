@@ -2,16 +2,28 @@
 
 import numpy as np
 import pytest
-from computed import UNIFORM, asking, computed, kinds, linear, study_of, with_output, with_status
+from computed import (
+    UNIFORM,
+    asking,
+    computed,
+    kinds,
+    linear,
+    study_of,
+    summarised,
+    with_output,
+    with_status,
+)
 
 from uq.analysis.findings import Findings
-from uq.analysis.statistics import summarise
+from uq.analysis.statistics.statistic import Statistic
+from uq.analysis.summary import summarise
 from uq.contract import Status
-from uq.report.cells import Cell, Table, estimate, without_empty_columns
+from uq.estimate import Estimate
+from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.report.convergence import convergence_of
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
-from uq.report.outcomes import life_table, outcomes, regime_table, result_tables, status_table
+from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
 
 DAY = 86400.0
 
@@ -33,15 +45,15 @@ def lives(censored=0, **analysis):
     return asking(ds, outputs=["life", "y"], **analysis)
 
 
-def results_of(ds, tolerance=None):
-    return list(result_tables(outcomes(ds, summarise(ds)), tolerance))
+def results_of(ds, of_lives=False):
+    return list(result_tables(outcomes(ds, summarise(ds)), of_lives))
 
 
 def test_statistics_are_in_the_unit_of_their_line():
     ds = lives()
     (table,) = results_of(ds)
     life, y = lines(table).values()
-    median = summarise(ds)["outputs"]["life"]["quantiles"]["0.5"]
+    median = summarised(ds)["outputs"]["life"]["quantiles"]["0.5"]
     assert life["unit"] == "days" and life["50 % quantile"] == f"{median['value'] / DAY:.5g}"
     assert (life["mean"], life["never"]) == ("-", "10")
     assert y["unit"] == "" and y["mean"] == f"{float(ds['y'].mean()):.5g}"
@@ -52,7 +64,7 @@ def test_statistics_are_in_the_unit_of_their_line():
 
 def test_tolerance_bounds_say_what_is_covered_and_how_surely():
     bounds = {"coverage": 0.8, "confidence": 0.95}
-    _, table = results_of(lives(tolerance=bounds), (0.8, 0.95))
+    _, table = results_of(lives(tolerance=bounds))
     assert table.caption == (
         "Tolerance bounds: with 95 % confidence each, 80 % of all lie above the lower, and 80 %"
         " below the upper"
@@ -71,7 +83,7 @@ def test_probabilities_stand_on_their_side_of_the_threshold():
 
 def test_a_probability_that_supposes_something_says_so():
     ds = lives(censored=30, thresholds={"life": [14 * DAY]})
-    entry = summarise(ds)["outputs"]["life"]["thresholds"][f"{14 * DAY!r}"]
+    entry = summarised(ds)["outputs"]["life"]["thresholds"][f"{14 * DAY!r}"]
     _, table = results_of(ds)
     line = lines(table)["life"]
     assert line["note"].startswith(entry["reason"]) and "Kaplan and Meier" in line["note"]
@@ -80,7 +92,7 @@ def test_a_probability_that_supposes_something_says_so():
 
 def test_b_lives_are_beside_the_rows_that_did_not_end():
     ds = lives(censored=3)
-    line = lines(life_table(outcomes(ds, summarise(ds))))["life"]
+    line = lines(*results_of(ds, of_lives=True))["life"]
     assert line["unit"] == "days" and 5 < float(line["B10"]) < 7
     assert (line["rows never ending"], line["rows censored"]) == ("10", "3")
 
@@ -94,9 +106,10 @@ def test_the_status_table_is_of_all_rows():
 
 
 def test_shares_of_regimes_have_their_interval():
-    summary = summarise(kinds(samples=50))
+    ds = kinds(samples=50)
+    summary = summarise(ds)
     label, rows, share = regime_table(summary).rows[0]
-    low, high = (100 * summary["regime"]["slow"][end] for end in ("low", "high"))
+    low, high = (100 * getattr(summary.regimes["slow"].estimate, end) for end in ("low", "high"))
     assert (label.text, rows.text) == ("slow", "25")
     assert (share.text, share.more) == ("50.0 %", f"{low:.1f} to {high:.1f} %")
 
@@ -192,7 +205,7 @@ def test_rows_less_exact_than_their_number_are_warned_of():
 
 
 def test_what_never_ends_sorts_last_and_what_says_nothing_is_left_out():
-    never = estimate({"value": None, "low": 1.0, "high": None, "never": True, "high_never": True})
+    never = cell(Statistic(("life",), "life", Estimate(np.inf, 1.0, np.inf)))
     assert (never.text, never.more, never.key) == ("never", "1 to\u00a0never", np.inf)
     table = Table("", ("name", "empty", "full"), [(Cell("a"), Cell("-"), Cell("1"))])
     assert without_empty_columns(table).header == ("name", "full")

@@ -12,6 +12,7 @@ from computed import (
     computed,
     linear,
     study_of,
+    summarised,
     with_output,
     with_seed,
     with_status,
@@ -20,7 +21,6 @@ from SALib.analyze import fast as salib_fast
 from SALib.analyze import morris as salib_morris
 
 from uq.analysis.overview import summary
-from uq.analysis.statistics import summarise
 from uq.designs.registry import DESIGNS
 from uq.designs.trajectories import LEVELS, STEP, TAIL
 from uq.errors import InputError
@@ -290,7 +290,7 @@ def test_seed_zero_is_a_seed(design, method):
 
 def test_there_are_no_statistics_of_trajectories_and_it_is_said():
     ds = linear("morris", 8, 4)
-    told = summarise(ds)
+    told = summarised(ds)
     assert (told["samples"], told["rows_used"]) == (160, 0)
     assert told["outputs"]["y"]["mean"] is None
     assert told["outputs"]["y"]["quantiles"]["0.5"]["value"] is None
@@ -302,7 +302,7 @@ def test_there_are_no_statistics_of_trajectories_and_it_is_said():
 
 
 def test_curves_are_as_good_as_any_rows_for_statistics():
-    told = summarise(linear("fast", 257, 8))
+    told = summarised(linear("fast", 257, 8))
     assert told["rows_used"] == 257 * 8 * 4
     assert told["outputs"]["y"]["mean"] == pytest.approx(5, abs=0.05)
 

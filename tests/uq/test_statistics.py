@@ -2,10 +2,9 @@ import json
 
 import numpy as np
 import pytest
-from computed import asking, kinds, linear, with_output, with_status
+from computed import asking, kinds, linear, summarised, with_output, with_status
 
 import uq
-from uq.analysis.statistics import summarise
 from uq.contract import Status
 
 THRESHOLDS = {"y": [2.0, 6.0]}
@@ -13,7 +12,7 @@ THRESHOLDS = {"y": [2.0, 6.0]}
 
 def described(ds, name="y"):
     """Return what is said about one element; JSON without any number that is not finite."""
-    return json.loads(json.dumps(summarise(ds), allow_nan=False))["outputs"][name]
+    return json.loads(json.dumps(summarised(ds), allow_nan=False))["outputs"][name]
 
 
 def test_moments_quantiles_and_shares_of_a_plain_sample():
@@ -40,7 +39,7 @@ def test_replicates_of_a_plain_sample_are_just_rows():
 
 def test_saltelli_is_described_by_its_independent_rows_and_counted_by_all():
     ds = linear("saltelli", samples=32, replicates=4, settings={"fail_above": 0.9})
-    found = summarise(ds)
+    found = summarised(ds)
     ends = ds.isel(sample=np.isin(ds["block"], [0, 5]))
     assert found["samples"] == 32 * 4 * 6 and found["rows_used"] == 32 * 4 * 2
     assert found["outputs"]["y"]["mean"] == pytest.approx(float(ends["y"].mean()))
@@ -52,7 +51,7 @@ def test_saltelli_is_described_by_its_independent_rows_and_counted_by_all():
 @pytest.mark.parametrize("method", ["latin-hypercube", "sobol", "halton", "saltelli"])
 def test_designs_that_are_not_independent_need_replicates(method):
     analysis = {"thresholds": {"y": 6.0}}
-    alone = summarise(linear(method, samples=64, analysis=analysis))
+    alone = summarised(linear(method, samples=64, analysis=analysis))
     (note,) = alone["notes"]
     assert method in note and "replicates" in note
     entry = alone["outputs"]["y"]
@@ -60,7 +59,7 @@ def test_designs_that_are_not_independent_need_replicates(method):
     assert entry["quantiles"]["0.5"]["low"] is None
     assert entry["thresholds"]["6.0"]["above"]["low"] is None
 
-    several = summarise(linear(method, samples=64, replicates=8, analysis=analysis))
+    several = summarised(linear(method, samples=64, replicates=8, analysis=analysis))
     assert several["notes"] == []
     entry = several["outputs"]["y"]
     assert entry["mean_interval"]["low"] < 5 < entry["mean_interval"]["high"]
@@ -204,7 +203,7 @@ def test_tolerance_bound_on_never_or_censored_rows():
 
 def test_every_kind_of_output_is_described_by_element():
     ds = kinds(samples=300, analysis={"thresholds": {"angle": 0.5}})
-    found = summarise(ds)
+    found = summarised(ds)
     lives = [
         f"life[side={side},depth={depth}]" for side in ("left", "right") for depth in (0.5, 1.5)
     ]
@@ -233,22 +232,22 @@ def test_thresholds_of_an_angle_are_about_its_magnitude():
 
 def test_shares_of_regimes_have_intervals_and_sum_to_one():
     ds = kinds(samples=100)
-    regimes = summarise(ds)["regime"]
+    regimes = summarised(ds)["regime"]
     fast = (ds["x1"].values > 0.5).sum()
     assert regimes["fast"]["count"] == fast and regimes["slow"]["count"] == 100 - fast
     assert regimes["fast"]["share"] == fast / 100
     assert regimes["fast"]["low"] < fast / 100 < regimes["fast"]["high"]
-    assert summarise(linear())["regime"] == {}
+    assert summarised(linear())["regime"] == {}
     # Rows that failed have no regime and no part in the shares.
     ds["regime"][:10] = -1
-    part = summarise(with_status(ds, slice(10), Status.RAISED))["regime"]
+    part = summarised(with_status(ds, slice(10), Status.RAISED))["regime"]
     assert part["fast"]["count"] + part["slow"]["count"] == 90
     assert part["fast"]["share"] + part["slow"]["share"] == pytest.approx(1)
 
 
 def test_outputs_that_the_study_names_are_shown():
     ds = kinds(analysis={"outputs": ["angle"], "quantiles": [0.5]})
-    assert list(summarise(ds)["outputs"]) == ["angle"]
+    assert list(summarised(ds)["outputs"]) == ["angle"]
     table = uq.summary(kinds(analysis={"quantiles": [0.5]}))
     assert table.index[0] == "work[side=left]"
     expected = ["units", "mean", "mean_low", "mean_high", "sd", "sd_low", "sd_high", "tail_k"]
@@ -270,7 +269,7 @@ def test_the_table_says_what_the_command_prints():
         tolerance={"coverage": 0.95, "confidence": 0.95},
         thresholds={"life": [30.5, 1e6]},
     )
-    table, found = uq.summary(ds), summarise(ds)["outputs"]
+    table, found = uq.summary(ds), summarised(ds)["outputs"]
     assert list(table.columns[-12:]) == [
         f"P({sign}{threshold}){end}"
         for threshold in ("30.5", "1000000.0")
@@ -302,11 +301,11 @@ def test_the_table_says_what_the_command_prints():
 def test_describing_does_not_change_the_result():
     ds = kinds(samples=64)
     before = ds.copy(deep=True)
-    summarise(ds)
+    summarised(ds)
     assert ds.identical(before)
 
 
 def test_mixed_rows_of_either_kind_are_not_independent():
     ds = linear("saltelli", samples=64, second_order=True)
-    assert summarise(ds)["samples"] == 64 * (2 + 2 * 4)
-    assert summarise(ds)["rows_used"] == 128
+    assert summarised(ds)["samples"] == 64 * (2 + 2 * 4)
+    assert summarised(ds)["rows_used"] == 128

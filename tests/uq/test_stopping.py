@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from computed import as_text, computed, study_of, with_seed
+from computed import as_text, computed, study_of, summarised, with_seed
 from until_studies import study, tables
 
 from uq import store
-from uq.analysis.statistics import summarise
 from uq.errors import InputError
 from uq.rows import stopping
 from uq.rows.results import open_result
@@ -52,7 +51,7 @@ def test_a_budget_that_is_spent_is_said():
     of = study(1e-6, samples=100)
     ds = runner.compute(of, workers=0)
     assert ds.attrs["samples"] == 100
-    (note,) = summarise(ds)["notes"]
+    (note,) = summarised(ds)["notes"]
     assert "budget of 100 samples is spent" in note and "1e-06 was asked for" in note
 
 
@@ -60,7 +59,7 @@ def test_a_stopped_run_is_complete(folder):
     of = study(0.2)
     first = runner.run(of, "out.nc")
     assert first.attrs["samples"] < of.design.samples
-    (note,) = summarise(first)["notes"]
+    (note,) = summarised(first)["notes"]
     assert "mean of y is" in note and "99.38% at each look" in note
     again = runner.run(of, "out.nc", progress=pytest.fail)
     assert again.identical(first)
@@ -128,7 +127,7 @@ def test_extending_gives_as_many_as_are_asked_for_whatever_is_known(folder):
     stopped = runner.run(of, "out.nc").attrs["samples"]
     assert stopped == 500
     assert extending.extend(folder / "out.nc", 700).attrs["samples"] == 700
-    (note,) = summarise(open_result(folder / "out.nc"))["notes"]
+    (note,) = summarised(open_result(folder / "out.nc"))["notes"]
     assert "with the first 500 of 700 samples" in note
     again = runner.run(of, "out.nc", progress=pytest.fail)
     assert again.attrs["samples"] == 700

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from computed import asking, linear, with_output, with_status
+from computed import asking, linear, summarised, with_output, with_status
 
-from uq.analysis.statistics import summarise
 from uq.contract import Status
 from uq.store.files import write_result
 
@@ -34,7 +33,7 @@ def test_a_summary_names_units_sides_and_rows_that_failed(told):
     ds = asking(ds, outputs=["life"], thresholds={"life": [25200.0]})
     lines = told("summary", ds)
     assert cells(lines, "life [s]") == ["meaning of life"]
-    sides = summarise(ds)["outputs"]["life"]["thresholds"]["25200.0"]
+    sides = summarised(ds)["outputs"]["life"]["thresholds"]["25200.0"]
     assert cells(lines, "P(> 25200)")[0] == f"{sides['above']['value']:.5g}"
     assert cells(lines, "P(< 25200)")[0] == f"{sides['below']['value']:.5g}"
     assert cells(lines, "failed") == ["2", "rows"] and cells(lines, "raised") == ["2"]

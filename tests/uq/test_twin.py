@@ -4,12 +4,11 @@ import json
 
 import numpy as np
 import pytest
-from computed import UNIFORM, as_text, computed, study_of, with_seed
+from computed import UNIFORM, as_text, computed, study_of, summarised, with_seed
 from scipy.stats import norm
 
 import uq as api
 from uq.analysis.control_variate import controlled_share
-from uq.analysis.statistics import summarise
 from uq.analysis.twin import two_fidelities, with_twin
 from uq.errors import InputError
 from uq.study.definition import study_from_text
@@ -74,7 +73,7 @@ def test_a_good_twin_sharpens_every_estimate(replicates):
 
 def test_plain_estimates_are_those_of_the_summary():
     ds = paired(twin="near")
-    table, entry = two_fidelities(ds, PAIRED), summarise(ds)["outputs"]["y"]
+    table, entry = two_fidelities(ds, PAIRED), summarised(ds)["outputs"]["y"]
     assert tuple(table.loc[("y", "mean")][["plain", "plain_low", "plain_high"]]) == (
         entry["mean"],
         *entry["mean_interval"].values(),

@@ -6,11 +6,19 @@ from functools import cache
 import numpy as np
 import pytest
 from asked_indices import sensitivities
-from computed import UNIFORM, asking, computed, linear, study_of, with_output, with_status
+from computed import (
+    UNIFORM,
+    asking,
+    computed,
+    linear,
+    study_of,
+    summarised,
+    with_output,
+    with_status,
+)
 
 import uq
 from uq.analysis.convergence import enough, running_estimates
-from uq.analysis.statistics import summarise
 from uq.analysis.twin import with_twin
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
@@ -119,7 +127,7 @@ def test_sensitivity(design, method, damage):
 @pytest.mark.parametrize("design", DRAWN)
 def test_summary_survival_fits_and_regimes(design, damage):
     ds = damaged(result(design), damage)
-    found = strict(summarise(ds, fits=True))
+    found = strict(summarised(ds, fits=True))
     y, life, flat = (found["outputs"][name] for name in ("y", "life", "flat"))
     curve = uq.survival(ds, "life")
     compared = uq.regimes(ds)
@@ -167,7 +175,7 @@ def test_running_estimates_and_whether_it_is_enough(design, damage):
         assert damage == "interrupted" and DESIGNS[design].crossed and "missing" in str(refusal)
         return
     last = table[table["samples"] == 256].set_index(["output", "estimate"])["value"]
-    found = summarise(ds)["outputs"]
+    found = summarised(ds)["outputs"]
     for name in ("y", "flat", "life"):
         for label, value in (
             ("mean", found[name]["mean"]),

@@ -1,7 +1,10 @@
 """Numbers in sentences and tables are no more exact than they are known."""
 
+from math import inf, nan
+
 import pytest
 
+from uq.estimate import Estimate
 from uq.methods.indices import S1, ST
 from uq.methods.morris import MU, MU_STAR
 from uq.study.file import LAW
@@ -13,7 +16,6 @@ from uq.wording import (
     known,
     law,
     percent,
-    variance_between,
 )
 
 
@@ -25,13 +27,13 @@ from uq.wording import (
         (-0.0425, -0.0457, 0.0001, ("-0.04", "-0.05 to 0.00")),
         (-1.03, -1.21, -0.88, ("-1.0", "-1.2 to -0.9")),
         (1.42e-4, 1.39e-4, 1.45e-4, ("0.000142", "0.000139 to 0.000145")),
-        (0.012345, None, None, ("0.0123", "")),
+        (0.012345, nan, nan, ("0.0123", "")),
         (2.0, 2.0, 2.0, ("2", "2 to 2")),
-        (None, 1.0, 2.0, ("-", "1 to 2")),
+        (nan, 1.0, 2.0, ("-", "1 to 2")),
     ],
 )
 def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, told):
-    assert brief({"value": value, "low": low, "high": high}) == told
+    assert brief(Estimate(value, low, high)) == told
 
 
 def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
@@ -64,26 +66,26 @@ def test_times_in_words(seconds, words):
 
 
 @pytest.mark.parametrize(
-    ("entry", "told"),
+    ("estimate", "told"),
     [
-        ({"low": 3600.0, "high": 7200.0}, "1 to 2"),
-        ({"low": 3600.0, "high": None, "high_never": True}, "1 to never"),
-        ({"low": 3600.0, "high": None, "high_censored": True}, "1 to beyond the horizon"),
-        ({"low": None, "high": None, "low_never": True, "high_never": True}, ""),
-        ({"low": None, "high": None, "never": True}, ""),
-        ({"low": None, "high": 7200.0}, "- to 2"),
-        ({}, ""),
+        (Estimate(nan, 3600.0, 7200.0), "1 to 2"),
+        (Estimate(nan, 3600.0, inf), "1 to never"),
+        (Estimate(nan, 3600.0, inf, beyond=("high",)), "1 to beyond the horizon"),
+        (Estimate(nan, inf, inf), ""),
+        (Estimate(inf), ""),
+        (Estimate(nan, nan, 7200.0), "- to 2"),
+        (Estimate(), ""),
     ],
 )
-def test_each_end_of_an_interval_is_a_number_or_says_why_not(entry, told):
-    assert interval(entry, per=3600.0) == told
+def test_each_end_of_an_interval_is_a_number_or_says_why_not(estimate, told):
+    assert interval(estimate, per=3600.0) == told
 
 
 def test_a_number_that_is_none_says_why():
-    assert known({"value": 7200.0}, per=3600.0) == "2"
-    assert known({"value": None, "never": True}) == "never"
-    assert known({"value": None, "censored": True}) == "beyond the horizon"
-    assert known({"value": None, "low_never": True}) == "-"
+    assert known(Estimate(7200.0), per=3600.0) == "2"
+    assert known(Estimate(inf)) == "never"
+    assert known(Estimate(inf, beyond=("value",))) == "beyond the horizon"
+    assert known(Estimate(nan, inf)) == "-"
 
 
 def test_effects_have_digits_whatever_their_unit():
@@ -98,11 +100,6 @@ def test_a_law_is_told_by_its_arguments_alone():
     assert law(LAW.validate_python(drawn)) == "empirical(values = [1.0, 2.0])"
 
 
-def test_less_variance_between_regimes_than_by_chance_is_none():
-    assert variance_between({"value": -0.00028}) == "none seen"
-    assert variance_between({"value": 0.038428}) == "0.038428"
-
-
 def test_what_is_estimated_has_no_idle_digits():
     assert estimated("P(>0.20943951023931953)") == "P(> 0.20944)"
     assert estimated("P(<86400.0)", 3600.0) == "P(< 24)"
@@ -110,5 +107,5 @@ def test_what_is_estimated_has_no_idle_digits():
 
 
 def test_a_life_that_never_ends_at_the_low_end_has_no_interval():
-    assert interval({"low": None, "low_never": True, "high": None}) == ""
-    assert interval({"low": 2.0, "high": None, "high_never": True}) == "2 to never"
+    assert interval(Estimate(low=inf)) == ""
+    assert interval(Estimate(low=2.0, high=inf)) == "2 to never"

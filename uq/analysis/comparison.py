@@ -1,17 +1,20 @@
 """Two studies of one model: what was changed, and how far their outputs lie apart."""
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import chain
+from math import isnan
 
-import numpy as np
 import pandas as pd
 import xarray as xr
 
-from uq import json_form, two_samples
-from uq.analysis.b_lives import B_LIVES
-from uq.analysis.input_changes import changes, only_change, spread
-from uq.analysis.pairing import MEAN, SD, SHARE, Estimator, Pair, Sample, quantile
-from uq.analysis.statistics import event, summarise
+from uq import two_samples
+from uq.analysis import estimators
+from uq.analysis.estimators import Sample
+from uq.analysis.input_changes import Change, Spread, changes, only_change, spread
+from uq.analysis.pairing import Pair
+from uq.analysis.statistics.statistic import COMPARED, Statistic
+from uq.analysis.summary import Summary, summarise
 from uq.contract import Status
 from uq.errors import InputError
 from uq.estimate import NOTHING, Estimate
@@ -26,8 +29,86 @@ from uq.rows.elements import (
 )
 from uq.study.file import AnalysisTable
 
-Entry = dict[str, Any]
-_ENDS = ("value", "low", "high")
+
+@dataclass(frozen=True)
+class Side:
+    """One of two results: its title, and its summary of what either study asks for."""
+
+    title: str
+    summary: Summary
+
+
+@dataclass(frozen=True)
+class OnlyChange:
+    """The one input that two studies have different, with its spread in each."""
+
+    name: str
+    units: str
+    first: Spread
+    second: Spread
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A statistic of two results.
+
+    Attributes
+    ----------
+    first, second : Statistic
+    difference : Estimate
+        The second less the first.
+    identical : bool
+        Whether the rows are pairs, and both of each say the same: then there is no interval.
+    ratio : Estimate, optional
+        The second over the first, of a scale.
+    """
+
+    first: Statistic
+    second: Statistic
+    difference: Estimate
+    identical: bool = False
+    ratio: Estimate | None = None
+
+
+@dataclass(frozen=True)
+class ComparedOutput:
+    """An element of an output: name in the table of statistics -> what is compared of it."""
+
+    units: str
+    parts: Mapping[str, tuple[Compared, ...]]
+
+    @property
+    def statistics(self) -> tuple[Compared, ...]:
+        """All of them in order."""
+        return tuple(chain.from_iterable(self.parts.values()))
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two results held against each other.
+
+    Attributes
+    ----------
+    first, second : Side
+    changed : list of Change
+        What the studies have different.
+    only : OnlyChange, optional
+        The one input that differs, if it is the only thing.
+    pairing : str
+        ``rows``, ``replicates``, ``strangers`` or ``unknown``.
+    regimes : dict of str to Compared
+    outputs : dict of str to ComparedOutput
+    notes : list of str
+    """
+
+    first: Side
+    second: Side
+    changed: list[Change]
+    only: OnlyChange | None
+    pairing: str
+    regimes: Mapping[str, Compared]
+    outputs: Mapping[str, ComparedOutput]
+    notes: list[str]
 
 
 def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
@@ -52,46 +133,20 @@ def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
         When the two are not of one model, or have nothing to compare.
     """
     found = comparison(first, second)
-    entries = {("regime", label): entry for label, entry in found["regime"].items()}
-    for name, output in found["outputs"].items():
-        entries |= {(name, label): entry for label, entry in estimates_of(output)}
+    pairs = {("regime", label): one for label, one in found.regimes.items()}
+    for name, output in found.outputs.items():
+        pairs |= {(name, one.first.label): one for one in output.statistics}
     lines = [
-        [entry["a"]["value"], entry["b"]["value"], *(entry["difference"][end] for end in _ENDS)]
-        for entry in entries.values()
+        [*(side.estimate.finite.value for side in (one.first, one.second)), *one.difference.numbers]
+        for one in pairs.values()
     ]
     columns = ["first", "second", "difference", "low", "high"]
-    index = pd.MultiIndex.from_tuples(list(entries), names=["output", "estimate"])
+    index = pd.MultiIndex.from_tuples(list(pairs), names=["output", "estimate"])
     return pd.DataFrame(lines, index, columns, dtype=float)
 
 
-def estimates_of(output: Mapping[str, Any]) -> Iterator[tuple[str, Entry]]:
-    """Yield label and entry of every estimate of one output of `comparison`."""
-    yield "mean", output["mean"]
-    yield "sd", output["sd"]
-    for probability, entry in output["quantiles"].items():
-        yield f"quantile {probability}", entry
-    yield from output["b_lives"].items()
-    for threshold, sides in output["thresholds"].items():
-        yield f"P(>{threshold})", sides["above"]
-        yield f"P(<{threshold})", sides["below"]
-
-
-def comparison(first: xr.Dataset, second: xr.Dataset) -> dict[str, Any]:
-    """Return what `compare` finds, and what was changed, in plain data, ready for JSON.
-
-    Returns
-    -------
-    dict
-        ``a`` and ``b``: title, samples, rows_used and status of each. ``changed``: kind, name, a
-        and b of each entry that differs. ``only``: the one input that differs, if it is the only
-        thing: name, units, and mean and sd of each; else None. ``pairing``: ``rows``,
-        ``replicates``, ``strangers`` or ``unknown``. ``regime``: label -> estimate; ``outputs``:
-        element -> ``mean``, ``sd``, ``quantiles``, ``b_lives``, ``thresholds``, where an estimate
-        is ``a`` and ``b``, as `uq.analysis.statistics.summarise` has them, and ``difference``:
-        ``value``, ``low``, ``high`` of b less a, and ``identical`` where the rows are pairs and
-        both of each say the same: then there is no interval; that of sd also has ``ratio``.
-        ``notes``: sentences.
-    """
+def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
+    """Return what `compare` finds, and what was changed."""
     _refuse(first, second)
     results = (first, second)
     analyses = [analysis_of(ds) for ds in results]
@@ -102,29 +157,21 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> dict[str, Any]:
     elements = [
         {element.name: element for element in elements_of(rows, outputs)} for rows in pair.rows
     ]
-    common = [name for name in elements[0] if name in elements[1]]
     changed = changes(*results)
-    name = only_change(changed)
-    return {
-        **{
-            key: {"title": str(ds.attrs["title"])}
-            | {part: one[part] for part in ("samples", "rows_used", "status")}
-            for key, ds, one in zip("ab", results, found, strict=True)
+    return Comparison(
+        Side(str(first.attrs["title"]), found[0]),
+        Side(str(second.attrs["title"]), found[1]),
+        changed,
+        _only(results, only_change(changed)),
+        pair.kinship.name.lower().removesuffix("_imported"),
+        dict(_regimes(pair, found)),
+        {
+            name: _output(pair, [one[name] for one in elements], found)
+            for name in elements[0]
+            if name in elements[1]
         },
-        "changed": [
-            {"kind": one.kind, "name": one.name, "a": one.first, "b": one.second} for one in changed
-        ],
-        "only": None if name is None else _only(results, name),
-        "pairing": pair.kinship.name.lower().removesuffix("_imported"),
-        "regime": dict(_regimes(pair, [one["regime"] for one in found])),
-        "outputs": {
-            name: _compared(
-                pair, [one[name] for one in elements], [one["outputs"][name] for one in found]
-            )
-            for name in common
-        },
-        "notes": list(_notes(pair, found, elements)),
-    }
+        list(_notes(pair, found, elements)),
+    )
 
 
 def _refuse(first: xr.Dataset, second: xr.Dataset) -> None:
@@ -170,18 +217,15 @@ def _asked(analyses: list[AnalysisTable], outputs: list[str]) -> AnalysisTable:
     return AnalysisTable().model_copy(update=asked)
 
 
-def _only(results: tuple[xr.Dataset, ...], name: str) -> Entry:
-    spreads = [spread(ds, name) for ds in results]
-    means, sds = zip(*spreads, strict=True)
-    return {
-        "name": name,
-        "units": results[0][name].attrs["units"],
-        "mean": dict(zip("ab", means, strict=True)),
-        "sd": dict(zip("ab", sds, strict=True)),
-    }
+def _only(results: tuple[xr.Dataset, ...], name: str | None) -> OnlyChange | None:
+    if name is None:
+        return None
+    units = str(results[0][name].attrs["units"])
+    return OnlyChange(name, units, *(spread(ds, name) for ds in results))
 
 
-def _regimes(pair: Pair, shares: list[dict[str, Entry]]) -> Iterator[tuple[str, Entry]]:
+def _regimes(pair: Pair, found: list[Summary]) -> Iterator[tuple[str, Compared]]:
+    shares = [one.regimes for one in found]
     if not all(shares):
         return
     codes = [rows["regime"].values for rows in pair.rows]
@@ -196,130 +240,59 @@ def _regimes(pair: Pair, shares: list[dict[str, Entry]]) -> Iterator[tuple[str, 
                 Sample(mask, (code == number[label]).astype(float))
                 for mask, code, number in zip(kept, codes, numbers, strict=True)
             ]
-            entries = [{**one[label], "value": one[label]["share"]} for one in shares]
-            yield label, _estimate(pair, SHARE, samples, entries)
+            both = [replace(one[label], estimator=estimators.share()) for one in shares]
+            yield label, _compared(pair, both, samples, samples)
 
 
-def _compared(pair: Pair, elements: list[Element], entries: list[Entry]) -> Entry:
-    present = [
-        Sample(element.present, np.where(element.censored, np.inf, element.values))
-        for element in elements
-    ]
-    whole = _whole(elements)
-    means = [{"value": entry["mean"], **entry["mean_interval"]} for entry in entries]
-
-    def each(part: str, estimator_of: Callable[[str], Estimator]) -> Entry:
-        return {
-            key: _estimate(
-                pair, estimator_of(key), present, [entry[part][key] for entry in entries], whole
-            )
-            for key in entries[0][part]
-        }
-
-    return {
-        "units": elements[0].units,
-        "mean": _without_refused(_estimate(pair, MEAN, present, means), "mean", entries),
-        "sd": _without_refused(_sds(pair, present, entries), "sd", entries),
-        "quantiles": each("quantiles", lambda probability: quantile(float(probability))),
-        "b_lives": each("b_lives", lambda name: quantile(B_LIVES[name])),
-        "thresholds": {
-            threshold: _sides(
-                pair, elements, float(threshold), [one["thresholds"][threshold] for one in entries]
-            )
-            for threshold in entries[0]["thresholds"]
-        },
+def _output(pair: Pair, elements: list[Element], found: list[Summary]) -> ComparedOutput:
+    described = [one.outputs[elements[0].name] for one in found]
+    parts = {
+        name: tuple(
+            _of_elements(pair, elements, [one, other])
+            for one in statistics
+            if one.is_read_by(COMPARED) and (other := described[1].find(*one.key)) is not None
+        )
+        for name, statistics in described[0].parts.items()
     }
+    return ComparedOutput(elements[0].units, parts)
 
 
-def _without_refused(found: Entry, moment: str, entries: list[Entry]) -> Entry:
-    """Take out the intervals of what the tail of one of the two forbids."""
-    if any(f"{moment}_interval" in entry["reasons"] for entry in entries):
-        for key in found.keys() - {"a", "b"}:
-            found[key] = found[key] | {"low": None, "high": None}
-    return found
+def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> Compared:
+    """Compare a statistic of the same element of two results."""
+    estimator = both[0].estimator
+    samples = [] if estimator is None else [estimator.sample(element) for element in elements]
+    known = [one for one in samples if one is not None]
+    told_by_rows = estimator is not None and estimator.counts_hits and len(known) == 2
+    rows = known if told_by_rows else [estimators.whole(element) for element in elements]
+    return _compared(pair, [one.best for one in both], known, rows)
 
 
-def _sds(pair: Pair, samples: list[Sample], entries: list[Entry]) -> Entry:
-    sds = [{"value": entry["sd"], **entry["sd_interval"]} for entry in entries]
-    sides = dict(zip("ab", sds, strict=True))
-    if any(entry["sd"] is None for entry in entries):
-        nothing = dict.fromkeys(_ENDS)
-        return {**sides, "difference": nothing, "ratio": nothing}
-    known = [_known(entry) for entry in sds]
-    if pair.identical(samples):
-        same = {"low": None, "high": None, "identical": True}
-        return {**sides, "difference": {"value": 0.0} | same, "ratio": {"value": 1.0} | same}
-    return {
-        **sides,
-        "difference": json_form.numbers(pair.difference(SD, samples, known)),
-        "ratio": json_form.numbers(pair.ratio(samples, known)),
-    }
-
-
-def _sides(pair: Pair, elements: list[Element], threshold: float, entries: list[Entry]) -> Entry:
-    found = {}
-    events = [event(element, threshold) for element in elements]
-    for i, side in enumerate(("above", "below")):
-        samples = [
-            Sample(~element.failed, sides[i].astype(float))
-            for element, sides in zip(elements, events, strict=True)
-            if sides is not None
-        ]
-        told = [_side(entry, side) for entry in entries]
-        rows = _whole(elements) if len(samples) < len(elements) else samples
-        found[side] = _estimate(pair, SHARE, samples, told, rows)
-    return found
-
-
-def _side(entry: Entry, side: str) -> Entry:
-    """Return the share on one side of a threshold, after Kaplan and Meier where that is all."""
-    if "kaplan_meier" not in entry:
-        return dict(entry[side])
-    found = entry["kaplan_meier"]
-    return found[side] | {"assumes": found["assumes"]}
-
-
-def _whole(elements: list[Element]) -> list[Sample]:
-    """Return all that is known of each row: its value, and whether it is only a lower bound."""
-    return [
-        Sample(element.present, np.column_stack([element.values, element.censored]))
-        for element in elements
-    ]
-
-
-def _estimate(
-    pair: Pair,
-    estimator: Estimator,
-    samples: list[Sample],
-    entries: list[Entry],
-    rows: list[Sample] | None = None,
-) -> Entry:
-    """Compare two estimates; `rows` say whether the pairs are identical, if not the samples."""
-    known = [_known(entry) for entry in entries]
-    if pair.identical(samples if rows is None else rows) and not np.isnan(known[0].value):
-        difference = {"value": 0.0, "low": None, "high": None, "identical": True}
-        return {**dict(zip("ab", entries, strict=True)), "difference": difference}
-    if any(np.isnan(one.value) for one in known):
-        apart = NOTHING
-    elif any("assumes" in entry for entry in entries):  # not a plain quantile of the rows
+def _compared(
+    pair: Pair, both: list[Statistic], samples: list[Sample], rows: list[Sample]
+) -> Compared:
+    """Compare two statistics; `rows` say whether the pairs are identical."""
+    estimator = both[0].estimator
+    is_scale = estimator is not None and estimator.is_scale
+    known = [one.estimate.finite for one in both]
+    if any(isnan(one.value) for one in known):
+        return Compared(both[0], both[1], NOTHING, ratio=NOTHING if is_scale else None)
+    if pair.identical(rows):
+        return Compared(both[0], both[1], Estimate(0.0), True, Estimate(1.0) if is_scale else None)
+    if estimator is None or any(one.estimate.assumes for one in both):
         apart = two_samples.difference(known[0], known[1], pair.unpaired)
     else:
         apart = pair.difference(estimator, samples, known)
-    return {**dict(zip("ab", entries, strict=True)), "difference": json_form.numbers(apart)}
+    times = pair.ratio(samples, known) if is_scale else None
+    if any(one.reason for one in known):  # what has no interval has none for its difference
+        apart, times = Estimate(apart.value), times and Estimate(times.value)
+    return Compared(both[0], both[1], apart.finite, ratio=times and times.finite)
 
 
-def _known(entry: Entry) -> Estimate:
-    value, low, high = (np.nan if entry[end] is None else entry[end] for end in _ENDS)
-    return Estimate(value, low, high)
-
-
-def _notes(
-    pair: Pair, found: list[dict[str, Any]], elements: list[dict[str, Element]]
-) -> Iterator[str]:
+def _notes(pair: Pair, found: list[Summary], elements: list[dict[str, Element]]) -> Iterator[str]:
     yield pair.kinship.value
     for which, one in zip("AB", found, strict=True):
-        yield from (f"{which}: {note}" for note in one["notes"])
-    if any(output["failed"] for one in found for output in one["outputs"].values()):
+        yield from (f"{which}: {note}" for note in one.notes)
+    if any(one.most_failed for one in found):
         yield "differences are of the rows that did not fail"
     of_a, of_b = elements
     for which, mine, other in (("A", of_a, of_b), ("B", of_b, of_a)):

@@ -1,14 +1,14 @@
 """Is it enough? Estimates as the rows came in, and the other errors beside that of sampling."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.accuracy import error_name, stated_error
-from uq.analysis.statistics import summarise
+from uq.analysis.stated_error import error_name, stated_error
+from uq.analysis.statistics.statistic import RUNNING
+from uq.analysis.summary import summarise
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.sensitivities import sensitivities
@@ -83,17 +83,16 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
         by if they all lay on one side; ``warning``, not empty where `own` is the larger: then more
         rows do not help.
     """
-    found = summarise(ds)["outputs"]
+    found = summarise(ds).outputs
     lines = {}
     for element in named_elements(ds, output) if output else elements_of(ds, list(_own(ds))):
         if element.name not in found:
             continue
-        entry = found[element.name]
-        label, interval = "mean", entry["mean_interval"]
-        if entry["mean"] is None or "mean_interval" in entry["reasons"]:
-            label, interval = "median", entry["quantiles"].get("0.5", {"low": None, "high": None})
-        known = None not in (interval["low"], interval["high"])
-        sampling = (interval["high"] - interval["low"]) / 2 if known else np.nan
+        label, one = "mean", found[element.name].find("mean")
+        if one is None or np.isnan(one.estimate.value) or one.estimate.reason:
+            label, one = "median", found[element.name].find("quantiles", "0.5")
+        known = one is not None and one.estimate.has_interval
+        sampling = (one.estimate.high - one.estimate.low) / 2 if one and known else np.nan
         own = _own_error(ds, element)
         lines[element.name] = {
             "estimate": label,
@@ -144,7 +143,7 @@ def _sizes(ds: xr.Dataset) -> list[int]:
     return sizes[::-1]
 
 
-Estimate = tuple[float, float, float]
+Numbers = tuple[float, float, float]
 
 
 def _targets(ds: xr.Dataset) -> list[str]:
@@ -160,23 +159,13 @@ def _method(ds: xr.Dataset) -> str | None:
     return name if name and groups >= METHODS[name].least else None
 
 
-def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[tuple[str, str, Estimate]]:
-    for name, entry in summarise(ds)["outputs"].items():
-        yield name, "mean", _numbers({"value": entry["mean"], **entry["mean_interval"]})
-        for probability, found in entry["quantiles"].items():
-            yield name, f"quantile {probability}", _numbers(found)
-        for threshold, found in entry["thresholds"].items():
-            yield name, f"P(>{threshold})", _numbers(found["above"])
-            yield name, f"P(<{threshold})", _numbers(found["below"])
+def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[tuple[str, str, Numbers]]:
+    for name, output in summarise(ds).outputs.items():
+        for one in output.statistics:
+            if one.is_read_by(RUNNING):
+                yield name, one.label, one.estimate.finite.numbers
     if method := _method(ds):
         for name, found in sensitivities(ds, method, targets).targets.items():
             for kind, values in found.kinds().items():
                 for parameter, index in values.items():
                     yield name, f"{kind.key} {parameter}", index.numbers
-
-
-def _numbers(entry: dict[str, Any]) -> Estimate:
-    value, low, high = (
-        np.nan if entry.get(end) is None else float(entry[end]) for end in ("value", "low", "high")
-    )
-    return value, low, high

@@ -1,13 +1,12 @@
 """A result, and what is computed of it once, however many tables and figures show it."""
 
 from functools import cached_property
-from typing import Any
 
 import pandas as pd
 import xarray as xr
 
 from uq.analysis.convergence import running_estimates
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import Summary, summarise
 from uq.errors import InputError
 from uq.indices.sensitivities import Sensitivities, sensitivities
 from uq.rows.elements import elements_of, independent_rows, output_names
@@ -41,8 +40,8 @@ class Findings:
         return frozenset(names) - frozenset(there)
 
     @cached_property
-    def summary(self) -> dict[str, Any]:
-        """What `uq.analysis.statistics.summarise` returns."""
+    def summary(self) -> Summary:
+        """What `uq.analysis.summary.summarise` returns."""
         return summarise(self.ds)
 
     @property

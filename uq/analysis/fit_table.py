@@ -6,8 +6,8 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.b_lives import B_LIVES
 from uq.analysis.life_fit import fitted_laws
+from uq.analysis.life_quantiles import B_LIVES
 
 _PARAMETERS = ("shape", "scale", "median", "sigma")
 _COLUMNS = [

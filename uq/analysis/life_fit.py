@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from uq.analysis.b_lives import B_LIVES
+from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.location_scale import FAMILIES, Family, anderson_darling, fit
 from uq.intervals import CONFIDENCE
 from uq.order_statistics import is_within

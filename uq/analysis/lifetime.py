@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from uq.analysis.failed_rows import HIGH, LOW, outer, with_failed_at
+from uq.analysis.failed_rows import outer, with_failed_at
 from uq.analysis.kaplan_meier import Outliving, outliving
 from uq.analysis.survival_band import simultaneous_band
 from uq.exact_shares import are_few, exact_interval
@@ -108,8 +108,8 @@ _VARIABLES = {
 
 
 _WITH_FAILED = {
-    LOW: "lower end of the pointwise 95 % interval if the failed rows had ended at once",
-    HIGH: "upper end of the pointwise 95 % interval if the failed rows never ended",
+    "failed_low": "lower end of the pointwise 95 % interval if the failed rows had ended at once",
+    "failed_high": "upper end of the pointwise 95 % interval if the failed rows never ended",
 }
 
 
@@ -118,10 +118,10 @@ def _failed_band(
 ) -> dict[str, Floats]:
     """Return the band with the failed rows at worst and at best; NaN where nothing can be said."""
     ends = {}
-    for key, life, end in ((LOW, 0.0, "low"), (HIGH, np.inf, "high")):
+    for end, life in (("low", 0.0), ("high", np.inf)):
         found = curve(with_failed_at(element, life), time, replicate)
         alone = np.isnan(found["low"]).all() and np.isnan(found["high"]).all()
-        ends[key] = outer(key, found["survival" if alone else end], plain[end])
+        ends[f"failed_{end}"] = outer(end, found["survival" if alone else end], plain[end])
     return ends
 
 

@@ -1,13 +1,15 @@
 """What a result says, as a table to look at and to compute with."""
 
-from collections.abc import Mapping
+from math import inf, isfinite, nan
 from typing import Any
 
-import numpy as np
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.statistics import COUNTS, summarise
+from uq.analysis.statistics.statistic import COLUMNS, Statistic
+from uq.analysis.statistics.table import COLUMN_ORDER
+from uq.analysis.summary import Described, summarise
+from uq.estimate import Estimate
 
 
 def summary(ds: xr.Dataset) -> pd.DataFrame:
@@ -38,40 +40,34 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     >>> bool(line["mean_low"] < 3.5 < line["mean_high"])  # the mean is known
     True
     """
-    lines = {name: _line(entry) for name, entry in summarise(ds)["outputs"].items()}
+    lines = {name: _line(one) for name, one in summarise(ds).outputs.items()}
     return pd.DataFrame(list(lines.values()), index=pd.Index(list(lines), name="output"))
 
 
-_FAILED = ("failed_low", "failed_high")
-
-
-def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
+def _line(output: Described) -> dict[str, Any]:
     """Return one line of `summary`."""
-    line = {"units": entry["units"]}
-    line |= _cells("mean", {"value": entry["mean"], **entry["mean_interval"]})
-    line |= _cells("sd", {"value": entry["sd"], **entry["sd_interval"]})
-    line["tail_k"] = entry["tail"]["k"] if entry["tail"] else np.nan
-    for probability, estimate in entry["quantiles"].items():
-        line |= _cells(f"q{probability}", estimate)
-    if bounds := entry["tolerance"]:
-        line |= _cells("tolerance", bounds)
-    line |= {count: entry[count] for count in COUNTS}
-    if "accuracy" in entry:
-        line["accuracy_missed"] = entry["accuracy"]["missed"]
-    for name, life in entry["b_lives"].items():
-        line |= _cells(name, life)
-    for threshold, shares in entry["thresholds"].items():
-        line |= _cells(f"P(>{threshold})", shares["above"])
-        line |= _cells(f"P(<{threshold})", shares["below"])
+    line: dict[str, Any] = {"units": output.units}
+    for name in dict.fromkeys((*COLUMN_ORDER, *output.parts)):
+        for one in output.parts[name]:
+            column = one.label if one.column is None else one.column
+            if column and one.is_read_by(COLUMNS):
+                line |= _cells(column, one)
     return line
 
 
-def _cells(name: str, entry: Mapping[str, Any]) -> dict[str, float]:
-    """Return the numbers of an entry of `summarise`, named after what they say."""
-    cells = {}
-    for key in ("value", "low", "high", *_FAILED, "lower", "upper", "rows_needed"):
-        if key in entry and not (key == "rows_needed" and "value" in entry):
-            never = entry.get("never" if key == "value" else f"{key}_never")
-            number = np.nan if entry[key] is None else entry[key]
-            cells[name if key == "value" else f"{name}_{key}"] = np.inf if never else number
+def _cells(column: str, one: Statistic) -> dict[str, float]:
+    """Return the numbers of a statistic, named after what they say."""
+    if one.kind.is_count:
+        return {column: int(one.estimate.value)}
+    cells = {column: _number(one.estimate, "value")}
+    if one.kind.has_interval:
+        cells |= {f"{column}_{end}": _number(one.estimate, end) for end in ("low", "high")}
+    if one.failed is not None:
+        cells |= {f"{column}_failed_{end}": _number(one.failed, end) for end in ("low", "high")}
     return cells
+
+
+def _number(estimate: Estimate, end: str) -> float:
+    """Return a number, infinity for never, NaN where it is not known."""
+    value = getattr(estimate, end)
+    return value if isfinite(value) or (value == inf and end not in estimate.beyond) else nan

@@ -6,20 +6,18 @@ than from strangers. Where the same numbers are dealt out otherwise nothing is k
 interval must do for the worst.
 """
 
-from collections.abc import Callable
 from enum import Enum
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq import intervals, order_statistics, two_samples
+from uq import intervals, two_samples
+from uq.analysis.estimators import MEAN, SD, Estimator, Sample
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
 from uq.rows.elements import (
     Floats,
-    Mask,
     are_independent,
     independent_rows,
     replicates_of,
@@ -128,52 +126,6 @@ def correlation(first: Floats, second: Floats, shared: Places, is_share: bool) -
     return together / size if size > 0 else 0.0
 
 
-class Sample(NamedTuple):
-    """Numbers of the rows of a result, and which of them take part."""
-
-    kept: Mask
-    numbers: Floats
-
-
-class Estimator(NamedTuple):
-    """What is made of the rows that take part, and how far each of them pulls it off.
-
-    Attributes
-    ----------
-    of : callable
-        Rows -> estimate.
-    pull : callable
-        Rows -> the influence of each, up to a factor; they sum up to nothing.
-    is_share : bool
-    """
-
-    of: Callable[[Floats], float]
-    pull: Callable[[Floats], Floats]
-    is_share: bool = False
-
-
-def _sd(x: Floats) -> float:
-    return float(x.std(ddof=1)) if len(x) > 1 else np.nan
-
-
-MEAN = Estimator(np.mean, lambda x: x - x.mean())
-SHARE = MEAN._replace(is_share=True)
-SD = Estimator(_sd, lambda x: (x - x.mean()) ** 2 - x.var())
-
-
-def quantile(probability: float) -> Estimator:
-    """Return the estimator of a quantile; a row pulls it to its own side, however far it lies."""
-
-    def of(x: Floats) -> float:
-        return order_statistics.quantile(x, probability)
-
-    def pull(x: Floats) -> Floats:
-        below = x <= of(x)
-        return below - below.mean()
-
-    return Estimator(of, pull, is_share=True)
-
-
 class Pair:
     """The independent rows of two results of one model, and how their estimates go together.
 
@@ -202,7 +154,7 @@ class Pair:
             if intervals.is_constant(apart + np.abs(own).max()):  # they differ by rounding alone
                 return Estimate(value)
             return Estimate(value, *intervals.scatter_interval(value, apart))
-        if estimator is SHARE and all(one is None for one in self._replicate):
+        if estimator.counts_hits and all(one is None for one in self._replicate):
             known = [_newcombe(sample) for sample in samples]
         found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
         wide = sum(one.high - one.low for one in known)

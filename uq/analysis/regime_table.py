@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from uq.analysis.regime_split import between_share
-from uq.analysis.statistics import regime_shares
+from uq.analysis.summary import regime_shares
 from uq.errors import InputError
 from uq.indices.targets import Target, category_targets, number_of
 from uq.methods.indices import RefusedError
@@ -57,7 +57,7 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     if "regime" not in ds:
         raise InputError("this result has no regimes to compare")
     rows = independent_rows(ds)
-    shares = {name: one for name, one in regime_shares(rows).items() if one["count"]}
+    shares = {name: one for name, one in regime_shares(rows).items() if one.facts["count"]}
     codes = {name: code for code, name in flags(rows["regime"]) if name in shares}
     members = [rows["regime"].values == code for code in codes.values()]
     inputs = {
@@ -86,13 +86,12 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     }
     for i, name in enumerate(("rows", "mean", "sd")):
         data[name] = (("output", "regime"), np.reshape(moments, (*sizes[:2], 3))[..., i])
-    for name, key in _SHARES.items():
-        data[name] = ("regime", np.array([one[key] for one in shares.values()], dtype=float))
+    estimates = [one.estimate for one in shares.values()]
+    data["count"] = ("regime", np.array([one.facts["count"] for one in shares.values()], float))
+    for name, end in (("share", "value"), ("share_low", "low"), ("share_high", "high")):
+        data[name] = ("regime", np.array([getattr(one, end) for one in estimates]))
     coords = {"regime": list(codes), "parameter": list(inputs), "probability": list(PROBABILITIES)}
     return xr.Dataset(data, {**coords, "output": [target.name for target in found]})
-
-
-_SHARES = {"count": "count", "share": "share", "share_low": "low", "share_high": "high"}
 
 
 def _numbers(rows: xr.Dataset) -> Iterator[Target]:

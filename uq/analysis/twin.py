@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from uq import json_form
 from uq.analysis.control_variate import FEWEST, Controlled, controlled_mean, controlled_share
 from uq.analysis.failed_rows import failed_share_bounds
-from uq.analysis.statistics import event
+from uq.analysis.statistics.thresholds import event
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.exact_shares import FEW
@@ -139,7 +139,7 @@ def _estimates(
         for sign, hits in zip("><", sides, strict=True):
             found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
             plain = Estimate(float(hits[kept].mean()), *share_interval(hits[kept]))
-            lost = failed_share_bounds(hits, element.failed, None)
+            lost = json_form.failed(failed_share_bounds(hits, element.failed, None))
             few = few_hits(int(hits[kept].sum()), int(kept.sum()))
             yield f"P({sign}{threshold!r})", _entry(found, plain) | lost | few
 

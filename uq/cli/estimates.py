@@ -5,6 +5,7 @@ from typing import Any
 
 from uq import json_form
 from uq.cli.printing import console, grid, heading, number, paragraph, print_json
+from uq.estimate import Estimate
 from uq.wording import estimated, failed_interval
 
 _SHOWN = 6  # sizes of each estimate on a terminal
@@ -42,7 +43,7 @@ def twin(result: Path, model: str | None, json: bool) -> None:
         for label, entry in estimates.items():
             if note := entry.get("note"):
                 paragraph(f"{estimated(label)}: {note}", indent=2)
-            if worst := failed_interval(entry):
+            if worst := failed_interval(_failed(entry)):
                 paragraph(f"{estimated(label)}, with failed rows at best and worst: {worst}", 2)
     console.print()
     per_row = 1 + found["cheap_rows"] / found["rows"]
@@ -52,6 +53,12 @@ def twin(result: Path, model: str | None, json: bool) -> None:
         f" {per_row:.3g} of the time of a row",
         indent=0,
     )
+
+
+def _failed(entry: dict[str, Any]) -> Estimate | None:
+    if "failed_low" not in entry:
+        return None
+    return Estimate(low=entry["failed_low"], high=entry["failed_high"])
 
 
 def _interval(entry: dict[str, Any]) -> str:

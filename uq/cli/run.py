@@ -84,7 +84,7 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixe
     if not mixed and (line := made_elsewhere(study, target, ds)):
         print(plain_line(line), file=sys.stderr)
     if not quiet:
-        from uq.analysis.statistics import summarise
+        from uq.analysis.summary import summarise
 
         tables.show_summary(ds, summarise(ds))
         console.print()

@@ -4,59 +4,56 @@ from collections.abc import Iterator, Mapping
 
 import xarray as xr
 
-from uq.analysis.b_lives import B_LIVES
+from uq.analysis.life_quantiles import B_LIVES
+from uq.analysis.statistics.statistic import TERMINAL, Statistic
+from uq.analysis.summary import Described, Summary
 from uq.cli.printing import console, grid, heading, paragraph
+from uq.estimate import Estimate
 from uq.indices.targets import split_name
 from uq.wording import (
     Entry,
-    accuracy_not_reached,
     duration,
+    estimated,
     failed_interval,
     interval,
-    known,
     number,
-    variance_between,
 )
 
 
-def show_summary(ds: xr.Dataset, summary: Entry) -> None:
-    """Print what `uq.analysis.statistics.summarise` found."""
-    design = f"{ds.attrs['design']}, {summary['samples']} rows"
-    if summary["rows_used"] < summary["samples"]:
-        some = summary["rows_used"]
+def show_summary(ds: xr.Dataset, summary: Summary) -> None:
+    """Print what `uq.analysis.summary.summarise` found."""
+    design = f"{ds.attrs['design']}, {summary.samples} rows"
+    if summary.rows_used < summary.samples:
+        some = summary.rows_used
         design += f", statistics from the {some} independent ones" if some else ", none independent"
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {design}")
-    grid([(label, str(count), _example(ds, label)) for label, count in summary["status"].items()])
-    if summary["regime"]:
+    grid([(label, str(count), _example(ds, label)) for label, count in summary.status.items()])
+    if summary.regimes:
         heading("\nregime")
-        shares = summary["regime"].items()
         grid(
             [
                 (
-                    label,
-                    number(one["share"]),
-                    interval(one),
-                    str(one["count"]),
-                    failed_interval(one),
+                    one.label,
+                    one.words(),
+                    interval(one.estimate),
+                    str(one.facts["count"]),
+                    failed_interval(one.failed),
                 )
-                for label, one in shares
+                for one in summary.regimes.values()
             ],
             header=("", "share", "95 % interval", "rows", "with failed rows"),
         )
-    for name, output in summary["outputs"].items():
+    for name, output in summary.outputs.items():
         meaning = ds[name.partition("[")[0]].attrs["long_name"]
-        unit = "" if output["units"] == "1" else f" [{output['units']}]"
+        unit = "" if output.units == "1" else f" [{output.units}]"
         heading(f"\n{name}{unit}", meaning)
         grid(_lines(output), header=("", "value", "95 % interval", ""))
-        for reason in dict.fromkeys(output["reasons"].values()):
-            paragraph(reason, indent=2)
-        if output["caution"]:
-            paragraph(output["caution"], indent=2)
-        if (accuracy := output.get("accuracy")) and accuracy["missed"]:
-            paragraph(accuracy_not_reached(accuracy), indent=2)
-        if fits := output.get("fits"):
-            _show_fits(fits)
-    for note in summary["notes"]:
+        for one in output.statistics:
+            for note in one.notes:
+                paragraph(note, indent=2)
+        if output.fits:
+            _show_fits(output.fits)
+    for note in summary.notes:
         console.print()
         paragraph(note, indent=0)
 
@@ -64,59 +61,41 @@ def show_summary(ds: xr.Dataset, summary: Entry) -> None:
 Line = tuple[str, str, str, str]
 
 
-def _lines(output: Entry) -> Iterator[Line]:
+def _lines(output: Described) -> Iterator[Line]:
     """Yield label, value, interval and the value in hours, days or years."""
-
-    def line(label: str, entry: Entry, key: str = "value", time: bool = True) -> Line:
-        in_words = duration(entry[key]) if time and output["units"] == "s" else ""
-        return label, known(entry, key), interval(entry), in_words
-
-    yield line("mean", {"value": output["mean"], **output["mean_interval"]})
-    yield line("sd", {"value": output["sd"], **output["sd_interval"]})
-
-    def failed(entry: Entry) -> Iterator[Line]:
-        if worst := failed_interval(entry):
-            yield "  with failed rows", "", worst, ""
-
-    for probability, entry in output["quantiles"].items():
-        yield line(f"quantile {probability}", entry)
-        yield from failed(entry)
-        if guess := entry.get("kaplan_meier"):
-            yield line(f"quantile {probability}, if", guess)
-            yield from failed(guess)
-            yield "", _ASSUMES, "", ""
-    for name, entry in output["b_lives"].items():
-        yield line(name, entry)
-        yield from failed(entry)
-    if any("assumes" in entry for entry in output["b_lives"].values()):
-        yield "", "B-lives suppose", _ASSUMES, ""
-    if bounds := output["tolerance"]:
-        yield line("tolerance, lower", bounds, "lower")
-        yield line("tolerance, upper", bounds, "upper")
-        if bounds["lower"] is None and bounds["upper"] is None:
-            yield "", f"needs {bounds['rows_needed']} rows", "", ""
-    for threshold, entry in output["thresholds"].items():
-        for sign, side in ((">", "above"), ("<", "below")):
-            yield line(f"P({sign} {number(float(threshold))})", entry[side], time=False)
-            yield from failed(entry[side])
-        if reason := entry.get("reason"):
-            yield "", reason, "", ""
-            guess = entry["kaplan_meier"]
-            yield line(f"P(< {number(float(threshold))}), if", guess["below"], time=False)
-            if none := guess["below"].get("reason"):
-                yield "", none, "", ""
-            yield from failed(guess["below"])
-            yield "", _ASSUMES, "", ""
-    if split := output.get("between_regimes"):
-        form, *_ = split_name(split["of"])
-        of = f"of its {form}" if form else ""
-        yield "variance between regimes", variance_between(split), interval(split), of
-    for count in ("never", "censored", "undefined", "failed"):
-        if output[count]:
-            yield count, str(output[count]), "", "rows"
+    for part in output.parts.values():
+        shown = [one for one in part if one.is_read_by(TERMINAL) and one.words()]
+        for one in shown:
+            yield _line(one)
+            yield from _failed(one)
+            if one.otherwise and one.otherwise.label:
+                yield from _reason(one)
+                yield _line(one.otherwise)
+                yield from _reason(one.otherwise)
+                yield from _failed(one.otherwise)
+                yield "", one.otherwise.estimate.assumes.removeprefix("that "), "", ""
+        for assumed in dict.fromkeys(one.estimate.assumes for one in shown):
+            if assumed:
+                yield "", f"{shown[0].kind.name} suppose", assumed.removeprefix("that "), ""
 
 
-_ASSUMES = "censoring says nothing of the life left"
+def _line(one: Statistic) -> Line:
+    more = duration(one.estimate.value) if one.unit == "s" else ""
+    if one.unit == "rows":
+        more = one.unit
+    elif form := split_name(one.of)[0]:
+        more = f"of its {form}"
+    return estimated(one.label), one.words(), interval(one.estimate), more
+
+
+def _failed(one: Statistic) -> Iterator[Line]:
+    if worst := failed_interval(one.failed):
+        yield "  with failed rows", "", worst, ""
+
+
+def _reason(one: Statistic) -> Iterator[Line]:
+    if one.estimate.reason:
+        yield "", one.estimate.reason, "", ""
 
 
 def _show_fits(fits: Mapping[str, Entry]) -> None:
@@ -147,7 +126,11 @@ def _side_by_side(fits: Mapping[str, Entry], name: str) -> Iterator[str]:
     """Yield value and interval of one number of each law; nothing of a law without it."""
     for fit in fits.values():
         one = (fit["parameters"] | fit).get(name)
-        yield from ("", "") if one is None else (number(one["value"]), interval(one))
+        yield from ("", "") if one is None else (number(one["value"]), interval(_estimate(one)))
+
+
+def _estimate(one: Entry) -> Estimate:
+    return Estimate(one["value"], one["low"], one["high"])
 
 
 def _example(ds: xr.Dataset, status: str) -> str:

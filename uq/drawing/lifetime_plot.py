@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from uq.analysis.b_lives import B_LIVES, b_lives
+from uq.analysis.life_quantiles import B_LIVES, life_quantiles
 from uq.analysis.lifetime import survival
 from uq.drawing.elements_plot import explain, label, look
 from uq.drawing.figure import is_wide, logarithmic, sentence, styled, thinned
@@ -71,10 +71,10 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
 
 
 def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, colour: str) -> None:
-    for name, entry in b_lives(element, replicate).items():
-        if entry["value"] is not None:
-            at = entry["value"] / unit.seconds
-            ends = [entry["value"] if entry[end] is None else entry[end] for end in ("low", "high")]
+    for name, found in life_quantiles(element, B_LIVES, replicate).items():
+        if np.isfinite(found.value):
+            at = found.value / unit.seconds
+            ends = [end if np.isfinite(end) else found.value for end in (found.low, found.high)]
             reach = np.abs(np.array(ends)[:, None] / unit.seconds - at)
             axes.errorbar(
                 at, B_LIVES[name], xerr=reach, fmt="o", ms=2.5, lw=1.0, capsize=2.0, color=colour

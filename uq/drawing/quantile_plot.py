@@ -1,19 +1,16 @@
 """The table of quantiles, drawn as a figure for a paper."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.analysis.statistics import summarise
+from uq.analysis.summary import Summary, summarise
 from uq.drawing.elements_plot import label, rows_in_words, told_in
 from uq.drawing.figure import WIDTH, Drawing, sentence, styled
 from uq.drawing.panel import figure_of
 from uq.rows.elements import independent_rows, named_elements
-from uq.wording import interval, known
+from uq.wording import interval
 
 _LINE = 0.15  # inch
 
@@ -23,7 +20,7 @@ def quantile_table(
     ds: xr.Dataset,
     output: str,
     *,
-    summary: Mapping[str, Any] | None = None,
+    summary: Summary | None = None,
     axes: Axes | None = None,
 ) -> Figure:
     """Draw a table of the quantiles of an output, each with its 95 % interval below.
@@ -34,8 +31,8 @@ def quantile_table(
         A result.
     output : str
         An output that is no category.
-    summary : dict, optional
-        What `uq.analysis.statistics.summarise` returns, if that is known already.
+    summary : Summary, optional
+        What `uq.analysis.summary.summarise` returns, if that is known already.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -44,10 +41,10 @@ def quantile_table(
     matplotlib.figure.Figure
     """
     chosen = named_elements(independent_rows(ds), output)
-    entries = (summary or summarise(ds))["outputs"]
-    found = [entries[element.name]["quantiles"] for element in chosen]
-    values = [one["value"] for entry in found for one in entry.values()]
-    unit, per = told_in(chosen[0].units, np.array(values, dtype=float))
+    outputs = (summary or summarise(ds)).outputs
+    found = [outputs[element.name].parts["quantiles"] for element in chosen]
+    values = [one.estimate.finite.value for quantiles in found for one in quantiles]
+    unit, per = told_in(chosen[0].units, np.array(values))
     words = [label(ds, element) for element in chosen]
     lines = 3 if any(words) else 2
     height = _LINE * (4.2 + (lines + 0.4) * len(chosen))
@@ -58,16 +55,16 @@ def quantile_table(
     axes.text(0, 0.3, sentence(chosen[0].meaning, unit, 60), va="top")
     axes.text(0, 1.5, f"{rows_in_words(chosen)}; 95 % intervals", va="top", color="0.35", size=7)
     places = [(k + 1) / len(found[0]) for k in range(len(found[0]))]
-    for place, probability in zip(places, found[0], strict=True):
-        axes.text(place, 3.6, f"{100 * float(probability):g} %", ha="right")
+    for place, one in zip(places, found[0], strict=True):
+        axes.text(place, 3.6, f"{100 * float(one.key[-1]):g} %", ha="right")
     for y in (2.6, 3.9, height / _LINE - 0.1):
         axes.axhline(y, color="black", lw=0.6)
-    for i, (name, entry) in enumerate(zip(words, found, strict=True)):
+    for i, (name, quantiles) in enumerate(zip(words, found, strict=True)):
         y = 5.0 + (lines + 0.4) * i
         if lines == 3:
             axes.text(0, y, name)
             y += 1
-        for place, one in zip(places, entry.values(), strict=True):
-            axes.text(place, y, known(one, per=per), ha="right")
-            axes.text(place, y + 0.95, interval(one, per), ha="right", size=6)
+        for place, one in zip(places, quantiles, strict=True):
+            axes.text(place, y, one.words(per), ha="right")
+            axes.text(place, y + 0.95, interval(one.estimate, per), ha="right", size=6)
     return figure_of(axes)

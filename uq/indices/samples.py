@@ -1,5 +1,7 @@
 """The sample that a sensitivity method works on: where the rows of its design stand in a result."""
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -31,17 +33,16 @@ def sample_of(ds: xr.Dataset) -> Sample:
         When a group lacks rows, or rows are not those of the design.
     """
     layout = DESIGNS[ds.attrs["design"]].layout
-    nothing, inputs = np.full(ds.sizes["sample"], np.nan), independent_inputs(ds)
+    nothing = np.full(ds.sizes["sample"], np.nan)
+    sample = Sample.plain(nothing, independent_inputs(ds), random=bool(ds.attrs.get("random")))
     if layout is PLAIN:
-        return Sample.plain(nothing, inputs)
+        return sample
     groups, blocks = _grouped_rows(ds)
-    return Sample(
-        nothing,
-        inputs,
-        groups.transpose(0, 2, 1) if layout.by_block else groups,
-        blocks,
-        directions(ds, groups) if layout.one_at_a_time else np.empty(0),
-        bool(ds.attrs.get("random")),
+    return replace(
+        sample,
+        groups=groups.transpose(0, 2, 1) if layout.by_block else groups,
+        blocks=blocks,
+        direction=directions(ds, groups) if layout.one_at_a_time else np.empty(0),
     )
 
 

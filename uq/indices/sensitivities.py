@@ -44,10 +44,6 @@ class TargetIndices:
     indices: Indices = Indices({})
     refused: str = ""
 
-    def of(self, key: str) -> Mapping[str, Estimate]:
-        """Return the indices of one kind by its key; none where the target has none."""
-        return next((found for kind, found in self.indices.values.items() if kind.key == key), {})
-
     def kinds(self, of_pairs: bool = False) -> dict[Kind, Mapping[str, Estimate]]:
         """Return the indices of single inputs, or those of pairs."""
         values = self.indices.values.items()

@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Self
+from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,16 +44,11 @@ class Sample:
     quantiles: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
-    def plain(
-        cls,
-        values: Floats,
-        inputs: Mapping[str, Floats],
-        quantiles: Mapping[str, float] | None = None,
-    ) -> Self:
-        """Return a sample without groups."""
-        return cls(values, inputs, alone(len(values)), quantiles=quantiles or {})
+    def plain(cls, values: Floats, inputs: Mapping[str, Floats], **more: Any) -> Self:
+        """Return a sample without groups; `more` are other fields of it."""
+        return cls(values, inputs, alone(len(values)), **more)
 
-    @property
+    @cached_property
     def whole(self) -> NDArray[np.bool_]:
         """Which groups have a value in each of their rows, shape (R, N)."""
         return np.asarray(np.isfinite(self.values[self.groups]).all(axis=-1))

@@ -1,9 +1,12 @@
 """Tables of a report, in plain data that the template lays out."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from math import inf, isfinite
+from typing import NamedTuple
 
 from uq import wording
+from uq.analysis.statistics.statistic import Statistic
+from uq.indices.targets import FORMS, split_name
 
 
 class Cell(NamedTuple):
@@ -42,33 +45,31 @@ class Table(NamedTuple):
         return any(row[column].key is not None or row[column].text == "-" for row in self.rows)
 
 
-def count(rows: int) -> Cell:
-    """Return the cell of a number of rows; nothing for none."""
-    return Cell(f"{rows}" if rows else "", key=float(rows))
-
-
-def estimate(entry: Mapping[str, Any], per: float = 1.0, key: str = "value") -> Cell:
-    """Return the cell of an estimate, its interval below.
+def cell(one: Statistic, per: float = 1.0) -> Cell:
+    """Return the cell of a statistic, its interval below.
 
     Parameters
     ----------
-    entry : dict
-        ``value``, ``low``, ``high``, as in what `uq.analysis.statistics.summarise` returns.
+    one : Statistic
     per : float
         Length of the unit that the cell is in.
-    key : str
-        Instead of ``value``.
 
     Returns
     -------
     Cell
     """
-    text = wording.known(entry, key, per)
-    ends = wording.interval(entry, per).replace(" to ", " to\u00a0")  # breaks in two, not three
-    if worst := wording.failed_interval(entry, per) if key == "value" else "":
-        ends += f"{'; ' * bool(ends)}with failed rows {worst}"
-    last = float("inf") if text in ("never", "beyond the horizon") else None
-    return Cell(text, ends, last if entry[key] is None else entry[key])
+    estimate = one.estimate
+    form = FORMS.get(split_name(one.of)[0])
+    text = one.words(per) + (f", of the {form}" if form else "")
+    worst = wording.failed_interval(one.failed, per)
+    small = (
+        wording.interval(estimate, per).replace(" to ", " to\u00a0"),  # breaks in two, not three
+        f"with failed rows {worst}" if worst else "",
+        one.more,
+    )
+    last = inf if estimate.value == inf and one.otherwise is None else None
+    key = estimate.value if isfinite(estimate.value) else last
+    return Cell(text, "; ".join(filter(None, small)), key)
 
 
 def without_empty_columns(table: Table) -> Table:

@@ -1,30 +1,29 @@
 """What a report says of the rows: how they ended, and the statistics of the outputs."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import replace
+from math import isfinite, isnan
 
 import xarray as xr
 
+from uq.analysis.statistics.statistic import REPORT, Listing, Statistic
+from uq.analysis.statistics.table import STATISTICS
+from uq.analysis.summary import Described, Summary
 from uq.contract import Output, Status
 from uq.drawing.figure import place_in_words, powers
-from uq.indices.targets import FORMS, split_name
-from uq.report.cells import Cell, Table, count, estimate, without_empty_columns
+from uq.estimate import Estimate
+from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
-from uq.wording import TimeUnit, number, percent, percent_interval, time_unit, variance_between
-
-Summary = Mapping[str, Any]
-"""What `uq.analysis.statistics.summarise` returns."""
-
-_COUNTS = ("never", "censored", "undefined", "failed")
+from uq.wording import TimeUnit, number, percent, percent_interval, time_unit
 
 
 def status_table(ds: xr.Dataset, summary: Summary) -> Table:
     """Return how many rows ended how, what that means, and what the first of them said."""
     meaning = {status.label: status.meaning for status in Status}
     rows = []
-    for label, found in summary["status"].items():
+    for label, found in summary.status.items():
         example = str(ds["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
-        share = found / max(summary["samples"], 1)
+        share = found / max(summary.samples, 1)
         cells = (Cell(str(found), key=float(found)), Cell(percent(share), key=share))
         rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
     header = ("status", "rows", "share", "meaning", "the first such row said")
@@ -34,22 +33,22 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
 def regime_table(summary: Summary) -> Table:
     """Return the share of each regime among the independent rows."""
     rows = [
-        (Cell(label), Cell(f"{one['count']}", key=float(one["count"])), _share(one))
-        for label, one in summary["regime"].items()
+        (Cell(one.label), Cell(f"{count}", key=float(count)), _share(one.estimate))
+        for one in summary.regimes.values()
+        for count in [one.facts["count"]]
     ]
     return Table("Regimes, with 95 % intervals", ("regime", "rows", "share"), rows)
 
 
-def _share(entry: Mapping[str, Any]) -> Cell:
-    if entry["share"] is None:
+def _share(one: Estimate) -> Cell:
+    if isnan(one.value):
         return Cell("-")
-    ends = [entry[end] for end in ("low", "high")]
-    below = "" if None in ends else percent_interval(*ends)
-    return Cell(percent(entry["share"]), below, entry["share"])
+    below = percent_interval(one.low, one.high) if one.has_interval else ""
+    return Cell(percent(one.value), below, one.value)
 
 
 class Outcome:
-    """An element of an output: its entry in the summary, its words, the unit it is told in.
+    """An element of an output: its statistics, its words, the unit it is told in.
 
     Parameters
     ----------
@@ -57,20 +56,18 @@ class Outcome:
     words : str
         Which element it is: ``time to wear depth, left, 250 µm``.
     declared : Output
-    entry : dict
-        Of ``outputs`` in what `uq.analysis.statistics.summarise` returns.
+    described : Described
     """
 
-    def __init__(self, name: str, words: str, declared: Output, entry: Mapping[str, Any]):
-        self.name, self.words, self.declared, self.entry = name, words, declared, entry
-        found = [one["value"] for one in entry["quantiles"].values() if one["value"] is not None]
+    def __init__(self, name: str, words: str, declared: Output, described: Described):
+        self.name, self.words, self.declared = name, words, declared
+        self.parts = described.parts
+        quantiles = (one.estimate.value for one in described.parts["quantiles"])
+        found = [value for value in quantiles if isfinite(value)]
         typical = abs(found[len(found) // 2]) if found else 0.0
-        is_time = entry["units"] == "s"
-        self.unit = (
-            time_unit(typical)
-            if is_time
-            else TimeUnit(powers(entry["units"]).replace(" ", "\u00a0"), 1.0, 0.0)
-        )
+        unit = powers(described.units).replace(" ", "\u00a0")
+        is_time = described.units == "s"
+        self.unit = time_unit(typical) if is_time else TimeUnit(unit, 1.0, 0.0)
 
     @property
     def label(self) -> Cell:
@@ -86,131 +83,81 @@ class Outcome:
         """Return a number of this element, and its unit."""
         return f"{number(value / self.unit.seconds)} {self.unit_cell.text}".strip()
 
-    def cell(self, entry: Mapping[str, Any], key: str = "value") -> Cell:
-        """Return the cell of an estimate in the unit of this element."""
-        return estimate(entry, self.unit.seconds, key)
+    def per(self, one: Statistic) -> float:
+        """Return the length of the unit in which a statistic is told."""
+        return self.unit.seconds if one.unit == "s" else 1.0
 
-    def moment(self, name: str) -> Cell:
-        """Return the cell of mean or sd, with the reason where its tail forbids one."""
-        found = {"value": self.entry[name], **self.entry[f"{name}_interval"]}
-        reason = self.entry["reasons"].get(name)
-        if reason is not None:
-            return Cell("none", reason)
-        cell = self.cell(found)
-        if name == "mean" and self.entry["caution"]:
-            cell = cell._replace(more=f"{cell.more}; {self.entry['caution']}")
-        return cell
+    def of(self, part: str, listing: Listing) -> list[Statistic]:
+        """Return the statistics of one entry of the table of statistics that stand in a listing."""
+        found = [one for one in self.parts[part] if one.is_read_by(REPORT)]
+        return [one for one in found if one.kind.listing == listing]
 
 
 def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     """Return the elements that a summary describes, in its order."""
-    names = dict.fromkeys(name.partition("[")[0] for name in summary["outputs"])
+    names = dict.fromkeys(name.partition("[")[0] for name in summary.outputs)
     found = []
     for element in elements_of(independent_rows(ds), list(names)):
         place = place_in_words(element, ds[element.output])
         words = f"{element.meaning}{', ' if place else ''}{place}"
-        entry = summary["outputs"][element.name]
-        found.append(Outcome(element.name, words, element.declared, entry))
+        described = summary.outputs[element.name]
+        found.append(Outcome(element.name, words, element.declared, described))
     return found
 
 
-def result_tables(found: list[Outcome], tolerance: tuple[float, float] | None) -> Iterator[Table]:
-    """Yield the tables of statistics, of tolerance bounds and of thresholds; no empty ones.
-
-    Parameters
-    ----------
-    found : list of Outcome
-    tolerance : tuple of float, optional
-        Coverage and confidence of the bounds.
-    """
-    if not found:
-        return
-    probabilities = list(found[0].entry["quantiles"])
-    quantiles = (f"{100 * float(p):g} % quantile" for p in probabilities)
-    header = (
-        "output",
-        "unit",
-        "mean",
-        "sd",
-        *quantiles,
-        "variance between regimes",
-        *_COUNTS,
-        _MISSED,
+def result_tables(found: list[Outcome], of_lives: bool = False) -> Iterator[Table]:
+    """Yield the tables of statistics, those of lifetimes or all others; no empty ones."""
+    listings = dict.fromkeys(
+        one.kind.listing
+        for part in STATISTICS
+        for outcome in found
+        for one in outcome.parts[part]
+        if one.is_read_by(REPORT)
     )
-    rows = [tuple(_statistics(one)) for one in found]
-    yield without_empty_columns(Table("Statistics, with 95 % intervals", header, rows))
-    bounded = [one for one in found if one.entry["tolerance"]]
-    if bounded and tolerance is not None:
-        rows = [
-            (one.label, one.unit_cell, *(one.cell(one.entry["tolerance"], end) for end in _ENDS))
-            + (count(one.entry["tolerance"]["rows_needed"]),)
-            for one in bounded
-        ]
-        coverage, confidence = (f"{100 * share:g} %" for share in tolerance)
-        caption = (
-            f"Tolerance bounds: with {confidence} confidence each, {coverage} of all lie above the "
-            f"lower, and {coverage} below the upper"
-        )
-        yield Table(caption, ("output", "unit", *_ENDS, "rows needed"), rows)
-    rows = [row for one in found for row in _thresholds(one)]
-    if rows:
-        header = ("output", "threshold", "P(above)", "P(below)", "note")
-        yield without_empty_columns(Table("Probabilities, with 95 % intervals", header, rows))
+    for listing in listings:
+        if listing.of_lives == of_lives:
+            yield _table(listing, found)
 
 
-_ENDS = ("lower", "upper")
-_MISSED = "rows short of the accuracy"
+def _table(listing: Listing, found: list[Outcome]) -> Table:
+    """Lay out statistics in columns, in the order in which all of them are read."""
+    columns = dict.fromkeys(
+        _heading(one)
+        for part in STATISTICS
+        for outcome in found
+        for one in outcome.of(part, listing)
+    )
+    rows = [row for outcome in found for row in _rows(listing, outcome, tuple(columns))]
+    header = (listing.first, listing.by or "unit", *columns)
+    table = Table(listing.caption, header + ("note",) * bool(listing.by), rows)
+    return table if listing.keeps_empty else without_empty_columns(table)
 
 
-def _statistics(one: Outcome) -> Iterator[Cell]:
-    entry = one.entry
-    yield one.label
-    yield one.unit_cell
-    for moment in ("mean", "sd"):
-        yield one.moment(moment)
-    yield from (one.cell(quantile) for quantile in entry["quantiles"].values())
-    split = entry.get("between_regimes")
-    yield _between(split) if split else Cell("")
-    yield from (count(entry[name]) for name in _COUNTS)
-    yield _missed(entry.get("accuracy"))
+def _heading(one: Statistic) -> str:
+    return one.label if one.heading is None else one.heading
 
 
-def _missed(accuracy: Mapping[str, Any] | None) -> Cell:
-    if not accuracy or not accuracy["missed"]:
+def _rows(
+    listing: Listing, outcome: Outcome, columns: tuple[str, ...]
+) -> Iterator[tuple[Cell, ...]]:
+    """Yield the row of an output, or one for each value that its statistics are about."""
+    own = [one for part in STATISTICS for one in outcome.of(part, listing)]
+    for at in dict.fromkeys(one.at for one in own):
+        here = {_heading(one): one for one in own if one.at == at}
+        cells = [_cell(outcome, here.get(column), listing) for column in columns]
+        if at is None:
+            yield outcome.label, outcome.unit_cell, *cells
+        else:
+            note = "; ".join(filter(None, (one.more for one in here.values())))
+            place = Cell(outcome.in_its_unit(at), key=at)
+            yield outcome.label, place, *cells, Cell(note)
+
+
+def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
+    if one is None:
         return Cell("")
-    return count(accuracy["missed"])._replace(more=percent(accuracy["share"]))
-
-
-def _between(split: Mapping[str, Any]) -> Cell:
-    form, *_ = split_name(split["of"])
-    of = f", of the {FORMS[form]}" if form else ""
-    return estimate(split)._replace(text=variance_between(split) + of)
-
-
-def _thresholds(one: Outcome) -> Iterator[tuple[Cell, ...]]:
-    for threshold, entry in one.entry["thresholds"].items():
-        value = float(threshold)
-        told = Cell(one.in_its_unit(value), key=value)
-        sides, note = entry, entry.get("reason", "")
-        if note:
-            sides = entry["kaplan_meier"]
-            note += "; after Kaplan and Meier, if censoring says nothing of the life left"
-            if none := sides["below"].get("reason"):
-                note += f"; {none}"
-        yield one.label, told, estimate(sides["above"]), estimate(sides["below"]), Cell(note)
-
-
-def life_table(found: list[Outcome]) -> Table | None:
-    """Return the times by which 1, 10 and 50 % have ended; None where nothing is a lifetime."""
-    lives = [one for one in found if one.entry["b_lives"]]
-    if not lives:
-        return None
-    names = tuple(lives[0].entry["b_lives"])
-    rows = [
-        (one.label, one.unit_cell, *(one.cell(one.entry["b_lives"][name]) for name in names))
-        + (count(one.entry["never"]), count(one.entry["censored"]))
-        for one in lives
-    ]
-    header = ("lifetime", "unit", *names, "rows never ending", "rows censored")
-    caption = "B-lives: B10 is the time by which 10 % have ended"
-    return without_empty_columns(Table(caption, header, rows))
+    if listing.by:  # the small print stands in a column of its own
+        return cell(replace(one.best, more=""))
+    if one.estimate.reason and isnan(one.estimate.value) and one.rows_needed is None:
+        return Cell("none", one.estimate.reason)
+    return cell(one, outcome.per(one))

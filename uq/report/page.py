@@ -9,6 +9,7 @@ import xarray as xr
 from markupsafe import Markup, escape
 
 from uq.analysis.findings import Findings
+from uq.analysis.summary import Summary
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.literals import plain
@@ -18,7 +19,6 @@ from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
 from uq.report.outcomes import (
-    life_table,
     outcomes,
     regime_table,
     result_tables,
@@ -108,20 +108,20 @@ def _content(ds: xr.Dataset, name: str) -> dict[str, Any]:
         "title": str(ds.attrs["title"]),
         "study": study.study,
         "facts": _facts(ds, summary),
-        "headlines": headlines(summary, lost, found, methods, study.analysis.tolerance),
+        "headlines": headlines(summary, lost, found, methods),
         "inputs": list(input_tables(ds)),
         "inputs_drawn": _drawn(findings, "inputs"),
         "status": status_table(ds, summary),
         "failed": lost,
         "max_failed": study.analysis.max_failed,
-        "regimes": regime_table(summary) if summary["regime"] else None,
+        "regimes": regime_table(summary) if summary.regimes else None,
         "rows_drawn": _drawn(findings, "rows"),
         "convergence": convergence_of(findings, found),
-        "results": list(result_tables(found, study.analysis.tolerance)),
+        "results": list(result_tables(found)),
         "results_drawn": [picture for of, picture in drawn if of.name not in lives],
-        "lives": life_table(found),
+        "lives": list(result_tables(found, of_lives=True)),
         "lives_drawn": [picture for of, picture in drawn if of.name in lives],
-        "notes": summary["notes"],
+        "notes": summary.notes,
         "methods": methods,
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
         "text_is_cut": len(ds.attrs["study"]) > _SHOWN_TEXT,
@@ -137,11 +137,11 @@ def _drawn(findings: Findings, section: str) -> list[Picture]:
     return [picture for _, picture in pictures(findings, section)]
 
 
-def _facts(ds: xr.Dataset, summary: dict[str, Any]) -> list[tuple[str, str]]:
+def _facts(ds: xr.Dataset, summary: Summary) -> list[tuple[str, str]]:
     design = ds.attrs["design"]
-    rows = f"{summary['samples']}"
-    if summary["rows_used"] < summary["samples"]:
-        some = summary["rows_used"]
+    rows = f"{summary.samples}"
+    if summary.rows_used < summary.samples:
+        some = summary.rows_used
         rows += f", statistics from {some} independent ones" if some else ", none independent"
     replicates = f", {ds.attrs['replicates']} replicates" if ds.attrs["replicates"] > 1 else ""
     return [

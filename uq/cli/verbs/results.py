@@ -20,14 +20,15 @@ def summary(
     json: Json = False,
 ) -> None:
     """Show how rows ended, and the statistics of each output."""
-    from uq.analysis.statistics import summarise
+    from uq.analysis.as_json import summary_json
+    from uq.analysis.summary import summarise
     from uq.cli import tables
     from uq.cli.printing import print_json
     from uq.rows.results import open_result
 
     ds = open_result(result)
     found = summarise(ds, regime=regime, fits=fits)
-    print_json(found) if json else tables.show_summary(ds, found)
+    print_json(summary_json(found)) if json else tables.show_summary(ds, found)
 
 
 def sensitivity(

@@ -1,0 +1,120 @@
+"""Summaries and comparisons as the command line prints them with ``--json``."""
+
+from collections.abc import Iterable
+from itertools import groupby
+from typing import Any
+
+from uq import json_form
+from uq.analysis.comparison import Compared, ComparedOutput, Comparison, OnlyChange, Side
+from uq.analysis.statistics.statistic import JSON
+from uq.analysis.statistics.table import EMPTY, JSON_ORDER
+from uq.analysis.summary import Described, Summary, regime_json
+
+
+def summary_json(summary: Summary) -> dict[str, Any]:
+    """Return a summary in plain data.
+
+    Returns
+    -------
+    dict
+        ``samples`` and ``status`` count all rows. Everything else is about the ``rows_used``, the
+        independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
+        element -> mean, sd, their intervals, ``tail``: the shape k of its heavier tail with its
+        interval, the number of values it was fitted to and their side, ``reasons``: why the tail
+        forbids any of these four, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
+        ``between_regimes``: the share of the variance of the number named ``of``, itself or the
+        logarithm or rank of a lifetime, that lies between them,
+        ``accuracy``: how many rows state an error beyond the accuracy asked for, if one was,
+        counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
+        not be given. A number that does not exist or is not finite is None; beside it ``never``,
+        ``low_censored`` and the like say why. Where rows failed, each probability, quantile and
+        B-life has ``failed_low`` and ``failed_high`` (`uq.analysis.failed_rows`).
+    """
+    return {
+        "samples": summary.samples,
+        "rows_used": summary.rows_used,
+        "status": summary.status,
+        "regime": {label: regime_json(one) for label, one in summary.regimes.items()},
+        "outputs": {name: _described(one) for name, one in summary.outputs.items()},
+        "notes": summary.notes,
+    }
+
+
+def _described(one: Described) -> dict[str, Any]:
+    found: dict[str, Any] = {"units": one.units}
+    for name in dict.fromkeys((*JSON_ORDER, *one.parts)):
+        statistics = [s for s in one.parts[name] if s.is_read_by(JSON)]
+        if name in EMPTY:
+            found[name] = dict(EMPTY[name] or {}) if statistics else EMPTY[name]
+        for (parent, _), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.write)):
+            members = list(group)
+            _put(found, parent, members[0].kind.write(members))
+    return found | ({"fits": one.fits} if one.fits else {})
+
+
+def _put(found: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> None:
+    for part in path:
+        found = found.setdefault(part, {})
+    found |= entry
+
+
+def comparison_json(comparison: Comparison) -> dict[str, Any]:
+    """Return a comparison in plain data.
+
+    Returns
+    -------
+    dict
+        ``a`` and ``b``: title, samples, rows_used and status of each. ``changed``: kind, name, a
+        and b of each entry that differs. ``only``: the one input that differs, if it is the only
+        thing: name, units, and mean and sd of each; else None. ``pairing``: ``rows``,
+        ``replicates``, ``strangers`` or ``unknown``. ``regime``: label -> estimate; ``outputs``:
+        element -> its statistics under their keys in a summary, where one is ``a`` and ``b``, as
+        `summary_json` has them, and ``difference``: ``value``, ``low``, ``high`` of b less a, and
+        ``identical`` where the rows are pairs and both of each say the same: then there is no
+        interval; that of sd also has ``ratio``. ``notes``: sentences.
+    """
+    return {
+        "a": _about(comparison.first),
+        "b": _about(comparison.second),
+        "changed": [
+            {"kind": one.kind, "name": one.name, "a": one.first, "b": one.second}
+            for one in comparison.changed
+        ],
+        "only": None if comparison.only is None else _only(comparison.only),
+        "pairing": comparison.pairing,
+        "regime": {label: _compared(one) for label, one in comparison.regimes.items()},
+        "outputs": {name: _output(one) for name, one in comparison.outputs.items()},
+        "notes": comparison.notes,
+    }
+
+
+def _about(one: Side) -> dict[str, Any]:
+    said = one.summary
+    counts = {"samples": said.samples, "rows_used": said.rows_used, "status": said.status}
+    return {"title": one.title} | counts
+
+
+def _only(one: OnlyChange) -> dict[str, Any]:
+    means, sds = (one.first.mean, one.second.mean), (one.first.sd, one.second.sd)
+    pairs = {"mean": dict(zip("ab", means, strict=True)), "sd": dict(zip("ab", sds, strict=True))}
+    return {"name": one.name, "units": one.units} | pairs
+
+
+def _output(one: ComparedOutput) -> dict[str, Any]:
+    found: dict[str, Any] = {"units": one.units}
+    for name, pairs in one.parts.items():
+        if EMPTY.get(name) == {}:
+            found[name] = {}
+        for pair in pairs:
+            *parent, last = pair.first.key
+            _put(found, parent, {last: _compared(pair)})
+    return found
+
+
+def _compared(one: Compared) -> dict[str, Any]:
+    same = {"identical": True} if one.identical else {}
+    found = {"a": one.first.kind.entry(one.first), "b": one.second.kind.entry(one.second)}
+    found["difference"] = json_form.numbers(one.difference) | same
+    if one.ratio is not None:
+        found["ratio"] = json_form.numbers(one.ratio) | same
+    return found

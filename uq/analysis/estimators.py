@@ -1,0 +1,85 @@
+"""What estimates are made of: the rows that take part, and how far each of them pulls."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from uq import order_statistics
+from uq.rows.elements import Element, Floats, Mask
+
+
+class Sample(NamedTuple):
+    """Numbers of the rows of a result, and which of them take part."""
+
+    kept: Mask
+    numbers: Floats
+
+
+def with_value(element: Element) -> Sample:
+    """Return the values of an element, censored ones as late as they may be: never."""
+    return Sample(element.present, np.where(element.censored, np.inf, element.values))
+
+
+def whole(element: Element) -> Sample:
+    """Return all that is known of each row: its value, and whether it is only a lower bound."""
+    return Sample(element.present, np.column_stack([element.values, element.censored]))
+
+
+@dataclass(frozen=True)
+class Estimator:
+    """What is made of the rows that take part, and how far each of them pulls it off.
+
+    Attributes
+    ----------
+    of : callable
+        Rows -> estimate.
+    pull : callable
+        Rows -> the influence of each, up to a factor; they sum up to nothing.
+    sample : callable
+        Element -> its rows; None where censored rows leave open which they are.
+    is_share : bool
+        Whether it is a share of rows, or the value beyond which one lies.
+    counts_hits : bool
+        Whether the numbers of the rows are 0 and 1.
+    is_scale : bool
+        Whether two of them are also compared by their ratio.
+    """
+
+    of: Callable[[Floats], float]
+    pull: Callable[[Floats], Floats]
+    sample: Callable[[Element], Sample | None] = with_value
+    is_share: bool = False
+    counts_hits: bool = False
+    is_scale: bool = False
+
+
+def _centred(x: Floats) -> Floats:
+    return x - x.mean()
+
+
+def _sd(x: Floats) -> float:
+    return float(x.std(ddof=1)) if len(x) > 1 else np.nan
+
+
+MEAN = Estimator(np.mean, _centred)
+SD = Estimator(_sd, lambda x: (x - x.mean()) ** 2 - x.var(), is_scale=True)
+
+
+def share(sample: Callable[[Element], Sample | None] = with_value) -> Estimator:
+    """Return the estimator of the share of ones among the rows of a sample."""
+    return Estimator(np.mean, _centred, sample, is_share=True, counts_hits=True)
+
+
+def quantile(probability: float) -> Estimator:
+    """Return the estimator of a quantile; a row pulls it to its own side, however far it lies."""
+
+    def of(x: Floats) -> float:
+        return order_statistics.quantile(x, probability)
+
+    def pull(x: Floats) -> Floats:
+        below = x <= of(x)
+        return below - below.mean()
+
+    return Estimator(of, pull, is_share=True)

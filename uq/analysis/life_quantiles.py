@@ -1,0 +1,173 @@
+"""Times by which a share of the rows has ended, and shares that have ended by a time."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from uq import order_statistics
+from uq.analysis.lifetime import curve
+from uq.estimate import NOTHING, Estimate
+from uq.intervals import Ends, Replicates
+from uq.rows.elements import Element, Floats
+
+B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
+"""Share of rows that has ended by each of the times that engineers ask for."""
+
+ASSUMES = "that censoring says nothing of the life left"
+"""What the estimate of Kaplan and Meier asks of the rows."""
+
+
+def life_quantiles(
+    element: Element, asked: Mapping[str, float], replicate: Replicates
+) -> dict[str, Estimate]:
+    """Estimate times by which a share of the rows has ended.
+
+    Parameters
+    ----------
+    element : Element
+        Of independent rows.
+    asked : dict of str to float
+        Name -> share.
+    replicate : ndarray of int, shape (n,), or None
+
+    Returns
+    -------
+    dict
+        Name -> estimate [s]. As long as it does not matter when the censored rows end, it is a
+        plain quantile. Else it is the time at which the curve of Kaplan and Meier, or an end of its
+        pointwise interval [1]_, passes the share, and says what it assumes.
+
+    References
+    ----------
+    .. [1] R. Brookmeyer, J. Crowley, "A confidence interval for the median survival time",
+       Biometrics 38, 29-41 (1982).
+    """
+    within = None if replicate is None else replicate[element.present]
+    found = {name: quantile_estimate(element, p, within) for name, p in asked.items()}
+    open_ones = [name for name, one in found.items() if "value" in one.beyond]
+    if open_ones:
+        time = _times(element)
+        seen = curve(element, time, replicate)
+        first_end = _first(seen["survival"] < 1, time)
+        for name in open_ones:
+            value, low, high = (
+                _first(seen[end] <= 1 - asked[name], time) for end in ("survival", "low", "high")
+            )
+            if low == first_end:  # nothing is known of times before the first end
+                low = np.nan
+            if np.isfinite(value):
+                found[name] = Estimate(value, low, high, assumes=ASSUMES)
+    return found
+
+
+def ended_by(element: Element, time: float, replicate: Replicates) -> tuple[Estimate, Estimate]:
+    """Estimate P(T > t) and P(T < t) where rows were censored before t, after Kaplan and Meier.
+
+    Parameters
+    ----------
+    element : Element
+        Of independent rows, some censored.
+    time : float
+        [s]
+    replicate : ndarray of int, shape (n,), or None
+
+    Returns
+    -------
+    above, below : Estimate
+        NaN where the last row was seen before `time`; with the reason where there is no interval.
+    """
+    times = _times(element)
+    seen = curve(element, times, replicate)
+
+    def share(place: int) -> Estimate:
+        if place < 0:
+            return Estimate(1.0)
+        if time > times[-1]:
+            return NOTHING
+        value, low, high = (float(seen[end][place]) for end in ("survival", "low", "high"))
+        return Estimate(value, low, high)
+
+    above = share(int(np.searchsorted(times, time, side="right")) - 1)
+    not_below = share(int(np.searchsorted(times, time, side="left")) - 1)
+    below = Estimate(1 - not_below.value, 1 - not_below.high, 1 - not_below.low)
+    return _explained(above, len(times)), _explained(below, len(times))
+
+
+def _explained(share: Estimate, seen: int) -> Estimate:
+    """Return a share after Kaplan and Meier, with the reason where there is no interval."""
+    reason = ""
+    if np.isnan(share.low) and np.isnan(share.high):
+        if not seen:
+            reason = "there are no rows"
+        elif np.isnan(share.value):
+            reason = "the last row was seen before then"
+        elif share.value in (0.0, 1.0):
+            reason = "no row ended before then"
+        else:
+            reason = "nothing shows its scatter"
+    return Estimate(*share.numbers, reason, ASSUMES)
+
+
+def quantile_estimate(element: Element, probability: float, replicate: Replicates) -> Estimate:
+    """Estimate a quantile, whenever the censored rows may end.
+
+    Parameters
+    ----------
+    element : Element
+        Of independent rows.
+    probability : float
+    replicate : ndarray of int, shape (present,), or None
+        Of the rows that have a value.
+
+    Returns
+    -------
+    Estimate
+        NaN, with the reason, where the rows do not reach it; one end may still bound it.
+    """
+
+    def estimate(values: Floats) -> tuple[float, Ends]:
+        ends = order_statistics.quantile_interval(values, probability, replicate)
+        return order_statistics.quantile(values, probability), ends
+
+    value, early = estimate(element.at_least)
+    latest, late = estimate(element.at_most) if element.censored.any() else (value, early)
+    return whenever_censored_rows_end(
+        (value, np.inf if value < latest else value),
+        (early[0], early[0]),
+        (early[1], late[1]),
+        _why_none(probability, len(element.at_least)),
+    )
+
+
+def _why_none(probability: float, rows: int) -> str:
+    if rows == 0 or order_statistics.is_within(probability, rows):
+        return ""
+    needed = order_statistics.rows_to_reach(probability)
+    return f"{rows} rows do not reach the quantile {probability:g}: it takes {needed}"
+
+
+_UNKNOWN = (np.nan, np.nan)
+
+
+def whenever_censored_rows_end(
+    value: Ends, low: Ends = _UNKNOWN, high: Ends = _UNKNOWN, reason: str = ""
+) -> Estimate:
+    """Return an estimate that holds whenever the censored rows may end.
+
+    Each number comes twice: with the censored rows ending where they were last seen, and never
+    ending. The second is given, so that a bound from above holds whenever they end.
+    """
+    pairs = {"value": value, "low": low, "high": high}
+    beyond = tuple(
+        name for name, (first, last) in pairs.items() if np.isposinf(last) > np.isposinf(first)
+    )
+    numbers = [np.inf if np.isposinf(first) else float(last) for first, last in pairs.values()]
+    return Estimate(numbers[0], numbers[1], numbers[2], reason, beyond=beyond)
+
+
+def _times(element: Element) -> Floats:
+    return np.unique(element.values[np.isfinite(element.values)])
+
+
+def _first(passed: np.ndarray, time: Floats) -> float:
+    return float(time[np.argmax(passed)]) if passed.any() else np.nan

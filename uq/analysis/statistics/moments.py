@@ -1,0 +1,60 @@
+"""Mean and standard deviation, and the tail that may forbid them."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import isnan
+from typing import Any
+
+from uq import json_form
+from uq.analysis.estimators import MEAN, SD
+from uq.analysis.statistics.statistic import EVERYWHERE, FACT, RUNNING, Context, Kind, Statistic
+from uq.estimate import NOTHING, Estimate
+from uq.moments import Moments, moments
+from uq.rows.elements import Element
+
+
+def _numbers(one: Statistic) -> dict[str, Any]:
+    return dict(json_form.numbers(one.estimate))
+
+
+def _write(group: Sequence[Statistic]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for one in group:
+        found[one.key[-1]] = json_form.number(one.estimate.value)
+        found[f"{one.key[-1]}_interval"] = json_form.ends(one.estimate)
+    return found
+
+
+MOMENT = Kind(entry=_numbers, write=_write)
+SPREAD = replace(MOMENT, readers=EVERYWHERE - {RUNNING})
+
+
+def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield mean, standard deviation and tail; unknown where rows never end or are censored."""
+    values = element.at_least
+    known = len(values) and not (element.never.any() or element.censored.any())
+    nothing = Moments(NOTHING, NOTHING, None, None)
+    found = moments(values, context.present(element)) if known else nothing
+    more = found.caution or ""
+    unit = element.units
+    yield Statistic(("mean",), "mean", found.mean, unit, MOMENT, more=more, estimator=MEAN)
+    yield Statistic(("sd",), "sd", found.sd, unit, SPREAD, estimator=SD)
+    reasons = _reasons(found)
+    tail = found.tail
+    yield Statistic(
+        ("tail",),
+        "tail",
+        NOTHING if tail is None else Estimate(tail.k, tail.low, tail.high),
+        kind=FACT,
+        column="tail_k",
+        notes=(*dict.fromkeys(reasons.values()), *filter(None, [found.caution])),
+        facts={"tail": tail and tail._asdict(), "reasons": reasons, "caution": found.caution},
+    )
+
+
+def _reasons(found: Moments) -> dict[str, str]:
+    reasons = {"sd_interval": found.sd.reason, "mean_interval": found.mean.reason}
+    for name, one in (("sd", found.sd), ("mean", found.mean)):
+        if isnan(one.value):
+            reasons[name] = one.reason
+    return {name: reason for name, reason in reasons.items() if reason}

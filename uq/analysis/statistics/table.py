@@ -1,0 +1,30 @@
+"""The statistics of an output: to add one, write its maker and name it here."""
+
+from typing import Any
+
+from uq.analysis.statistics.between_regimes import between_regimes
+from uq.analysis.statistics.counts import accuracy, counts
+from uq.analysis.statistics.moments import moments_of
+from uq.analysis.statistics.quantiles import b_lives, quantiles
+from uq.analysis.statistics.statistic import Maker
+from uq.analysis.statistics.thresholds import thresholds
+from uq.analysis.statistics.tolerance import tolerance
+
+STATISTICS: dict[str, Maker] = {
+    "moments": moments_of,
+    "quantiles": quantiles,
+    "b_lives": b_lives,
+    "tolerance": tolerance,
+    "thresholds": thresholds,
+    "between_regimes": between_regimes,
+    "counts": counts,
+    "accuracy": accuracy,
+}
+"""Name -> maker, in the order in which they are read."""
+
+JSON_ORDER = ("moments", "tolerance", "quantiles", "thresholds", "b_lives", "counts")
+COLUMN_ORDER = ("moments", "quantiles", "tolerance", "counts", "accuracy")
+"""The order in JSON and in pandas; what is not named here follows in that of the table."""
+
+EMPTY: dict[str, Any] = {"tolerance": None, "quantiles": {}, "thresholds": {}, "b_lives": {}}
+"""What stands in JSON for those that have nothing to say of an output."""

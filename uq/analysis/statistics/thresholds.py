@@ -1,0 +1,145 @@
+"""The probabilities that an output lies above and below the thresholds a study asks for."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from uq import json_form
+from uq.analysis.estimators import Sample, share
+from uq.analysis.failed_rows import bounded
+from uq.analysis.life_quantiles import ended_by
+from uq.analysis.statistics.statistic import Context, Kind, Listing, Statistic, entry
+from uq.estimate import Estimate
+from uq.intervals import Replicates, share_interval
+from uq.rows.elements import Element, Mask
+
+SIDES = {"above": ">", "below": "<"}
+
+
+def event(element: Element, threshold: float) -> tuple[Mask, Mask] | None:
+    """Return which rows lie above and which below a threshold, by magnitude for an angle.
+
+    Parameters
+    ----------
+    element : Element
+    threshold : float
+
+    Returns
+    -------
+    tuple of ndarray of bool, or None
+        Rows without a value lie on neither side. None where rows were censored before the
+        threshold, so that nobody knows.
+    """
+    values, censored = element.values, element.censored
+    if (censored & (values < threshold)).any():
+        return None
+    values = element.for_thresholds
+    above = (values > threshold) | (censored & (values == threshold))
+    return above, (values < threshold) & ~censored
+
+
+def share_of(hits: Mask, replicate: Replicates) -> Estimate:
+    """Estimate the share of rows that are hits."""
+    return Estimate(float(hits.mean()) if len(hits) else np.nan, *share_interval(hits, replicate))
+
+
+def _alone(one: Statistic) -> dict[str, Any]:
+    """Return one side as `uq compare` has it."""
+    assumes = one.estimate.assumes
+    return _side(one) | ({"assumes": assumes} if assumes else {})
+
+
+def _side(one: Statistic) -> dict[str, Any]:
+    reason = one.estimate.reason if one.estimate.assumes else ""
+    bare = replace(one.estimate, assumes="", reason=reason)
+    return entry(replace(one, estimate=bare, otherwise=None))
+
+
+def _write(group: Sequence[Statistic]) -> dict[str, Any]:
+    """Return both sides of a threshold."""
+    found: dict[str, Any] = {one.key[-1]: _side(one) for one in group}
+    found |= group[0].facts
+    guesses = {one.key[-1]: one.otherwise for one in group if one.otherwise}
+    if guesses:
+        assumes = group[0].best.estimate.assumes
+        found["reason"] = group[0].estimate.reason
+        found["kaplan_meier"] = {side: _side(one) for side, one in guesses.items()}
+        found["kaplan_meier"]["assumes"] = assumes
+    return found
+
+
+_LISTING = Listing("Probabilities, with 95 % intervals", by="threshold")
+PROBABILITY = Kind(entry=_alone, write=_write, listing=_LISTING)
+
+
+@bounded(of_magnitude=True)
+def thresholds(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield P(above) and P(below) for each threshold of an output."""
+    for threshold in context.analysis.thresholds.get(element.output, ()):
+        yield from _probabilities(element, threshold, context.replicate)
+
+
+def _probabilities(
+    element: Element, threshold: float, replicate: Replicates
+) -> Iterator[Statistic]:
+    kept = ~element.failed
+    undefined = json_form.number(element.undefined[kept].mean()) if kept.any() else None
+    sides = event(element, threshold)
+    for place, (side, sign) in enumerate(SIDES.items()):
+        one = Statistic(
+            ("thresholds", repr(threshold), side),
+            f"P({sign}{threshold!r})",
+            Estimate(),
+            kind=PROBABILITY,
+            heading=f"P({side})",
+            falls=side == "below",
+            at=threshold,
+            sentence=_sentence(element, side),
+            facts={"undefined": undefined},
+            estimator=share(_hits(threshold, place)),
+        )
+        if sides is None:
+            yield _after_kaplan_meier(one, element, threshold, replicate)
+        else:
+            within = None if replicate is None else replicate[kept]
+            yield replace(one, estimate=share_of(sides[place][kept], within))
+
+
+def _after_kaplan_meier(
+    one: Statistic, element: Element, threshold: float, replicate: Replicates
+) -> Statistic:
+    unknown = int((element.censored & (element.values < threshold)).sum())
+    reason = f"{unknown} of {len(element.values)} rows were censored before then"
+    above, below = ended_by(element, threshold, replicate)
+    if not one.falls:  # a terminal shows the other side
+        return replace(
+            one,
+            estimate=Estimate(reason=reason),
+            otherwise=replace(one, label="", estimate=above),
+        )
+    more = [reason, "after Kaplan and Meier, if censoring says nothing of the life left"]
+    return replace(
+        one,
+        estimate=Estimate(reason=reason),
+        otherwise=replace(one, label=f"{one.label}, if", estimate=below),
+        more="; ".join(filter(None, [*more, below.reason])),
+    )
+
+
+def _hits(threshold: float, place: int) -> Callable[[Element], Sample | None]:
+    def sample(element: Element) -> Sample | None:
+        sides = event(element, threshold)
+        return None if sides is None else Sample(~element.failed, sides[place].astype(float))
+
+    return sample
+
+
+def _sentence(element: Element, side: str) -> str:
+    """Return what a report says of the far side of a threshold: of lives, that they have ended."""
+    if side != ("below" if element.is_lifetime else "above"):
+        return ""
+    if element.is_angle:
+        return "{share} lie beyond {at} on either side."
+    return "{share} end within {at}." if element.is_lifetime else "{share} lie above {at}."

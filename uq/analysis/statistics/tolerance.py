@@ -1,0 +1,84 @@
+"""Tolerance bounds: what a share of all values keeps to, with some confidence."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from math import isfinite
+from typing import Any
+
+from uq import json_form
+from uq.analysis.life_quantiles import whenever_censored_rows_end
+from uq.analysis.statistics.statistic import (
+    COLUMNS,
+    JSON,
+    REPORT,
+    TERMINAL,
+    Context,
+    Kind,
+    Listing,
+    Statistic,
+    counts,
+    rows_in_words,
+)
+from uq.estimate import NOTHING, Estimate
+from uq.order_statistics import rows_needed, tolerance_bounds
+from uq.rows.elements import Element
+
+
+def _write(group: Sequence[Statistic]) -> dict[str, Any]:
+    found: dict[str, Any] = {one.key[-1]: json_form.number(one.estimate.value) for one in group}
+    for one in group:
+        found |= json_form.flag(f"{one.key[-1]}_", one.estimate, "value")
+    return found
+
+
+def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield both one-sided bounds and the rows they take; failed rows count as the worst ones."""
+    if context.analysis.tolerance is None or context.replicate is not None:
+        return
+    failed = int(element.failed.sum())
+    asked = context.analysis.tolerance
+    early = tolerance_bounds(element.at_least, failed, *asked)
+    late = tolerance_bounds(element.at_most, failed, *asked)
+    coverage, confidence = (f"{100 * share:g} %" for share in asked)
+    bound = Kind(
+        write=_write,
+        has_interval=False,
+        listing=Listing(
+            f"Tolerance bounds: with {confidence} confidence each, {coverage} of all lie above the"
+            f" lower, and {coverage} below the upper",
+            keeps_empty=True,
+        ),
+        readers=frozenset((JSON, COLUMNS, TERMINAL, REPORT)),
+    )
+    sentence = f"With {confidence} confidence, {coverage} of all take longer than {{number}}."
+    ends = {
+        "lower": whenever_censored_rows_end((early[0], early[0])),
+        "upper": whenever_censored_rows_end((early[1], late[1])),
+    }
+    for name, found in ends.items():
+        yield Statistic(
+            ("tolerance", name),
+            f"tolerance, {name}",
+            found,
+            element.units,
+            bound,
+            column=f"tolerance_{name}",
+            heading=name,
+            sentence=sentence if name == "lower" and element.is_lifetime else "",
+        )
+    needed = rows_needed(*asked, failed)
+    number = Estimate(float(needed))
+    yield Statistic(
+        ("tolerance", "rows_needed"),
+        "rows needed",
+        number,
+        "rows",
+        replace(bound, write=counts, shown=rows_in_words, is_count=True, readers=_ROWS_READERS),
+        column="tolerance_rows_needed",
+    )
+    if not any(isfinite(found.value) for found in ends.values()):
+        short = replace(bound, readers=frozenset((TERMINAL,)))
+        yield Statistic(("tolerance", "short"), "", NOTHING, kind=short, rows_needed=needed)
+
+
+_ROWS_READERS = frozenset((JSON, COLUMNS, REPORT))

@@ -1,0 +1,211 @@
+"""What a result says: how rows ended, the regimes, and the statistics of each output."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import Any
+
+import xarray as xr
+
+from uq import json_form
+from uq.analysis.failed_rows import failed_share_bounds
+from uq.analysis.life_fit import fits_of
+from uq.analysis.statistics.statistic import Context, Kind, Statistic
+from uq.analysis.statistics.table import STATISTICS
+from uq.analysis.statistics.thresholds import share_of
+from uq.contract import Status
+from uq.designs.registry import DESIGNS
+from uq.rows import stopping
+from uq.rows.elements import (
+    Element,
+    analysis_of,
+    are_independent,
+    elements_of,
+    flags,
+    independent_rows,
+    output_names,
+    replicates_of,
+    shown_outputs,
+    study_file_of,
+    why_no_statistics,
+)
+from uq.rows.in_regime import within_regime
+from uq.study.file import AnalysisTable
+
+NO_INTERVALS = (
+    "no intervals: the rows of a '{design}' design are not independent, and with replicates = 1"
+    " nothing shows how far its estimates scatter; set replicates = 8"
+)
+
+NOT_STATED = (
+    "no intervals: nothing is known of how imported rows came about; if they are independent draws"
+    " of the laws, set independent = true in [design]"
+)
+
+NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
+
+SOME_FAILED = (
+    "{most} of {rows} independent rows failed. Estimates are of the others; beside each"
+    " probability, quantile and B-life stand its bounds with the failed rows at best and at worst"
+)
+
+
+def regime_json(one: Statistic) -> dict[str, Any]:
+    """Return count and share of a regime as JSON has them."""
+    share = {"count": one.facts["count"], "share": json_form.number(one.estimate.value)}
+    return share | json_form.ends(one.estimate) | json_form.failed(one.failed)
+
+
+def _compared_json(one: Statistic) -> dict[str, Any]:
+    return regime_json(one) | {"value": json_form.number(one.estimate.value)}
+
+
+REGIME = Kind(entry=_compared_json)
+
+
+@dataclass(frozen=True)
+class Described:
+    """An element of an output.
+
+    Attributes
+    ----------
+    units : str
+    parts : dict of str to tuple of Statistic
+        Name in `uq.analysis.statistics.table.STATISTICS` -> its statistics, in that order.
+    fits : dict, optional
+        As `uq.life_fits` returns them.
+    """
+
+    units: str
+    parts: Mapping[str, tuple[Statistic, ...]]
+    fits: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def statistics(self) -> tuple[Statistic, ...]:
+        """All of them in order."""
+        return tuple(chain.from_iterable(self.parts.values()))
+
+    def find(self, *key: str) -> Statistic | None:
+        """Return the statistic with this key."""
+        return next((one for one in self.statistics if one.key == key), None)
+
+
+@dataclass(frozen=True)
+class Summary:
+    """A result in short.
+
+    Attributes
+    ----------
+    samples : int
+        All rows.
+    rows_used : int
+        The independent ones, which everything but `status` is about.
+    status : dict of str to int
+        How many rows ended how, all rows.
+    regimes : dict of str to Statistic
+        Share of each, and ``count`` among its facts; empty without regimes; also those that do not
+        occur.
+    outputs : dict of str to Described
+        By name of the element.
+    most_failed : int
+        Rows without the value of an element because they failed, at most.
+    notes : list of str
+        Sentences on what could not be given.
+    """
+
+    samples: int
+    rows_used: int
+    status: Mapping[str, int]
+    regimes: Mapping[str, Statistic]
+    outputs: Mapping[str, Described]
+    most_failed: int
+    notes: list[str]
+
+
+def summarise(
+    ds: xr.Dataset,
+    analysis: AnalysisTable | None = None,
+    regime: str | None = None,
+    fits: bool = False,
+) -> Summary:
+    """Describe a result.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    analysis : AnalysisTable, optional
+        What to show; by default what the result's own study asks for.
+    regime : str, optional
+        Describe the rows in this regime only; those that failed without one count as failed.
+    fits : bool
+        Whether each lifetime also has the laws fitted to it.
+
+    Returns
+    -------
+    Summary
+    """
+    analysis = analysis or analysis_of(ds)
+    notes = _notes(ds)
+    if regime is not None:
+        ds = within_regime(ds, regime)
+    rows = independent_rows(ds)
+    context = Context(rows, analysis, replicates_of(rows))
+    elements = list(elements_of(rows, shown_outputs(ds, analysis)))
+    most = max((int(element.failed.sum()) for element in elements), default=0)
+    if most:
+        notes.append(SOME_FAILED.format(most=most, rows=rows.sizes["sample"]))
+    return Summary(
+        ds.sizes["sample"],
+        rows.sizes["sample"],
+        status_counts(ds),
+        regime_shares(rows) if "regime" in output_names(ds) else {},
+        {element.name: _described(element, context, fits) for element in elements},
+        most,
+        notes,
+    )
+
+
+def _described(element: Element, context: Context, fits: bool) -> Described:
+    parts = {name: tuple(make(element, context)) for name, make in STATISTICS.items()}
+    fitted = fits_of(element, context.replicate is None) if fits and element.is_lifetime else {}
+    return Described(element.units, parts, fitted)
+
+
+def status_counts(ds: xr.Dataset) -> dict[str, int]:
+    """Return how many rows ended how, all rows, for each status that occurs and ``ok``."""
+    codes = ds["status"].values
+    counts = {label: int((codes == code).sum()) for code, label in flags(ds["status"])}
+    return {label: count for label, count in counts.items() if count or label == "ok"}
+
+
+def regime_shares(rows: xr.Dataset) -> dict[str, Statistic]:
+    """Return the share of each regime among the independent rows that did not fail."""
+    codes, replicate = rows["regime"].values, replicates_of(rows)
+    kept = (codes >= 0) | (rows["status"].values == Status.OK)
+    within = None if replicate is None else replicate[kept]
+    return {
+        label: Statistic(
+            ("regime", label),
+            label,
+            share_of(codes[kept] == code, within),
+            kind=REGIME,
+            failed=failed_share_bounds(codes == code, ~kept, replicate),
+            facts={"count": int((codes[kept] == code).sum())},
+        )
+        for code, label in flags(rows["regime"])
+        if code >= 0
+    }
+
+
+def _notes(ds: xr.Dataset) -> list[str]:
+    if why := why_no_statistics(ds):
+        return [NO_STATISTICS.format(design=ds.attrs["design"], why=why)]
+    design = study_file_of(ds).design
+    notes = []
+    if design.until is not None:
+        notes.append(stopping.sentence(design, ds))
+    if not are_independent(ds) and ds.attrs["replicates"] == 1:
+        reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
+        notes.append(reason.format(design=ds.attrs["design"]))
+    return notes
