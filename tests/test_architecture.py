@@ -10,124 +10,19 @@ from pathlib import Path
 import pytest
 
 HOUSE = Path(__file__).parents[1]
+sys.path.insert(0, str(HOUSE / "docs"))
 
-GROUND = {
-    "compilation",
-    "errors",
-    "estimate",
-    "exact_shares",
-    "interrupts",
-    "intervals",
-    "literals",
-    "json_form",
-    "moments",
-    "order_statistics",
-    "places",
-    "provenance",
-    "tails",
-    "two_samples",
-    "wording",
-}
-
-LAYERS = (
-    {"contract"},
-    GROUND,
-    {"designs"},
-    {"methods"},
-    {"inputs"},
-    {"study"},
-    {"rows", "store"},
-    {"running"},
-    {"upkeep", "exploring"},
-    {"indices"},
-    {"analysis"},
-    {"drawing", "plots"},
-    {"report"},
-    {"cli"},
+from layers import (  # noqa: E402
+    READERS,
+    RUNNERS,
+    STOREYS,
+    edges,
+    imports_between_packages,
+    place_of,
 )
-"""Modules and packages of ``uq``, from the ground up: a layer may use itself and what is below."""
-
-STRANGERS = {
-    (above, below)
-    for above in ("indices", "analysis", "drawing", "report")
-    for below in ("running", "upkeep", "exploring")
-} | {("upkeep", "exploring"), ("exploring", "upkeep")}
-"""What may not use the other although it stands above."""
-
-STOREYS = {
-    "beam": (
-        {"parameters"},
-        {"structure"},
-        {"exact", "lanes"},
-        {"start"},
-        {"response"},
-        {"wear"},
-        {"units"},
-        {"batch", "trajectory"},
-        {"branches"},
-        {"explore"},
-        {"paper"},
-    ),
-    "vibrator": (
-        {"parameters"},
-        {"theory"},
-        {"equations"},
-        {"lanes", "exact"},
-        {"start"},
-        {"paper", "batch", "trajectory"},
-    ),
-    "mole": (
-        {"parameters"},
-        {"theory"},
-        {"exact", "lanes"},
-        {"response"},
-        {"batch", "trajectory"},
-        {"explore"},
-        {"paper"},
-    ),
-}
-"""Modules and packages of each machine, from the ground up: one may use itself and those below."""
 
 SIDE_BY_SIDE = 12
 """Modules that one folder of a machine may hold, its ``__init__`` apart."""
-
-
-def modules(package):
-    """Yield the dotted name and the syntax tree of every module of a package."""
-    for path in sorted((HOUSE / package).rglob("*.py")):
-        parts = path.relative_to(HOUSE).with_suffix("").parts
-        yield ".".join(part for part in parts if part != "__init__"), ast.parse(path.read_text())
-
-
-def imports(tree, when_loaded=False):
-    """Yield the dotted name of all that a module imports; names from a module come with it.
-
-    Only what runs when the module is loaded, if so wished: not what functions import, not types.
-    """
-    for node in ast.iter_child_nodes(tree):
-        later = isinstance(node, ast.FunctionDef) or (
-            isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
-        )
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"relative import of {node.module}"
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
-        elif not (when_loaded and later):
-            yield from imports(node, when_loaded)
-
-
-def edges(package, when_loaded=False):
-    """Return module -> names it imports, for one package."""
-    return {name: set(imports(tree, when_loaded)) for name, tree in modules(package)}
-
-
-def place_of(dotted):
-    """Return a module or package of ``uq``, and the number of its layer."""
-    name = dotted.split(".")[1]
-    found = [number for number, names in enumerate(LAYERS) if name in names]
-    assert found, f"{dotted}: put the new module into a layer of this test"
-    return name, found[0]
 
 
 def test_the_platform_knows_no_machine():
@@ -216,17 +111,11 @@ def test_each_package_says_what_to_read(machine):
 
 
 def test_the_platform_depends_one_way():
-    guilty = set()
-    for name, found in edges("uq").items():
-        if name in ("uq", "uq.__main__"):  # these name everything, lazily
-            continue
-        here, layer = place_of(name)
-        for other in found:
-            if other.split(".")[0] != "uq" or other in ("uq", "uq.__version__"):
-                continue
-            there, below = place_of(other)
-            if below > layer or (here, there) in STRANGERS:
-                guilty.add((name, other))
+    guilty = {
+        (module, name)
+        for module, name, here, there in imports_between_packages()
+        if place_of(name)[1] >= place_of(module)[1] or (here in READERS and there in RUNNERS)
+    }
     assert not guilty
 
 

@@ -1,0 +1,123 @@
+"""The layers of the house and the storeys of the machines, and what the source really imports.
+
+The tests refuse an import that these lists forbid; the picture of the house is drawn from them.
+"""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+HOUSE = Path(__file__).parents[1]
+
+LAYERS = (
+    ("contract",),
+    ("ground",),
+    ("designs",),
+    ("inputs", "methods"),
+    ("study",),
+    ("rows",),
+    ("indices", "store"),
+    ("analysis", "running"),
+    ("drawing", "upkeep", "exploring"),
+    ("report",),
+    ("cli",),
+)
+"""Packages of ``uq``, from the ground up: one may import itself and those of the layers below.
+
+``ground`` are the modules of ``uq`` itself; ``plots`` is the face of ``drawing``.
+"""
+
+READERS = ("indices", "analysis", "drawing", "report")
+"""Packages that read results, and therefore import none of the `RUNNERS`."""
+
+RUNNERS = ("running", "upkeep", "exploring")
+"""Packages that run models."""
+
+STOREYS = {
+    "beam": (
+        ("parameters",),
+        ("structure",),
+        ("exact", "lanes"),
+        ("start",),
+        ("response",),
+        ("wear",),
+        ("units",),
+        ("batch", "trajectory"),
+        ("branches",),
+        ("explore",),
+        ("paper",),
+    ),
+    "vibrator": (
+        ("parameters",),
+        ("theory",),
+        ("equations",),
+        ("lanes", "exact"),
+        ("start",),
+        ("paper", "batch", "trajectory"),
+    ),
+    "mole": (
+        ("parameters",),
+        ("theory",),
+        ("exact", "lanes"),
+        ("response",),
+        ("batch", "trajectory"),
+        ("explore",),
+        ("paper",),
+    ),
+}
+"""Modules and packages of each machine, from the ground up, with the same rule."""
+
+
+def modules(package: str) -> Iterator[tuple[str, ast.Module]]:
+    """Yield the dotted name and the syntax tree of every module of a package."""
+    for path in sorted((HOUSE / package).rglob("*.py")):
+        parts = path.relative_to(HOUSE).with_suffix("").parts
+        yield ".".join(part for part in parts if part != "__init__"), ast.parse(path.read_text())
+
+
+def imports(tree: ast.AST, when_loaded: bool = False) -> Iterator[str]:
+    """Yield the dotted name of all that a module imports; names from a module come with it.
+
+    Only what runs when the module is loaded, if so wished: not what functions import, not types.
+    """
+    for node in ast.iter_child_nodes(tree):
+        later = isinstance(node, ast.FunctionDef) or (
+            isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
+        )
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"relative import of {node.module}"
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+        elif not (when_loaded and later):
+            yield from imports(node, when_loaded)
+
+
+def edges(package: str, when_loaded: bool = False) -> dict[str, set[str]]:
+    """Return module -> names it imports, for one package."""
+    return {name: set(imports(tree, when_loaded)) for name, tree in modules(package)}
+
+
+def place_of(dotted: str) -> tuple[str, int]:
+    """Return the package of ``uq`` that a dotted name is in, and the number of its layer."""
+    name = dotted.split(".")[1]
+    if name == "plots":
+        name = "drawing"
+    elif name != "contract" and (HOUSE / "uq" / f"{name}.py").is_file():
+        name = "ground"
+    found = [number for number, names in enumerate(LAYERS) if name in names]
+    assert found, f"{dotted}: put the new package into LAYERS of docs/layers.py"
+    return name, found[0]
+
+
+def imports_between_packages() -> Iterator[tuple[str, str, str, str]]:
+    """Yield a module of ``uq``, what it imports of another package, and the two packages."""
+    for module, names in edges("uq").items():
+        if module in ("uq", "uq.__main__"):  # these name everything, lazily
+            continue
+        here, _ = place_of(module)
+        for name in sorted(names):
+            if name.split(".")[0] == "uq" and name not in ("uq", "uq.__version__"):
+                there, _ = place_of(name)
+                if there != here:
+                    yield module, name, here, there
