@@ -5,7 +5,7 @@ from itertools import groupby
 from typing import Any
 
 from uq import json_form
-from uq.analysis.comparison import Compared, ComparedOutput, Comparison, OnlyChange, Side
+from uq.analysis.compared import Compared, ComparedOutput, Comparison, OnlyChange, Side
 from uq.analysis.statistics.statistic import JSON
 from uq.analysis.statistics.table import EMPTY, JSON_ORDER
 from uq.analysis.summary import Described, Summary, regime_json
