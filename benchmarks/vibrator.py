@@ -3,9 +3,9 @@
 Prints the cost of a start from standstill in our lanes, by scipy, by our exact propagator and by
 heyoka, which is optional: it is not a dependency of the project, and without it its lines are
 omitted. Then the steady state against shooting, one machine at a time; the rows of the shipped
-study; and the averaged theory. Each tool has its cheapest setting that reaches the error, on the same
-rows; everything on one core, in one run. Compilation is excluded, and so is the setup of heyoka
-and shooting.
+study; and the averaged theory. Each tool has its cheapest setting that reaches the error, on the
+same rows; everything on one core, in one run. Compilation is excluded, and so is the setup of
+heyoka and shooting.
 """
 
 from pathlib import Path
