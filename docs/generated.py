@@ -19,10 +19,10 @@ from uq.contract import Status
 from uq.designs.design import Design
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
+from uq.inputs.registry import LAWS
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.plots import FIGURES
 from uq.study.file import (
-    LAWS,
     AnalysisTable,
     DependenceTable,
     DesignTable,
@@ -31,10 +31,8 @@ from uq.study.file import (
     Until,
 )
 from uq.study.reading import read_study_text
-from uq.study.registry import find_model
+from uq.study.registry import find_model, model_names, module_of
 
-MACHINES = ("beam", "vibrator", "mole")
-KNOWN_ANSWERS = ("ishigami", "g-function", "linear", "exponential-wear")
 STUDY_TABLES = {
     "study": StudyTable,
     "design": DesignTable,
@@ -118,6 +116,11 @@ def _minus(text: str) -> str:
     return text.replace("-", "−", 1) if text.startswith("-") else text
 
 
+def machines() -> list[str]:
+    """Return the names of the models that are no functions with known answers."""
+    return [name for name in model_names() if module_of(name) != "models.analytic"]
+
+
 def parameters(name: str) -> str:
     """Tabulate the parameters of a model."""
     model = find_model(name)
@@ -197,7 +200,7 @@ def nomenclature() -> str:
     """Tabulate every parameter of every model, by name."""
     lines = [
         (f"`{name}`", formula(one.symbol), unit(one.unit), one.meaning, machine)
-        for machine in (*MACHINES, *KNOWN_ANSWERS)
+        for machine in model_names()
         for name in find_model(machine).nominal
         for one in [find_model(machine).parameter(name)]
     ]
@@ -208,7 +211,7 @@ def all_outputs() -> str:
     """Tabulate every output of every model, by name."""
     lines = [
         (f"`{name}`", unit(one.unit), one.meaning, machine)
-        for machine in (*MACHINES, *KNOWN_ANSWERS)
+        for machine in model_names()
         for name, one in find_model(machine).outputs.items()
     ]
     return table(("name", "unit", "meaning", "model"), sorted(lines))
@@ -221,7 +224,8 @@ def regimes() -> str:
             machine,
             ", ".join(f"`{word}`" for word in find_model(machine).outputs["regime"].categories),
         )
-        for machine in MACHINES
+        for machine in machines()
+        if "regime" in find_model(machine).outputs
     ]
     return table(("machine", "regimes"), lines)
 
