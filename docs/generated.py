@@ -318,7 +318,7 @@ def questions() -> str:
     plain = [f"`{name}`" for name, one in DESIGNS.items() if one.layout is PLAIN]
     dependent = [f"`{name}`" for name in for_dependent_inputs()]
     return table(("question", "method", "needs"), lines) + (
-        f"\n\nA plain sample is of design {', '.join(plain)}. {', '.join(dependent)} also take"
+        f"\n\nPlain samples come from the designs {', '.join(plain)}. {', '.join(dependent)} also accept"
         " dependent inputs, and imported rows that are not stated to be independent."
     )
 
