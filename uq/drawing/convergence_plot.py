@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from uq.analysis.convergence import running_estimates
-from uq.drawing.elements_plot import label, look, told_in
-from uq.drawing.figure import COLOURS, LINES, sentence, styled, with_symbol
+from uq.drawing.elements_plot import curve_style, display_unit, label
+from uq.drawing.figure import COLOURS, LINES, in_words, sentence, styled
 from uq.drawing.index_plot import subject
 from uq.drawing.panel import column, figure_of, heading, legend
 from uq.errors import InputError
@@ -52,10 +52,10 @@ def convergence(
     if not kind:
         raise InputError(f"{output}: neither its mean nor its median is known")
     chosen = named_elements(independent_rows(ds), output)
-    unit, per = told_in(chosen[0].units, told["value"].to_numpy(float))
+    unit, per = display_unit(chosen[0].units, told["value"].to_numpy(float))
     (panel,) = column(axes, 2.1, entries=len(chosen))
     for i, element in enumerate(chosen):
-        colour, line = look(i, element, chosen)
+        colour, line = curve_style(i, element, chosen)
         _curve(panel, told[told["output"] == element.name], per, colour, line, label(ds, element))
     what = "mean" if kind == "mean" else "median"
     panel.set_ylabel(sentence(f"{what}: {chosen[0].meaning}", unit, width=30))
@@ -111,7 +111,7 @@ def index_convergence(
     leading = last["estimate"].tolist()[: len(COLOURS)]
     (panel,) = column(axes, 2.1, entries=len(leading))
     for i, estimate in enumerate(leading):
-        name = sentence(with_symbol(ds[estimate.removeprefix("ST ")]), width=60)
+        name = sentence(in_words(ds[estimate.removeprefix("ST ")]), width=60)
         colour, line = COLOURS[i], LINES[i % len(LINES)]
         _curve(panel, own[own["estimate"] == estimate], 1.0, colour, line, name)
     panel.set_ylabel("Total index (ST) [1]")

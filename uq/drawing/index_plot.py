@@ -7,11 +7,11 @@ from matplotlib.figure import Figure
 
 from uq.drawing.figure import (
     COLOURS,
+    in_words,
     place_in_words,
     roomy,
     sentence,
     styled,
-    with_symbol,
 )
 from uq.drawing.panel import column, figure_of, heading, legend
 from uq.errors import InputError
@@ -60,7 +60,7 @@ def index_bars(
     kinds, name = found.kinds(), found.target.name
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
-    labels = [_named(ds[parameter]) for parameter in parameters]
+    labels = [sentence(in_words(ds[parameter]), width=30) for parameter in parameters]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
     (panel,) = column(axes, 0.8 + 0.13 * lines.sum(), entries=2)
     middle = np.cumsum(lines) - lines / 2
@@ -106,11 +106,6 @@ def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:
     if one.refused:
         raise InputError(f"{name}: {one.refused}")
     return one
-
-
-def _named(parameter: xr.DataArray) -> str:
-    """Return the full name of a parameter; the symbol tells apart those of the same meaning."""
-    return sentence(with_symbol(parameter), width=30)
 
 
 def subject(ds: xr.Dataset, name: str) -> str:

@@ -6,15 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values
-from uq.drawing.figure import (
-    COLOURS,
-    is_wide,
-    logarithmic,
-    named_input,
-    roomy,
-    sentence,
-    styled,
-)
+from uq.drawing.elements_plot import bins
+from uq.drawing.figure import COLOURS, logarithmic, named_input, roomy, sentence, styled
 from uq.drawing.panel import figure_of, grid
 from uq.errors import InputError
 from uq.inputs.conditioning import cdf_within
@@ -66,11 +59,7 @@ def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
 
 
 def _panel(axes: Axes, law: Law, values: Floats, ticks: int) -> None:
-    wide = is_wide(values)
-    scaled = np.log10(values) if wide else values
-    count = min(len(np.histogram_bin_edges(scaled, "scott")) - 1, 60)
-    edges = np.histogram_bin_edges(scaled, max(count, 1))
-    edges = 10**edges if wide else edges
+    edges, wide = bins(values)
     edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
     rows = np.histogram(values, edges)[0] / len(values)
     # Like the histogram: bins have their lower end, the last one its upper end too.

@@ -8,12 +8,14 @@ from numpy.typing import ArrayLike
 
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles
 from uq.analysis.lifetime import survival
-from uq.drawing.elements_plot import explain, label, look
+from uq.drawing.elements_plot import curve_style, entitle, label, rows_in_words
 from uq.drawing.figure import is_wide, logarithmic, sentence, styled, thinned
-from uq.drawing.panel import column, figure_of
+from uq.drawing.panel import column, figure_of, legend
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.wording import TimeUnit, time_unit
+
+_BANDS = (("", 0.2, "pointwise 95 % band"), ("band_", 0.1, "light: of the whole curve"))
 
 
 @styled
@@ -43,22 +45,19 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = time_unit(float(np.median(ends)) if len(ends) else 0.0)
     (panel,) = column(axes, 2.3, entries=len(chosen))
-    bands = ["", ""]
+    bands: dict[str, bool] = {}  # in the order in which they are drawn
     for i, element in enumerate(chosen):
         curve = survival(ds, element.name)
         curve = curve.isel(time=thinned(curve.sizes["time"]))
         time = curve["time"].values / unit.seconds
-        colour, line = look(i, element, chosen)
+        colour, line = curve_style(i, element, chosen)
         words = label(ds, element, never=float(curve["never"]))
         panel.step(time, 1 - curve["survival"], where="post", color=colour, ls=line, label=words)
-        low, high = 1 - curve["high"], 1 - curve["low"]
-        if np.isfinite(low).any():
-            panel.fill_between(time, low, high, step="post", color=colour, alpha=0.2, lw=0)
-            bands[0] = "pointwise 95 % band"
-        low, high = 1 - curve["band_high"], 1 - curve["band_low"]
-        if np.isfinite(low).any():
-            panel.fill_between(time, low, high, step="post", color=colour, alpha=0.1, lw=0)
-            bands[1] = "light: of the whole curve"
+        for which, alpha, meaning in _BANDS:
+            low, high = 1 - curve[f"{which}high"], 1 - curve[f"{which}low"]
+            if np.isfinite(low).any():
+                panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
+                bands[meaning] = True
         _mark(panel, element, replicates_of(rows), unit, colour)
     panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
     panel.set_xlabel(sentence(chosen[0].meaning, unit.name))
@@ -66,7 +65,8 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     other.set_ylabel("Probability of\na longer life")
     if is_wide(ends):
         logarithmic(panel)
-    explain(panel, chosen, *filter(None, bands))
+    entitle(panel, rows_in_words(chosen), *bands)
+    legend(panel)
     return figure_of(panel)
 
 

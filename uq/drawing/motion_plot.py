@@ -7,18 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import COLOURS, LINES, powers, sentence, styled
+from uq.drawing.figure import COLOURS, LINES, in_words, powers, sentence, styled
 from uq.drawing.panel import above, are_many, column, figure_of, finish, legend_above
-from uq.drawing.quantities import (
-    Scale,
-    find,
-    label,
-    pair,
-    place_in,
-    scale_of,
-    with_quantities,
-    words,
-)
+from uq.drawing.quantities import find, label_axes, pair, place_in, scale_of, with_quantities
 from uq.errors import InputError
 from uq.rows.elements import Floats
 
@@ -68,14 +59,14 @@ def history(
     for panel, group, scale in zip(panels, found, scales, strict=True):
         for i, one in enumerate(group):
             colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
-            series, text = one.values * scale.factor, sentence(words(one))
+            series, text = one.values * scale.factor, sentence(in_words(one))
             panel.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
         if len(group) > 1:
             panel.set_ylabel(f"[{powers(scale.unit)}]")
             legend_above(panel)
         else:
-            above(panel, label(group[0], scale))
-    panels[-1].set_xlabel(label(ds["time"], clock))
+            above(panel, sentence(in_words(group[0]), scale.unit))
+    panels[-1].set_xlabel(sentence(in_words(ds["time"]), clock.unit))
     return figure_of(panels[0])
 
 
@@ -114,12 +105,12 @@ def phase_portrait(
     """
     ds = with_quantities(ds)
     (axes,) = column(axes, 2.6)
-    scales = _label_both(axes, ds, output, against)
-    for i, (name, xs, ys) in enumerate(_families(ds, output, against, scales)):
+    factors = _label(axes, ds, output, against)
+    for i, (name, xs, ys) in enumerate(_families(ds, output, against, factors)):
         colour, thin = COLOURS[i % len(COLOURS)], 0.7 if len(xs) < 5000 else 0.4
         axes.plot(xs, ys, color=colour, lw=thin, label=name, rasterized=are_many(len(xs) // 10))
     if section is not None:
-        for name, xs, ys in _families(section, output, against, scales):
+        for name, xs, ys in _families(section, output, against, factors):
             axes.plot(xs, ys, "ko", ms=2.5, mew=0, label=f"Poincaré section {name}".strip())
     return finish(axes)
 
@@ -152,8 +143,8 @@ def section(
         When a quantity does not exist.
     """
     (axes,) = column(axes, 2.6)
-    scales = _label_both(axes, ds, output, against)
-    for i, (name, xs, ys) in enumerate(_families(ds, output, against, scales)):
+    factors = _label(axes, ds, output, against)
+    for i, (name, xs, ys) in enumerate(_families(ds, output, against, factors)):
         size, many = _point_size(xs, ys), are_many(len(xs))
         colour = COLOURS[i % len(COLOURS)]
         axes.plot(xs, ys, "o", ms=size, mew=0, color=colour, label=name, rasterized=many)
@@ -170,21 +161,18 @@ def _point_size(xs: Floats, ys: Floats) -> float:
     return 3.0 if len(places) < 60 else 1.0
 
 
-def _label_both(axes: Axes, ds: xr.Dataset, y: str, x: str) -> tuple[Scale, Scale]:
-    across, up = find(ds, x), find(ds, y)
-    scales = scale_of([across]), scale_of([up])
-    axes.set_xlabel(label(across, scales[0]))
-    axes.set_ylabel(label(up, scales[1], _BESIDE))
-    return scales
+def _label(axes: Axes, ds: xr.Dataset, y: str, x: str) -> list[float]:
+    scales = label_axes(axes, find(ds, x), find(ds, y), _BESIDE)
+    return [scale.factor for scale in scales]
 
 
 def _families(
-    ds: xr.Dataset, y: str, x: str, scales: tuple[Scale, Scale]
+    ds: xr.Dataset, y: str, x: str, factors: Sequence[float]
 ) -> Iterator[tuple[str, Floats, Floats]]:
-    """Yield name and coordinates of each curve: of all there are along the first dimension."""
+    """Yield name and coordinates of each curve along the first of two dimensions."""
     across, up = pair(ds, x, y)
     if across.ndim == 1:
         across, up = (one.expand_dims("") for one in (across, up))
     for i in range(len(across)):
         name = place_in(across, i) if len(across) > 1 else ""
-        yield name, across[i].values * scales[0].factor, up[i].values * scales[1].factor
+        yield name, across[i].values * factors[0], up[i].values * factors[1]

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.analysis.summary import Summary, summarise
-from uq.drawing.elements_plot import label, rows_in_words, told_in
+from uq.drawing.elements_plot import display_unit, label, rows_in_words
 from uq.drawing.figure import WIDTH, Drawing, sentence, styled
 from uq.drawing.panel import figure_of
 from uq.rows.elements import independent_rows, named_elements
@@ -44,7 +44,7 @@ def quantile_table(
     outputs = (summary or summarise(ds)).outputs
     found = [outputs[element.name].parts["quantiles"] for element in chosen]
     values = [one.estimate.finite.value for quantiles in found for one in quantiles]
-    unit, per = told_in(chosen[0].units, np.array(values))
+    unit, per = display_unit(chosen[0].units, np.array(values))
     words = [label(ds, element) for element in chosen]
     lines = 3 if any(words) else 2
     height = _LINE * (4.2 + (lines + 0.4) * len(chosen))

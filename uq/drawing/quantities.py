@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
-from uq.drawing.figure import sentence
+from uq.drawing.figure import in_words, sentence
 from uq.errors import InputError, nearest
 from uq.wording import time_unit
 
@@ -113,45 +114,38 @@ def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
     if unit == "s" and largest >= 3600.0:
         time = time_unit(largest)
         return Scale(1 / time.seconds, time.name)
-    base = unit.split(" ")[0]
-    if base not in _PREFIXED or largest == 0 or 0.1 <= largest < 1e4:
+    if unit.split(" ")[0] not in _PREFIXED or largest == 0 or 0.1 <= largest < 1e4:
         return Scale(1.0, unit)
     power = int(np.clip(3 * np.floor(np.log10(largest) / 3), min(_PREFIXES), max(_PREFIXES)))
     return Scale(10.0**-power, _PREFIXES[power] + unit)
 
 
-def words(variable: xr.DataArray) -> str:
-    """Return what a variable is, with its symbol where it has one, without its unit."""
-    meaning = str(variable.attrs.get("long_name", str(variable.name).replace("_", " ")))
-    symbol = variable.attrs.get("symbol")
-    return f"{meaning} ({symbol})" if symbol else meaning
-
-
-def label(variable: xr.DataArray, scale: Scale, width: int = 44) -> str:
-    """Return the text of an axis: what it shows, and its unit.
+def label_axes(
+    axes: Axes, across: xr.DataArray, up: xr.DataArray, width: int = 26
+) -> tuple[Scale, Scale]:
+    """Label both axes of a panel, and return their scales.
 
     Parameters
     ----------
-    variable : xarray.DataArray
-    scale : Scale
+    axes : Axes
+    across, up : xarray.DataArray
+        The horizontal and the vertical quantity.
     width : int
-        Of a line [characters].
-
-    Returns
-    -------
-    str
+        Of a line beside the vertical axis [characters].
     """
-    whole = scale.unit.replace(" ", "\u00a0")  # a unit stays on one line
-    return sentence(words(variable), whole, width).replace("\u00a0", " ")
+    scales = scale_of([across]), scale_of([up])
+    axes.set_xlabel(sentence(in_words(across), scales[0].unit))
+    axes.set_ylabel(sentence(in_words(up), scales[1].unit, width))
+    return scales
 
 
 def place_in(variable: xr.DataArray, i: int) -> str:
-    """Return in words which along its first dimension this is: ``left``, ``start 2``."""
+    """Return the words for one place along the first dimension: ``left``, ``start 2``."""
     dim = str(variable.dims[0])
     if dim not in variable.coords:
         return f"{dim} {i + 1}"
     value = variable[dim].values[i]
-    return str(value) if isinstance(value, str) else f"{words(variable[dim])} {value:g}"
+    return str(value) if isinstance(value, str) else f"{in_words(variable[dim])} {value:g}"
 
 
 def _largest(variable: xr.DataArray) -> float:

@@ -11,11 +11,10 @@ from matplotlib.figure import Figure
 
 from uq.drawing.figure import COLOURS, LINES, powers, sentence, styled
 from uq.drawing.panel import are_many, column, finish
-from uq.drawing.quantities import find, label, pair, place_in, scale_of
+from uq.drawing.quantities import find, label_axes, pair, place_in, scale_of
 from uq.errors import InputError
 from uq.wording import percent
 
-_BESIDE = 26  # characters that the label of a vertical axis has room for
 _MOST_CHANGES = 12  # of regime along a curve, before their marks cover it
 _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 
@@ -51,8 +50,8 @@ def curve(
         When a quantity does not exist.
     """
     across, up = pair(ds, against or _first_dimension(ds, output), output)
-    scales = scale_of([across]), scale_of([up])
     (axes,) = column(axes, 2.2)
+    scales = label_axes(axes, across, up)
     along = across.dims[0]
     across, up = across.transpose(..., along), up.transpose(..., along)
     family = up if up.ndim > 1 else up.expand_dims("")
@@ -72,8 +71,6 @@ def curve(
         for i, where in enumerate(changes if len(changed) <= _MOST_CHANGES else ()):
             text = "" if i else "change of regime"
             axes.axvline(where, color="black", ls=":", lw=0.7, zorder=0, label=text)
-    axes.set_xlabel(label(across, scales[0]))
-    axes.set_ylabel(label(up, scales[1], _BESIDE))
     return finish(axes)
 
 
@@ -113,7 +110,7 @@ def bifurcation(
     up, across = find(ds, output), find(ds, against or _first_dimension(ds, output))
     kinds = find(ds, by) if by else xr.full_like(across, "", dtype=object)
     (axes,) = column(axes, 2.4)
-    scales = scale_of([across]), scale_of([up])
+    scales = label_axes(axes, across, up)
     up, across, kinds = xr.broadcast(up, across, kinds)
     there = np.isfinite(up.values)
     values, places = (one.values * s.factor for one, s in ((up, scales[1]), (across, scales[0])))
@@ -124,8 +121,6 @@ def bifurcation(
         size = 1.2 if there.sum() > 2000 else 2.0
         many = are_many(int(chosen.sum()))
         axes.plot(*points, "o", ms=size, mew=0, color=colour, label=word, rasterized=many)
-    axes.set_xlabel(label(across, scales[0]))
-    axes.set_ylabel(label(up, scales[1], _BESIDE))
     return finish(axes)
 
 
@@ -157,9 +152,9 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     if attractor.ndim != 2:
         raise InputError(f"basins are drawn over two parameters, not {attractor.ndim}")
     across, up = (ds[dim] for dim in attractor.dims)
-    scales = scale_of([across]), scale_of([up])
     texts = [_basin(ds.isel(basin=i), outputs) for i in range(ds.sizes["basin"])]
     (axes,) = column(axes, 2.6)
+    scales = label_axes(axes, across, up)
     # More attractors than colours: the rare ones share the last.
     shown = np.where(attractor.values < 0, len(COLOURS) + 1, attractor.values)
     shown = np.where(attractor.values >= len(COLOURS), len(COLOURS), shown)
@@ -180,8 +175,6 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
         entries.append((_FAILED, f"failed, {percent(float((attractor < 0).mean()))}"))
     for colour, text in entries:
         axes.plot([], [], "s", color=colour, mec="black", mew=0.4, label=text)
-    axes.set_xlabel(label(across, scales[0]))
-    axes.set_ylabel(label(up, scales[1], _BESIDE))
     return finish(axes)
 
 

@@ -1,6 +1,5 @@
 """Rows as points: an output against the inputs that move it most, and inputs by regime."""
 
-import textwrap
 from contextlib import suppress
 from typing import Any
 
@@ -12,11 +11,12 @@ from numpy.typing import NDArray
 
 from uq import intervals, order_statistics
 from uq.drawing.elements_plot import (
+    display_unit,
+    entitle,
     label,
     occurring_regimes,
     regime_colours,
     rows_in_words,
-    told_in,
 )
 from uq.drawing.figure import (
     COLOURS,
@@ -67,7 +67,7 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     leading = _leading(inputs, element)[:_MOST_INPUTS]
     panels = grid(axes, 0.5 + 1.5 * len(leading), len(leading), sharey=True)[:, 0]
     finite = np.isfinite(element.values)
-    unit, per = told_in(element.units, element.values)
+    unit, per = display_unit(element.units, element.values)
     wide = is_wide(element.values[finite])
     independent = replicates_of(rows) is None
     for panel, name in zip(panels, leading, strict=True):
@@ -78,9 +78,7 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
         panel.set_ylabel(sentence(element.meaning, unit, width=24))
         if wide:
             logarithmic(panel, vertical=True)
-    words = label(ds, element)
-    title = f"{words}{', ' if words else ''}{rows_in_words([element])}"
-    panels[0].set_title(textwrap.fill(title, 46), loc="left")
+    entitle(panels[0], label(ds, element), rows_in_words([element]))
     legend(panels[0])
     return figure_of(panels[0])
 
@@ -96,18 +94,9 @@ def _points(axes: Axes, x: Floats, element: Element, per: float) -> None:
         words = "censored: still going on"
         axes.plot(x[going], y[going], "^", ms=size, color=COLOURS[3], label=words, **style)
     if (never := shown & element.never).any():
-        top = np.full(int(never.sum()), 1.0)
-        axes.plot(
-            x[never],
-            top,
-            "|",
-            ms=5,
-            color=COLOURS[5],
-            label="never, at the top edge",
-            transform=axes.get_xaxis_transform(),
-            clip_on=False,
-            rasterized=True,
-        )
+        edge: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False, "rasterized": True}
+        words, top = "never, at the top edge", np.ones(never.sum())
+        axes.plot(x[never], top, "|", ms=5, color=COLOURS[5], label=words, **edge)
 
 
 def _marker(rows: int) -> float:
