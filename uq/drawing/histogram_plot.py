@@ -1,4 +1,4 @@
-"""Histograms of an output: of all rows, and of the rows in each regime."""
+"""Histograms of an output: of all rows, and by regime."""
 
 from typing import Any
 
@@ -26,14 +26,14 @@ _MOST_PANELS = 4
 
 @styled
 def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
-    """Draw how the values of an output are distributed.
+    """Draw a histogram of an output.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
     output : str
-        An output that is not a lifetime or category, or one element of it.
+        An output other than a lifetime or category, or one element of it.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -62,17 +62,17 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
 
 @styled
 def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
-    """Draw how the values of an output are distributed, each regime on top of the last.
+    """Draw a histogram of an output, stacked by regime.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result of a model with regimes.
     output : str
-        An output that is no category, or one element of it. Of an output with more than four
-        elements the first four are drawn; of a lifetime those that end.
+        An output other than a category, or one element of it. At most four elements are drawn,
+        and only lives that end.
     axes : matplotlib.axes.Axes, optional
-        Where to draw: panels divide its place. By default a new figure.
+        Where to draw: panels divide its area. By default a new figure.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The figure of a lifetime: how likely it has ended, and how likely it goes on."""
+"""The figure of a lifetime: its distribution function and survival probability."""
 
 import numpy as np
 import xarray as xr
@@ -15,17 +15,16 @@ from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.wording import TimeUnit, time_unit
 
-_BANDS = (("", 0.2, "pointwise 95 % band"), ("band_", 0.1, "light: of the whole curve"))
+_BANDS = (("", 0.2, "pointwise 95 % band"), ("band_", 0.1, "light: simultaneous band"))
 
 
 @styled
 def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw the probability that a life has ended against time, with its 95 % bands.
 
-    The dark band holds each point, the light one the whole curve, where there is one.
-
-    Marks stand at B1, B10 and B50, the times by which 1, 10 and 50 % have ended, with their
-    intervals. On the right the same curve is the probability of a longer life.
+    The dark band is pointwise; the light one, where there is one, is simultaneous: it covers the
+    whole curve. Marks with intervals show B1, B10 and B50, the times by which 1, 10 and 50 % have
+    ended. The right axis shows the survival probability.
 
     Parameters
     ----------
@@ -62,7 +61,7 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
     panel.set_xlabel(sentence(chosen[0].meaning, unit.name))
     other = panel.secondary_yaxis("right", functions=(_rest, _rest))
-    other.set_ylabel("Probability of\na longer life")
+    other.set_ylabel("Survival probability")
     if is_wide(ends):
         logarithmic(panel)
     entitle(panel, rows_in_words(chosen), *bands)

@@ -1,4 +1,4 @@
-"""Figures of a machine's motion: time histories, phase portraits and Poincare sections."""
+"""Figures of a machine's motion: time histories, phase portraits and Poincaré sections."""
 
 from collections.abc import Iterator, Sequence
 
@@ -8,12 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.drawing.figure import COLOURS, LINES, in_words, powers, sentence, styled
-from uq.drawing.panel import above, are_many, column, figure_of, finish, legend_above
+from uq.drawing.panel import above, are_many, column, figure_of, finish
 from uq.drawing.quantities import find, label_axes, pair, place_in, scale_of, with_quantities
 from uq.errors import InputError
 from uq.rows.elements import Floats
 
-_BESIDE = 32  # characters that the label of a vertical axis has room for
+_BESIDE = 32  # width of the label of the vertical axis [characters]
 
 
 @styled
@@ -29,12 +29,12 @@ def history(
     ----------
     ds : xarray.Dataset
         From `uq.simulate`, with a ``trajectory``, or any Dataset with variables along ``time``.
-        For a stretch of it, ``ds.sel(time=slice(3, 4))``.
+        Select a part of it by ``ds.sel(time=slice(3, 4))``.
     quantities : sequence of str or of sequences of str, optional
-        In this order, by default all; those named together share a panel, for instance
+        In this order, by default all; quantities in an inner sequence share a panel, for instance
         ``["disphasing_angle", ["speed_1", "speed_2"]]`` for a run-up.
     axes : matplotlib.axes.Axes, optional
-        Where to draw: panels divide its place. By default a new figure.
+        Where to draw: panels divide its area. By default a new figure.
 
     Returns
     -------
@@ -43,14 +43,14 @@ def history(
     Raises
     ------
     InputError
-        When a quantity does not exist, or two of unlike units are to share a panel.
+        When a quantity does not exist, or quantities in one panel have different units.
     """
     ds = with_quantities(ds)
     if quantities is None:
         quantities = [str(name) for name, one in ds.data_vars.items() if one.dims == ("time",)]
     groups = [[one] if isinstance(one, str) else list(one) for one in quantities]
     if not groups:
-        raise InputError("there is nothing along time")
+        raise InputError("no variable varies along time")
     found = [[find(ds, name) for name in group] for group in groups]
     scales = [scale_of(group) for group in found]
     clock = scale_of([find(ds, "time")])
@@ -63,7 +63,7 @@ def history(
             panel.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
         if len(group) > 1:
             panel.set_ylabel(f"[{powers(scale.unit)}]")
-            legend_above(panel)
+            panel.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
         else:
             above(panel, sentence(in_words(group[0]), scale.unit))
     panels[-1].set_xlabel(sentence(in_words(ds["time"]), clock.unit))
@@ -79,24 +79,24 @@ def phase_portrait(
     section: xr.Dataset | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw one quantity of a motion against another, and the points of its Poincare section.
+    """Draw one quantity of a motion against another, and the points of its Poincaré section.
 
     Parameters
     ----------
     ds : xarray.Dataset
         From `uq.simulate`, or any Dataset with both quantities along time or phase, the last
-        dimension. Along the one before, if there is one, a curve for each.
+        dimension. A preceding dimension, if there is one, gives one curve for each coordinate.
     output, against : str
-        What lies along the vertical axis, and along the horizontal one.
+        The quantities on the vertical and on the horizontal axis.
     section : xarray.Dataset, optional
-        With the same quantities at the instants of a section.
+        The same quantities at the instants of a section.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        That of `axes`, if given.
+        The figure of `axes`, if given.
 
     Raises
     ------
@@ -123,13 +123,13 @@ def section(
     against: str = "displacement",
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw the points of a Poincare section.
+    """Draw the points of a Poincaré section.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        With both quantities at the instants of the section, the last dimension. Along the one
-        before, if there is one, a colour for each.
+        Both quantities at the instants of the section, the last dimension. A preceding dimension,
+        if there is one, gives one colour for each coordinate.
     output, against, axes
         As in `phase_portrait`.
 
@@ -152,7 +152,7 @@ def section(
 
 
 def _point_size(xs: Floats, ys: Floats) -> float:
-    """Return how large to draw points: larger where they are few, or fall on few places."""
+    """Return the size of points: larger where few places are visited."""
     points = np.stack([xs, ys], axis=1)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:

@@ -1,4 +1,4 @@
-"""The table of quantiles, drawn as a figure for a paper."""
+"""A table of quantiles as a figure for a paper."""
 
 import numpy as np
 import xarray as xr
@@ -23,16 +23,16 @@ def quantile_table(
     summary: Summary | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw a table of the quantiles of an output, each with its 95 % interval below.
+    """Draw a table of the quantiles of an output, with their 95 % intervals.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
     output : str
-        An output that is no category.
+        An output other than a category.
     summary : Summary, optional
-        What `uq.analysis.summary.summarise` returns, if that is known already.
+        What `uq.analysis.summary.summarise` returns, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 

@@ -1,4 +1,4 @@
-"""Quantities of a Dataset as axes show them: in words, with their unit, in handy numbers."""
+"""Quantities of a Dataset on axes: their labels, units and scales."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -16,14 +16,14 @@ _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 
 
 class Scale(NamedTuple):
-    """How the numbers of an axis are written.
+    """The scale and unit of an axis.
 
     Attributes
     ----------
     factor : float
-        By which values are multiplied.
+        Values are multiplied by it.
     unit : str
-        Of the products.
+        Of the scaled values.
     """
 
     factor: float
@@ -31,12 +31,12 @@ class Scale(NamedTuple):
 
 
 def with_quantities(ds: xr.Dataset) -> xr.Dataset:
-    """Return a time history of `uq.simulate` as a Dataset with a variable for each quantity.
+    """Return a time history of `uq.simulate` as a Dataset with one variable per quantity.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        One that has its quantities apart already is returned as it is.
+        Returned unchanged if it has no ``trajectory``.
 
     Returns
     -------
@@ -71,27 +71,27 @@ def find(ds: xr.Dataset, name: str) -> xr.DataArray:
 
 
 def pair(ds: xr.Dataset, x: str, y: str) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return two variables, both along all dimensions of either: of x first, one or two in all.
+    """Return two variables broadcast against each other, along one or two dimensions.
 
     Raises
     ------
     InputError
-        When one does not exist, or they have no dimension or too many.
+        When one does not exist, or they are not along one or two dimensions.
     """
     across, up = xr.broadcast(find(ds, x), find(ds, y))
     if across.ndim not in (1, 2):
         dims = ", ".join(map(str, across.dims)) or "nothing"
-        raise InputError(f"'{y}' and '{x}' are along {dims}: one or two dimensions can be drawn")
+        raise InputError(f"'{y}' and '{x}' vary along {dims}, not one or two dimensions")
     return across, up
 
 
 def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
-    """Return how to write quantities that share an axis: 0.00025 m as 0.25 mm.
+    """Return a suitable scale for quantities that share an axis: 0.00025 m become 0.25 mm.
 
     Parameters
     ----------
     variables : sequence of xarray.DataArray
-        Of numbers.
+        Numeric.
 
     Returns
     -------
@@ -100,15 +100,15 @@ def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
     Raises
     ------
     InputError
-        When they have not one unit, or are no numbers.
+        When their units differ, or they are not numeric.
     """
     for one in variables:
         if one.dtype.kind not in "fiub":
-            raise InputError(f"'{one.name}' is not a number, and has no axis")
+            raise InputError(f"'{one.name}' is not numeric and cannot be drawn")
     units = {str(one.attrs.get("units", "1")): one.name for one in variables}
     if len(units) > 1:
         unlike = ", ".join(f"{name} [{unit}]" for unit, name in units.items())
-        raise InputError(f"quantities of unlike units have no axis in common: {unlike}")
+        raise InputError(f"quantities of different units cannot share an axis: {unlike}")
     (unit,) = units
     largest = max(_largest(one) for one in variables)
     if unit == "s" and largest >= 3600.0:

@@ -1,4 +1,4 @@
-"""Figures of how a machine responds: curves, bifurcation diagrams and basins of attraction."""
+"""Figures of a machine's response: curves, bifurcation diagrams and basins of attraction."""
 
 from collections.abc import Sequence
 from itertools import cycle
@@ -15,7 +15,7 @@ from uq.drawing.quantities import find, label_axes, pair, place_in, scale_of
 from uq.errors import InputError
 from uq.wording import percent
 
-_MOST_CHANGES = 12  # of regime along a curve, before their marks cover it
+_MOST_CHANGES = 12  # of regime that are marked along a curve
 _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 
 
@@ -25,24 +25,25 @@ def curve(
 ) -> Figure:
     """Draw one quantity against another: work-rates against gaps, gaps against the time of wear.
 
-    Where the regime, if ``ds["regime"]`` tells one, changes along a curve, there is a dotted line,
-    unless it changes so often that lines would cover the curve.
+    Dotted lines mark changes of ``ds["regime"]``, if present, along the curve, unless there are so
+    many that they would cover it.
 
     Parameters
     ----------
     ds : xarray.Dataset
     output : str
-        A variable along one dimension, and perhaps a second, for instance ``site``: a curve for
-        each.
+        A variable along one dimension, and optionally a second one, for instance ``site``, with
+        one curve for each coordinate.
     against : str, optional
-        A variable along the first of these, and perhaps the second; by default that dimension.
+        A variable along the first dimension, and optionally the second; by default the first
+        dimension.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        That of `axes`, if given.
+        The figure of `axes`, if given.
 
     Raises
     ------
@@ -83,24 +84,24 @@ def bifurcation(
     by: str | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw all values that a quantity takes at each value of a parameter, as points.
+    """Draw the values that a quantity takes at each value of a parameter.
 
     Parameters
     ----------
     ds : xarray.Dataset
     output : str
-        A variable along the dimension of the parameter and others, NaN where there is no value.
+        A variable along the dimension of the parameter and others, NaN where it has no value.
     against : str, optional
-        The parameter, a variable along one dimension; by default the first one of the output.
+        The parameter, a variable along one dimension; by default the first dimension of `output`.
     by : str, optional
-        A variable of words along the same, for instance ``regime``: a colour for each.
+        A variable of text along the same dimension, for instance ``regime``, that sets the colour.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        That of `axes`, if given.
+        The figure of `axes`, if given.
 
     Raises
     ------
@@ -133,15 +134,15 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     ds : xarray.Dataset
         From `uq.basins`, over two parameters.
     outputs : sequence of str
-        Of which the legend gives the values that the first point of each basin has, beside its
-        share of the grid and the words of categories.
+        The legend lists their values at the first point of each basin, besides the categories and
+        the share of the grid.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        That of `axes`, if given.
+        The figure of `axes`, if given.
 
     Raises
     ------
@@ -155,7 +156,7 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     texts = [_basin(ds.isel(basin=i), outputs) for i in range(ds.sizes["basin"])]
     (axes,) = column(axes, 2.6)
     scales = label_axes(axes, across, up)
-    # More attractors than colours: the rare ones share the last.
+    # If there are more attractors than colours, the rare ones share the last.
     shown = np.where(attractor.values < 0, len(COLOURS) + 1, attractor.values)
     shown = np.where(attractor.values >= len(COLOURS), len(COLOURS), shown)
     axes.pcolormesh(
@@ -183,7 +184,7 @@ def _first_dimension(ds: xr.Dataset, output: str) -> str:
 
 
 def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
-    """Return in words what is known of an attractor: its regime, numbers asked for, its share."""
+    """Describe an attractor: its categories, the chosen outputs and its share of the grid."""
     known = [
         str(value.item())
         for name, value in one.data_vars.items()
