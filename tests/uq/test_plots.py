@@ -158,7 +158,7 @@ def test_index_bars_show_values_intervals_and_full_names():
     ]
     assert "Value of the function" in words(figure) and "95 % interval" in words(figure)
     plain = words(plots.index_bars(linear(samples=128), "y", method="pawn"))
-    assert "without effect" in plain and "PAWN" in plain and "95 %" not in plain
+    assert "without effect" in plain and "PAWN" in plain and "95 % interval" not in plain
 
 
 def test_a_wide_interval_does_not_squeeze_the_bars():

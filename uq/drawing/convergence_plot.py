@@ -143,7 +143,7 @@ def _finish(axes: Axes, ds: xr.Dataset) -> None:
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.minorticks_off()
     replicates = int(ds.attrs["replicates"])
-    axes.set_xlabel("Samples" + (f" in each of {replicates} replicates" if replicates > 1 else ""))
+    axes.set_xlabel("Samples" + (f" of each of {replicates} replicates" if replicates > 1 else ""))
     known = any(len(band.get_paths()) for band in axes.collections)
     axes.set_title("Convergence" + known * ", with 95 % intervals", loc="left")
     legend(axes)

@@ -23,8 +23,8 @@ def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[st
 
 def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
     """Return the label of a curve: its place, and the share of rows that never end."""
-    words = place_in_words(element, ds[element.output]), never > 0 and f"never: {percent(never)}"
-    return ", ".join(filter(None, words))
+    share = f"never: {percent(never)}" if never > 0 else ""
+    return ", ".join(filter(None, (place_in_words(element, ds[element.output]), share)))
 
 
 def rows_in_words(chosen: Sequence[Element]) -> str:

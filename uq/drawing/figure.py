@@ -79,7 +79,7 @@ def roomy(axes: Axes, ticks: int = 6) -> None:
 def whole_numbers(axis: Axis) -> None:
     """Write each number in full: a common factor at the end of the axis would cover its label."""
 
-    def short(value: float, _: int | None = None) -> str:
+    def short(value: float, _: float) -> str:
         text = re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.6g}")
         return text.replace("-", "\N{MINUS SIGN}")
 
