@@ -278,7 +278,7 @@ def designs() -> str:
 
 
 def confidence() -> str:
-    """Tabulate what the intervals come from, of statistics and of indices, by design."""
+    """Tabulate the basis of the intervals of statistics and indices, by design."""
     lines = []
     for name, design in DESIGNS.items():
         indices = {METHODS[method].intervals for method in fed_by(design)} - {""}
@@ -290,10 +290,10 @@ def _of_statistics(design: Design) -> str:
     if design.independent:
         return "formulas for independent rows"
     if design.imported:
-        return "none: how its rows came about is not known; if stated to be independent, formulas"
+        return "none: the origin of its rows is unknown; formulas if stated to be independent"
     if not design.follows_laws:
         return "no statistics: its rows do not follow the laws of the inputs"
-    return "the scatter between replicates; with one replicate none, and the summary says so"
+    return "the scatter between replicates; none from a single replicate, and the summary says so"
 
 
 def methods() -> str:
@@ -301,7 +301,7 @@ def methods() -> str:
     lines = []
     for name, method in METHODS.items():
         gives = method.gives or ", ".join(kind.words for kind in method.kinds)
-        null = "; a null beside it" if method.has_null else ""
+        null = "; compared with a null" if method.has_null else ""
         most = "" if method.most_rows is None else f"{method.most_rows:,}"
         how = method.intervals or f"none{null}"
         lines.append((f"`{name}`", gives.replace("*", "\\*"), method.source, how, most))
