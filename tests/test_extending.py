@@ -195,6 +195,7 @@ def test_a_statistic_is_one_entry_of_a_table(uq, write_study, monkeypatch):
     assert "geometric mean" in uq("compare", "one.nc", "other.nc").out
 
     assert f">{entry['value']:.5g}<" in page(open_result("one.nc"), "one.nc")
+    assert "| `geometric_mean` | exp(mean(log)) of an output" in generated.statistics()
 
 
 # A law
