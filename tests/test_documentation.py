@@ -171,9 +171,9 @@ def test_the_citation_is_that_of_this_version():
     project = tomllib.loads((HOUSE / "pyproject.toml").read_text())["project"]
     assert citation["version"] == project["version"]
     assert citation["license"] == project["license"]
-    cited = " ".join(text for name in generated.MACHINES for text in find_model(name).references)
+    cited = " ".join(text for name in generated.machines() for text in find_model(name).references)
     assert [one["title"] for one in citation["references"] if one["title"] not in cited] == []
-    assert len(citation["references"]) == len(generated.MACHINES)
+    assert len(citation["references"]) == len(generated.machines())
 
 
 @pytest.mark.slow

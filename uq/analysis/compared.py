@@ -1,4 +1,4 @@
-"""What a comparison of two results holds."""
+"""The comparison of two results as records."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from uq.estimate import Estimate
 
 @dataclass(frozen=True)
 class Side:
-    """One of two results: its title, and its summary of what either study asks for."""
+    """One of two results: its title, and a summary of what either study asks for."""
 
     title: str
     summary: Summary
@@ -20,7 +20,7 @@ class Side:
 
 @dataclass(frozen=True)
 class OnlyChange:
-    """The one input that two studies have different, with its spread in each."""
+    """The only input that differs between two studies, with its spread in each."""
 
     name: str
     units: str
@@ -38,9 +38,9 @@ class Compared:
     difference : Estimate
         The second less the first.
     identical : bool
-        Whether the rows are pairs, and both of each say the same: then there is no interval.
+        Whether the rows are paired and both rows of each pair agree: then there is no interval.
     ratio : Estimate, optional
-        The second over the first, of a scale.
+        The second over the first, for a scale.
     """
 
     first: Statistic
@@ -65,15 +65,15 @@ class ComparedOutput:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two results held against each other.
+    """The comparison of two results.
 
     Attributes
     ----------
     first, second : Side
     changed : list of Change
-        What the studies have different.
+        Differences between the studies.
     only : OnlyChange, optional
-        The one input that differs, if it is the only thing.
+        The input that differs, if nothing else does.
     pairing : str
         ``rows``, ``replicates``, ``strangers`` or ``unknown``.
     regimes : dict of str to Compared

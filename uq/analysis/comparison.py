@@ -1,4 +1,4 @@
-"""Two studies of one model: what was changed, and how far their outputs lie apart."""
+"""Two studies of one model: what was changed, and how their outputs differ."""
 
 from collections.abc import Iterator
 
@@ -57,7 +57,7 @@ def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
 
 
 def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
-    """Return what `compare` finds, and what was changed."""
+    """Return the findings of `compare`, and what was changed."""
     _refuse(first, second)
     results = (first, second)
     analyses = [analysis_of(ds) for ds in results]
@@ -89,14 +89,14 @@ def _refuse(first: xr.Dataset, second: xr.Dataset) -> None:
     names = [ds.attrs["model"] for ds in (first, second)]
     if names[0] != names[1]:
         raise InputError(
-            f"the first is of model '{names[0]}', the second of '{names[1]}': only studies of one"
-            " model can be compared"
+            f"the first is of model '{names[0]}', the second of '{names[1]}': only studies of the"
+            " same model can be compared"
         )
     for which, ds in zip(("first", "second"), (first, second), strict=True):
         if why := why_no_statistics(ds):
             raise InputError(
                 f"the rows of the {which}, a '{ds.attrs['design']}' design, {why}: compare studies"
-                " of another design; 'uq sensitivity' shows its indices"
+                " with another design; 'uq sensitivity' shows its indices"
             )
 
 
@@ -107,13 +107,13 @@ def _outputs(results: tuple[xr.Dataset, ...], analyses: list[AnalysisTable]) -> 
     outputs = [name for name in wanted if all(name in output_names(ds) for ds in results)]
     if not outputs:
         raise InputError(
-            "the two results have no output in common; name one in [analysis] outputs of both"
+            "the results have no output in common; name one in [analysis] outputs of both studies"
         )
     return outputs
 
 
 def _asked(analyses: list[AnalysisTable], outputs: list[str]) -> AnalysisTable:
-    """Return what either of two studies asks for."""
+    """Return what either study asks for."""
 
     def both(*parts: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(sorted({number for part in parts for number in part}))
@@ -140,8 +140,8 @@ def _notes(pair: Pair, found: list[Summary], elements: list[dict[str, Element]])
     for which, one in zip("AB", found, strict=True):
         yield from (f"{which}: {note}" for note in one.notes)
     if any(one.most_failed for one in found):
-        yield "differences are of the rows that did not fail"
+        yield "Differences are between the rows that did not fail."
     of_a, of_b = elements
     for which, mine, other in (("A", of_a, of_b), ("B", of_b, of_a)):
         if alone := [name for name in mine if name not in other]:
-            yield f"only {which} has {', '.join(alone)}"
+            yield f"Only {which} has {', '.join(alone)}."

@@ -1,4 +1,4 @@
-"""How far the statistics of two results lie apart."""
+"""Differences between the statistics of two results."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -17,7 +17,7 @@ from uq.rows.elements import Element, flags
 
 
 def compared_regimes(pair: Pair, found: list[Summary]) -> Iterator[tuple[str, Compared]]:
-    """Yield label and shares of every regime that both results may have."""
+    """Yield label and shares of every regime that both results declare."""
     shares = [one.regimes for one in found]
     if not all(shares):
         return
@@ -56,15 +56,15 @@ def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> 
     estimator = both[0].estimator
     samples = [] if estimator is None else [estimator.sample(element) for element in elements]
     known = [one for one in samples if one is not None]
-    told_by_rows = estimator is not None and estimator.counts_hits and len(known) == 2
-    rows = known if told_by_rows else [estimators.whole(element) for element in elements]
+    depends_on_hits = estimator is not None and estimator.counts_hits and len(known) == 2
+    rows = known if depends_on_hits else [estimators.whole(element) for element in elements]
     return _compared(pair, [one.best for one in both], known, rows)
 
 
 def _compared(
     pair: Pair, both: list[Statistic], samples: list[Sample], rows: list[Sample]
 ) -> Compared:
-    """Compare two statistics; `rows` say whether the pairs are identical."""
+    """Compare two statistics; `rows` decide whether the pairs are identical."""
     estimator = both[0].estimator
     is_scale = estimator is not None and estimator.is_scale
     known = [one.estimate.finite for one in both]
@@ -77,6 +77,6 @@ def _compared(
     else:
         apart = pair.difference(estimator, samples, known)
     times = pair.ratio(samples, known) if is_scale else None
-    if any(one.reason for one in known):  # what has no interval has none for its difference
+    if any(one.reason for one in known):  # without an interval its difference has none
         apart, times = Estimate(apart.value), times and Estimate(times.value)
     return Compared(both[0], both[1], apart.finite, ratio=times and times.finite)

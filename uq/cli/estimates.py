@@ -97,7 +97,7 @@ def convergence(result: Path, output: str | None, json: bool) -> None:
                 paragraph(own["warning"], indent=2)
 
 
-def _json(lines: pd.DataFrame, errors: dict[str, Any] | None) -> dict[str, Any]:
+def _json(lines: pd.DataFrame, errors: dict[Any, Any] | None) -> dict[str, Any]:
     found: dict[str, Any] = {
         "estimates": {
             label: [
