@@ -13,6 +13,7 @@ from typing import Any
 
 import typer
 from pydantic import BaseModel
+from pydantic_core import PydanticUndefined
 
 from uq.cli.app import app
 from uq.contract import Status
@@ -245,7 +246,7 @@ def keys(name: str) -> str:
 
 
 def _default(found: Any) -> str:
-    if found is None or found == "" or found == () or found == {}:
+    if found is None or found is PydanticUndefined or found == "" or found == () or found == {}:
         return ""
     return f"`{value(found)}`"
 
@@ -318,8 +319,8 @@ def questions() -> str:
     plain = [f"`{name}`" for name, one in DESIGNS.items() if one.layout is PLAIN]
     dependent = [f"`{name}`" for name in for_dependent_inputs()]
     return table(("question", "method", "needs"), lines) + (
-        f"\n\nA plain sample is of design {', '.join(plain)}. {', '.join(dependent)} also take"
-        " dependent inputs, and imported rows that are not stated to be independent."
+        f"\n\nPlain samples come from the designs {', '.join(plain)}. {', '.join(dependent)} also"
+        " accept dependent inputs, and imported rows that are not stated to be independent."
     )
 
 

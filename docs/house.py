@@ -9,7 +9,16 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from textwrap import wrap
 
-from layers import HOUSE, LAYERS, READERS, RUNNERS, STOREYS, edges, imports_between_packages
+from layers import (
+    HOUSE,
+    LAYERS,
+    MACHINES,
+    READERS,
+    RUNNERS,
+    edges,
+    imports_between_packages,
+    reading_order,
+)
 
 PICTURE = HOUSE / "docs/pictures/house.svg"
 
@@ -145,14 +154,11 @@ def _machines() -> Iterator[tuple[str, Box]]:
     ground = MARGIN + PITCH * (len(LAYERS) - 2)
     about = wrap(_about("models/numerics"), 52)
     yield "numerics", Box(left, right, ground, TALL, "numerics", tuple(about))
-    for machine, (a, b) in _shared([*STOREYS], left, right).items():
+    for machine, (a, b) in _shared([*MACHINES], left, right).items():
         top = ground - (PITCH - TALL) - LOW
-        for number, names in enumerate(STOREYS[machine]):
-            lines = wrap(", ".join(names), int((b - a) / 5.4))
-            yield (
-                f"{machine} {number}" if number else machine,
-                Box(a, b, top, LOW, "", tuple(lines)),
-            )
+        for number, name in enumerate(reading_order(f"models/{machine}")):
+            box = Box(a, b, top, LOW, "", (name,))
+            yield f"{machine} {number}" if number else machine, box
             top -= STOREY
         yield f"{machine} sign", Box(a, b, top, LOW, machine, kind="machine")
 
@@ -181,7 +187,7 @@ def _reduced() -> list[tuple[str, str]]:
 
 def _sharing() -> Iterator[str]:
     """Yield the machines that import what machines share."""
-    for machine in STOREYS:
+    for machine in MACHINES:
         names = set().union(*edges(f"models/{machine}").values())
         if any(name.startswith("models.numerics") for name in names):
             yield machine

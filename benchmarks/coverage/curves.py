@@ -33,7 +33,7 @@ WRONG = {"gamma life, shape 2": stats.gamma(2.0), "life with 5 % infant mortalit
 
 
 def wrong_fits(repetitions):
-    """Count what a law that is not the right one makes of B-lives, where it is not refused."""
+    """Count the B-lives of a wrong law, where it is not rejected."""
     lines = []
     for name, law in WRONG.items():
         tally = Tally(f"{name}, {FIT_ROWS} independent rows", REASONS)
@@ -55,7 +55,7 @@ WEIBULL = stats.weibull_min(2.0)
 
 
 def bands(repetitions):
-    """Count the bands that hold the whole curve, up to where they end."""
+    """Count the bands that contain the entire curve, up to where they end."""
     lines = []
     for never, censored in ((0.0, False), (0.6, False), (0.0, True), (0.6, True)):
         for rows in (100, 500):

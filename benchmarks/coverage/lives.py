@@ -75,7 +75,7 @@ LEAVING = {"distribution": "exponential", "mean": 1.0}
 
 
 def mixed(design, samples, repetitions):
-    """Count what is said of lives of which most never end and the others may be censored.
+    """Count the statistics of lives most of which never end and the others may be censored.
 
     Parameters
     ----------
