@@ -3,10 +3,12 @@
 import numpy as np
 from scipy import stats
 
-from benchmarks.coverage.lives import B_LIVES, FIT_ROWS, with_life
+from benchmarks.coverage.lives import FIT_ROWS, with_life
 from benchmarks.coverage.tally import Tally
-from uq.analysis.life_fit import fitted_laws
+from uq.analysis.life_fit import fits_of
+from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.lifetime import survival
+from uq.rows.elements import elements_of
 
 EARLY = 0.05
 """Share of lives that end by infant mortality."""
@@ -38,13 +40,13 @@ def wrong_fits(repetitions):
         rng = np.random.default_rng(1)
         for _ in range(repetitions):
             ds = with_life(law.rvs(FIT_ROWS, random_state=rng))
-            for family, fit in fitted_laws(ds, "life")["life"].items():
-                refused = "refused" in fit
-                tally.add(f"{family} refused", 1.0, 1.0, 2.0 if refused else 0.0)
-                if not refused:
+            for family, fit in fits_of(*elements_of(ds, ["life"]), independent=True).items():
+                tally.add(f"{family} refused", 1.0, 1.0, 2.0 if fit.refused else 0.0)
+                if not fit.refused:
                     for label, p in B_LIVES.items():
-                        marked = ", extrapolated" * fit[label]["extrapolated"]
-                        tally.entry(f"{label} of {family}{marked}", law.ppf(p), fit[label])
+                        marked = ", extrapolated" * (label in fit.extrapolated)
+                        found = fit.b_lives[label]
+                        tally.estimate(f"{label} of {family}{marked}", law.ppf(p), found)
         lines += tally.lines()
     return lines
 

@@ -22,7 +22,7 @@ OUTCOMES = {
     "SIGKILL of a run that has kept no row": "resumes, bit-identical",
     "SIGKILL of a run with workers": "no process is left; resumes, bit-identical",
     "SIGKILL during the merge": "resumes, bit-identical",
-    "SIGKILL of a run that stops when it knows enough": "stops at the same size, bit-identical",
+    "SIGKILL of a run that stops early": "stops at the same size, bit-identical",
     "[design] until edited between runs": "resumes up to an interim size, same rows",
     "SIGKILL of an extension": "the old result is kept; resumes, bit-identical",
     "Ctrl-C": "explains how to resume; bit-identical",
