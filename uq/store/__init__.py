@@ -13,21 +13,12 @@ When all rows are there, they are merged into the result, which takes its name i
 folder is removed.
 """
 
-from uq.store.disk import DiskStore
-from uq.store.files import check_target, write, write_result
-from uq.store.folder import folder_of
-from uq.store.memory import MemoryStore
-from uq.store.opening import drop_leftovers, keep
-from uq.store.tally import row_bytes
-
-__all__ = [
-    "DiskStore",
-    "MemoryStore",
-    "check_target",
-    "drop_leftovers",
-    "folder_of",
-    "keep",
-    "row_bytes",
-    "write",
-    "write_result",
-]
+from uq.store.disk import DiskStore as DiskStore
+from uq.store.files import check_target as check_target
+from uq.store.files import write as write
+from uq.store.files import write_result as write_result
+from uq.store.folder import folder_of as folder_of
+from uq.store.memory import MemoryStore as MemoryStore
+from uq.store.opening import drop_leftovers as drop_leftovers
+from uq.store.opening import keep as keep
+from uq.store.tally import row_bytes as row_bytes
