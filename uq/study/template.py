@@ -11,12 +11,11 @@ from pydantic import BaseModel
 from uq.contract import Model, Parameter
 from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import law_problem
-from uq.inputs.distributions import Law, LogNormal
-from uq.inputs.law import BaseLaw
-from uq.inputs.observed import Empirical
+from uq.inputs.law import Law
+from uq.inputs.registry import LAWS, law_of
 from uq.inputs.values import bounds_of
 from uq.literals import toml
-from uq.study.file import LAW, LAWS, AnalysisTable, DesignTable
+from uq.study.file import AnalysisTable, DesignTable
 
 _DESIGN = {"method": "monte-carlo", "samples": 1000, "seed": 1}
 _UNCERTAIN = 3
@@ -96,7 +95,7 @@ def _example_law(parameter: Parameter, nominal: float) -> Law | None:
         candidates.insert(0, {"distribution": "uniform", "lower": low, "upper": high})
     if nominal > 0:
         candidates.insert(0, {"distribution": "lognormal", "mean": nominal, "cv": 0.1})
-    laws: Iterator[Law] = (LAW.validate_python(one | {"source": _SOURCE}) for one in candidates)
+    laws: Iterator[Law] = (law_of(one | {"source": _SOURCE}) for one in candidates)
     return next((law for law in laws if law_problem(law, parameter) is None), None)
 
 
@@ -118,14 +117,11 @@ def _uncertain(model: Model, laws: dict[str, Law]) -> Iterator[str]:
 
 
 def _menu() -> Iterator[str]:
-    common = ("distribution", *BaseLaw.model_fields)
+    common = ("distribution", *Law.model_fields)
     for name, law in LAWS.items():
-        arguments = [key for key in law.model_fields if key not in common]
-        if law is LogNormal:
-            arguments = ["mean, cv", "or median, sigma"]
-        elif law is Empirical:
-            arguments = ["file, column", "or values"]
-        yield f"# {name}: {', '.join(arguments)}"
+        own = [key for key in law.model_fields if key not in common]
+        arguments = ", or ".join(", ".join(names) for names in law.either or [own])
+        yield f"# {name}: {arguments}"
     yield "# Any of them may be truncated: truncate = [lower, upper]"
     yield '# A parameter may be a multiple of another, the law that of the factor: times = "other"'
     yield '# A parameter may equal another, instead of having a law: equals = "other"'
