@@ -1,4 +1,4 @@
-"""Hearing when numba compiles: it takes a while, for which somebody may wait."""
+"""Notice when numba compiles, which may take a while."""
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -14,12 +14,12 @@ from typing import Any
 def compilation(
     began: Callable[[], object], ended: Callable[[], object] = lambda: None
 ) -> Iterator[None]:
-    """Call functions whenever numba begins to compile in this process, and when it is done.
+    """Call functions whenever numba starts and ends compiling in this process.
 
     Parameters
     ----------
     began, ended : callable
-        Called in the thread that compiles; what is loaded from the cache does not count.
+        Called in the thread that compiles; loading from the cache does not count.
     """
     with ExitStack() as stack:
 
@@ -43,13 +43,13 @@ def compilation(
 
         if "numba" in sys.modules:
             listen()
-        else:  # a model may load it when it computes its first rows
+        else:  # a model may import it when it computes its first rows
             stack.callback(when_imported("numba", listen))
         yield
 
 
 def when_imported(name: str, action: Callable[[], object]) -> Callable[[], None]:
-    """Call `action` once a module has been imported; what is returned takes the wish back."""
+    """Call `action` once a module has been imported; return a function that cancels this."""
 
     class Finder(MetaPathFinder):
         def find_spec(
@@ -57,11 +57,11 @@ def when_imported(name: str, action: Callable[[], object]) -> Callable[[], None]
         ) -> ModuleSpec | None:
             if fullname != name:
                 return None
-            sys.meta_path.remove(self)  # what comes behind it finds the module
+            sys.meta_path.remove(self)  # the finders after it find the module
             try:
                 spec = find_spec(name)
             finally:
-                sys.meta_path.insert(0, self)  # somebody may ask without importing
+                sys.meta_path.insert(0, self)  # the spec may be asked for without an import
             if spec and spec.loader:
                 execute = spec.loader.exec_module
 

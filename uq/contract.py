@@ -1,4 +1,4 @@
-"""What a model declares: the one module of ``uq`` that a model may import.
+"""What a model declares: the only module of ``uq`` that a model may import.
 
 For model authors
 -----------------
@@ -20,7 +20,7 @@ Kind = Literal["value", "lifetime", "angle", "category"]
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A physical input of a model, as written beside its field.
+    """A physical input of a model, declared with its field.
 
     Attributes
     ----------
@@ -31,7 +31,7 @@ class Parameter:
     meaning : str
         One line that a reader of a result understands.
     bounds : tuple of float
-        What is admissible (not what is plausible), both ends included.
+        The admissible (not the plausible) range, both ends included.
     source : str
         Where the nominal value comes from, and whether it is given, inferred, fitted or assumed.
     """
@@ -53,9 +53,9 @@ class Setting:
     unit : str
         ``"1"`` for a pure number.
     bounds : tuple of float, optional
-        Both ends included; for a list of numbers, or of lists of them, they hold for each.
+        Both ends included; for a list of numbers, or of lists of them, they apply to each.
     choices : tuple of str
-        The allowed words of a setting that is a word.
+        The allowed values of a setting that is a word.
     """
 
     meaning: str
@@ -73,24 +73,24 @@ class Output:
     unit : str
     meaning : str
     kind : {"value", "lifetime", "angle", "category"}
-        A ``lifetime`` is +inf where it is never reached and has, unless `may_be_censored` is
-        false, a companion ``<name>_censored`` (bool) in what ``batch`` returns. An ``angle`` is
-        compared with thresholds by its magnitude. A ``category`` is an index into `categories`.
+        A ``lifetime`` is +inf where the event never occurs and, unless `may_be_censored` is false,
+        ``batch`` returns a companion ``<name>_censored`` (bool). The magnitude of an ``angle`` is
+        compared with thresholds. A ``category`` is an index into `categories`.
     dims : tuple of str
         Names of the dimensions beyond the row; their coordinates come from `Model.coordinates`.
     may_be_undefined : bool
-        Whether NaN is a legitimate value: no meaning in this row's regime.
+        Whether NaN is legitimate: the output has no meaning in the regime of the row.
     may_be_censored : bool
         For lifetimes only.
     categories : tuple of str
         For categories only.
     accuracy : str
-        Name of the setting that asks for a relative accuracy of this output, if one does. The
-        output ``<name>_error``, with the same dims, then states the absolute error of each value,
-        within which nine in ten lie.
+        Name of the setting that requests a relative accuracy of this output, if there is one. The
+        output ``<name>_error``, with the same dims, then gives an absolute error of each
+        value that nine in ten do not exceed.
     never_known_at_once : bool
-        For lifetimes only: whether a life that never ends is known as such before any row is
-        censored, so that every censored row is one that ends.
+        For lifetimes only: whether a life that never ends is recognised before any row is
+        censored, so that every censored row does end.
     """
 
     unit: str
@@ -105,17 +105,17 @@ class Output:
 
     @property
     def is_lifetime(self) -> bool:
-        """Whether it is a time until something happens, +inf where it never does."""
+        """Whether it is the time of an event, +inf where that never occurs."""
         return self.kind == "lifetime"
 
     @property
     def is_angle(self) -> bool:
-        """Whether its sign is a direction and not a size."""
+        """Whether its sign is only a direction."""
         return self.kind == "angle"
 
     @property
     def is_category(self) -> bool:
-        """Whether it is one of several `categories` and no number."""
+        """Whether it is one of `categories` instead of a number."""
         return self.kind == "category"
 
     @property
@@ -124,7 +124,7 @@ class Output:
         return self.is_lifetime and self.may_be_censored
 
     def is_absent(self, values: NDArray[Any]) -> NDArray[np.bool_]:
-        """Return which values are none, in the shape of `values`."""
+        """Return which values are missing, in the shape of `values`."""
         if self.is_category:
             return values < 0
         if self.is_lifetime:
@@ -132,12 +132,12 @@ class Output:
         return ~np.isfinite(values)
 
     def for_thresholds(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return what thresholds are compared with: the magnitude of an angle, else `values`."""
+        """Return the numbers compared with thresholds: the magnitude of an angle, else `values`."""
         return np.abs(values) if self.is_angle else values
 
 
 class Status(IntEnum):
-    """How a row ended. The names, in lower case with hyphens, are part of the result's schema."""
+    """How a row ended; the names, in lower case with hyphens, are part of the result's schema."""
 
     OK = 0
     OUT_OF_BUDGET = 1
@@ -206,7 +206,7 @@ class Model:
     title : str
         One line.
     version : str
-        Changes whenever the same input may give another number; part of a study's identity.
+        Changes whenever the same input may give different numbers; part of a study's identity.
     parameters : type
         A NamedTuple class; each field ``Annotated[float, Parameter(...)] = nominal``.
     settings : type
@@ -221,16 +221,15 @@ class Model:
     dimensions : dict of str to tuple
         Dimension -> (unit, meaning), for coordinates that are quantities.
     cheap : dict of str to Batch
-        Outputs that can be computed alone at a small part of a row's cost -> a batch that returns
-        just this output, with the same bits.
+        Outputs that can be computed alone at a fraction of a row's cost -> a batch that returns
+        only this output, with the same bits.
     random : bool
         Whether rows depend on their seed. Rows that a design compares with each other then share
-        one, so that noise is not counted as an input's.
+        one, so that noise is not attributed to an input.
     random_unless : dict of str to float
-        Parameter -> its value at which a random model is not random after all, such as a level of
-        noise of 0.
+        Parameter -> the value at which a random model is deterministic, such as a noise level of 0.
     block : int
-        Rows that the kernel advances together; a chunk shorter than this wastes work.
+        Rows that the kernel advances together; shorter chunks waste work.
     references : tuple of str
         What to cite.
     """
@@ -252,7 +251,7 @@ class Model:
     references: tuple[str, ...] = ()
 
     def alone(self, output: str) -> "Model":
-        """Return a model that computes nothing but one of the `cheap` outputs."""
+        """Return a model that computes only one of the `cheap` outputs."""
         return replace(
             self, outputs={output: self.outputs[output]}, batch=self.cheap[output], cheap={}
         )

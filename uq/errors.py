@@ -1,4 +1,4 @@
-"""What a user is told when the input is wrong: plain lines, never a traceback."""
+"""Errors for the user: plain lines, never a traceback."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -26,7 +26,7 @@ class InputError(Exception):
 
 
 class RunError(Exception):
-    """A run that cannot give a result though its input is right: one plain sentence."""
+    """A run that gives no result although its input is valid: one plain sentence."""
 
 
 def choices(names: Iterable[str], most: int = 6) -> str:
@@ -38,7 +38,7 @@ def choices(names: Iterable[str], most: int = 6) -> str:
 
 
 def nearest(name: str, choices: Iterable[str]) -> str:
-    """Return ``"; did you mean 'x'?"`` for the choice most like `name`, or ``""``.
+    """Return ``"; did you mean 'x'?"`` for the choice closest to `name`, or ``""``.
 
     Parameters
     ----------

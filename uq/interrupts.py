@@ -1,4 +1,4 @@
-"""Work that can be stopped at any moment and then leaves nothing behind."""
+"""Work that can be stopped at any moment without leaving anything behind."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -14,7 +14,7 @@ _pending: list[Callable[[], object]] = []
 def undone(action: Callable[[], object]) -> Iterator[None]:
     """Call `action` when the block ends, however it ends.
 
-    A process that must end at once, without unwinding, calls `undo_all` first.
+    A process that ends at once, without unwinding, calls `undo_all` first.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def undo_all() -> None:
 
 
 def in_background(work: Callable[[], T]) -> T:
-    """Call `work` in a daemon thread, so that Ctrl-C reaches this one whatever the work does."""
+    """Call `work` in a daemon thread, so that Ctrl-C always reaches the calling thread."""
     outcome: list[T] = []
     failure: list[BaseException] = []
 

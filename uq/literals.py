@@ -1,4 +1,4 @@
-"""Values as they are written in a TOML file."""
+"""Values as written in a TOML file."""
 
 import json
 import re
@@ -25,7 +25,7 @@ def toml(value: Any) -> str:
 
 
 def key(name: str) -> str:
-    """Return the name of an entry as TOML writes it: in quotes where it must be."""
+    """Return the name of an entry in TOML, quoted where necessary."""
     return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _quoted(name)
 
 
@@ -42,7 +42,7 @@ def shown(value: Any, width: int = 60) -> str:
     return text if len(text) <= width else f"{text[: width - 3]}..."
 
 
-# More parts than any key has: Python's parser takes a time that grows with their square.
+# More parts than any key has: the time of Python's parser grows with their square.
 _MOST_PARTS = 64
 _LONG_KEY = re.compile(
     rf"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MOST_PARTS}}}"""
@@ -50,12 +50,12 @@ _LONG_KEY = re.compile(
 
 
 def read_toml(text: str) -> dict[str, Any]:
-    """Read TOML; a number as `read_number` does.
+    """Read TOML, with numbers as in `read_number`.
 
     Raises
     ------
     ValueError
-        When it is none, or has a key of absurdly many parts.
+        When it is not TOML, or a key has absurdly many parts.
     OverflowError
         When a number is too large.
     RecursionError
@@ -68,14 +68,14 @@ def read_toml(text: str) -> dict[str, Any]:
 
 
 def read_number(text: str) -> float:
-    """Return a number; infinity only where it is written so.
+    """Return a number; infinity only if written as such.
 
     Raises
     ------
     ValueError
-        When it is none.
+        When it is not a number.
     OverflowError
-        When it is too large: 1e400.
+        When it is too large, such as 1e400.
     """
     number = float(text)
     if isinf(number) and "inf" not in text.lower():
@@ -85,17 +85,17 @@ def read_number(text: str) -> float:
     return number
 
 
-# Control characters but the line feed, and what turns the direction of writing.
+# Control characters except the line feed, and those that change the direction of text.
 _UNPRINTABLE = re.compile(
     "[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
 
 
 def plain(text: str) -> str:
-    r"""Return a text that does nothing to a terminal: ``\u001b`` for an escape character."""
+    r"""Return a text that cannot control a terminal: ``\u001b`` for an escape character."""
     return _UNPRINTABLE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
 def plain_line(text: str) -> str:
-    """Return a text as `plain` does, on one line."""
+    """Return a text as in `plain`, on one line."""
     return plain(text).replace("\n", "\\n")

@@ -53,7 +53,7 @@ def quantile(values: Floats, probability: float) -> float:
     """
     if not is_within(probability, len(values)):
         return np.nan
-    # Infinity times zero is no number: numpy interpolates towards a huge number instead.
+    # Infinity times zero is NaN: numpy interpolates towards a huge number instead.
     huge, finite = np.finfo(float).max / 4, values[np.isfinite(values)]
     found = np.quantile(np.clip(values, -huge, huge), probability, method="median_unbiased")
     if found > finite.max(initial=-huge):
@@ -146,6 +146,6 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
 
 
 def rows_needed(coverage: float, confidence: float, failed: int = 0) -> int:
-    """Return the least number of rows, `failed` of them failed, that gives a tolerance bound."""
+    """Return the smallest number of rows, `failed` of them failed, for a tolerance bound."""
     beyond = failed + 1  # rows that must lie outside the bound
     return beyond + int(stats.nbinom.ppf(confidence, beyond, 1 - coverage))

@@ -1,4 +1,4 @@
-"""What is where a file is to be read or written: only regular files are ever replaced."""
+"""Checks of paths before reading or writing: only regular files are ever replaced."""
 
 import os
 import stat
@@ -16,23 +16,23 @@ _KINDS = {
 }
 
 _TOO_LONG = "too long a name"
-_LONGEST = 225  # bytes in a name: rows are kept beside a result under it with an ending
+_LONGEST = 225  # bytes in a name: the folder of rows beside a result appends an ending
 
 
 def node(path: Path) -> str:
-    """Return what stands in the place of a file, such as "a device"; nothing where all is well."""
+    """Return what a path is instead of a file, such as "a device"; "" if nothing is wrong."""
     try:
         kind = stat.S_IFMT(path.stat().st_mode)
     except OSError as error:
         if error.errno == ENAMETOOLONG:
             return _TOO_LONG
-        # a link that leads in a circle exists for nobody who follows it
+        # a circular link does not exist for whoever follows it
         return "a link that leads nowhere" if Path(os.path.realpath(path)).is_symlink() else ""
     return "" if kind == stat.S_IFREG else _KINDS[kind]
 
 
 def file_behind(path: Path) -> Path:
-    """Return the file that is written where a path is given: that to which a link leads.
+    """Return the file to write for a path: the target of a link.
 
     Parameters
     ----------
@@ -41,12 +41,12 @@ def file_behind(path: Path) -> Path:
     Returns
     -------
     Path
-        A regular file, or nothing yet.
+        A regular file, or a path that does not exist yet.
 
     Raises
     ------
     InputError
-        When it is anything else: only regular files are ever replaced.
+        When it is anything else.
     """
     refuse_standard_output(path)
     match node(path):
@@ -62,6 +62,6 @@ def file_behind(path: Path) -> Path:
 
 
 def refuse_standard_output(path: Path) -> None:
-    """Refuse "-": a result is a file that can be read in any order."""
+    """Refuse "-": a result must be a file with random access."""
     if str(path) == "-":
         raise InputError("-: output goes to a file, not to standard output; give its name")

@@ -1,4 +1,4 @@
-"""The processor and the versions that made a result: the same row may differ elsewhere."""
+"""The processor and the versions that computed a result: rows may differ with others."""
 
 import importlib.metadata
 import platform
@@ -13,7 +13,7 @@ _COMPUTING = ("vibrolife", "numpy", "numba", "scipy", "distributed")
 
 
 def provenance() -> dict[str, str]:
-    """Return the processor and the versions that made a result."""
+    """Return the processor and the versions that compute results here."""
     return dict(_here())
 
 
@@ -25,13 +25,13 @@ def _here() -> dict[str, str]:
 
 @cache
 def versions() -> dict[str, str]:
-    """Return what must be the same in all processes that compute rows of one result."""
+    """Return the versions that must agree in all processes that compute rows of one result."""
     python = ".".join(platform.python_version_tuple()[:2])
     return {"Python": python} | {name: importlib.metadata.version(name) for name in _COMPUTING}
 
 
 def differences(wanted: Mapping[str, str]) -> str:
-    """Say in what this process differs from the one that tells what it wants; nothing if equal.
+    """Return how this process differs from one that wants rows; "" if it does not.
 
     Parameters
     ----------

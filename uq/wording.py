@@ -1,4 +1,4 @@
-"""Numbers, intervals and laws in the words of a table, on a terminal and in a report."""
+"""Numbers, intervals and laws as text, for tables on a terminal and in a report."""
 
 import re
 from collections.abc import Mapping
@@ -13,12 +13,12 @@ Entry = Mapping[str, Any]
 
 
 def number(value: float | None) -> str:
-    """Return a number for a table; a dash for none."""
+    """Return a number for a table; a dash if there is none."""
     return "-" if value is None else f"{value:.5g}"
 
 
 def duration(seconds: float | None) -> str:
-    """Return a time in hours, days or years; nothing for less than an hour.
+    """Return a time in hours, days or years; "" below one hour.
 
     Parameters
     ----------
@@ -58,13 +58,13 @@ def known(estimate: Estimate, end: str = "value", per: float = 1.0) -> str:
 
 
 def interval(estimate: Estimate, per: float = 1.0) -> str:
-    """Return the ends of an interval; nothing where none is known, or both are never."""
+    """Return the ends of an interval; "" where neither is known, or both are never."""
     ends = [known(estimate, end, per) for end in ("low", "high")]
     return "" if ends == ["-", "-"] or ends[0] == "never" else " to ".join(ends)
 
 
 def failed_interval(bounds: Estimate | None, per: float = 1.0) -> str:
-    """Return the bounds with failed rows at best and at worst; nothing where no row failed."""
+    """Return the bounds with failed rows at best and at worst; "" if no row failed."""
     if bounds is None:
         return ""
     low, high = (known(bounds, end, per) for end in ("low", "high"))
@@ -74,7 +74,7 @@ def failed_interval(bounds: Estimate | None, per: float = 1.0) -> str:
 
 
 def estimated(label: str, per: float = 1.0) -> str:
-    """Return what is estimated: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours."""
+    """Return the label of an estimate: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours."""
     return re.sub(
         r"^P\(([<>])(.+?)\)",
         lambda found: f"P({found[1]} {number(float(found[2]) / per)})",
@@ -83,7 +83,7 @@ def estimated(label: str, per: float = 1.0) -> str:
 
 
 def brief(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
-    """Return an estimate for a sentence, no more exact than it is known, and its interval.
+    """Return an estimate for a sentence, rounded to its accuracy, and its interval.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def _rounded(value: float, decimals: int) -> str:
 
 
 def percent(share: float) -> str:
-    """Return a share in per cent: to a tenth, or more exactly where it is close to none or all."""
+    """Return a share in per cent: to a tenth, or more digits close to 0 and 100 %."""
     if 0 < share < 0.01:
         return f"{100 * share:.2g} %"
     rest = round(1 - share, 12)
@@ -119,7 +119,7 @@ def percent(share: float) -> str:
 
 
 def percent_with_interval(estimate: Estimate, failed: Estimate | None = None) -> str:
-    """Return a share in per cent, with its interval and the bounds with failed rows, if it has."""
+    """Return a share in per cent, with its interval and the bounds with failed rows, if any."""
     told = percent(estimate.value)
     if not estimate.has_interval:
         return told
@@ -135,7 +135,7 @@ def percent_interval(low: float, high: float) -> str:
 
 
 def law(stated: Any) -> str:
-    """Return the law of an input as one would say it: ``normal(mean = 1.0, sd = 0.1)``."""
+    """Return the law of an input: ``normal(mean = 1.0, sd = 0.1)``."""
     given = stated.model_dump(exclude={"distribution", "source", "times"}, exclude_none=True)
     if given.get("file") is not None:
         del given["values"]
@@ -144,7 +144,7 @@ def law(stated: Any) -> str:
 
 
 class TimeUnit(NamedTuple):
-    """A unit of time, its length [s], and the time [s] from which people use it."""
+    """A unit of time, its length [s], and the time [s] from which it is used."""
 
     name: str
     seconds: float
@@ -162,5 +162,5 @@ _TIME_UNITS = (
 
 
 def time_unit(seconds: float) -> TimeUnit:
-    """Return the unit in which people say a time [s] that is not negative."""
+    """Return the usual unit of a time [s] that is not negative."""
     return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]
