@@ -4,8 +4,9 @@ import errno
 import io
 import os
 import sys
+from collections.abc import Callable
 from contextlib import suppress
-from typing import TextIO
+from typing import Any, TextIO
 
 from uq.literals import plain_line
 
@@ -24,16 +25,15 @@ class Watched(io.TextIOWrapper):
 
     def write(self, text: str) -> int:
         """Write text, as every stream does."""
-        try:
-            return super().write(text)
-        except OSError as error:
-            self.failure = error
-            raise
+        return self._recorded(super().write, text)
 
     def flush(self) -> None:
         """Write what is buffered."""
+        self._recorded(super().flush)
+
+    def _recorded(self, action: Callable[..., Any], *arguments: str) -> Any:
         try:
-            super().flush()
+            return action(*arguments)
         except OSError as error:
             self.failure = error
             raise

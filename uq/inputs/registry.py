@@ -11,22 +11,8 @@ from typing import Annotated, Any, get_args
 
 from pydantic import Field, TypeAdapter
 
-from uq.inputs.distributions import (
-    Beta,
-    Exponential,
-    Gamma,
-    Gumbel,
-    LogNormal,
-    LogUniform,
-    Normal,
-    Pert,
-    Triangular,
-    TruncatedNormal,
-    Uniform,
-    Weibull,
-)
+from uq.inputs import distributions, observed
 from uq.inputs.law import Law
-from uq.inputs.observed import DiscreteChoice, Empirical, Histogram, IntegerRange
 
 
 def _named(laws: Iterable[type[Law]]) -> dict[str, type[Law]]:
@@ -35,22 +21,22 @@ def _named(laws: Iterable[type[Law]]) -> dict[str, type[Law]]:
 
 LAWS = _named(
     (
-        Uniform,
-        LogUniform,
-        Normal,
-        TruncatedNormal,
-        LogNormal,
-        Triangular,
-        Pert,
-        Beta,
-        Weibull,
-        Gamma,
-        Gumbel,
-        Exponential,
-        DiscreteChoice,
-        IntegerRange,
-        Empirical,
-        Histogram,
+        distributions.Uniform,
+        distributions.LogUniform,
+        distributions.Normal,
+        distributions.TruncatedNormal,
+        distributions.LogNormal,
+        distributions.Triangular,
+        distributions.Pert,
+        distributions.Beta,
+        distributions.Weibull,
+        distributions.Gamma,
+        distributions.Gumbel,
+        distributions.Exponential,
+        observed.DiscreteChoice,
+        observed.IntegerRange,
+        observed.Empirical,
+        observed.Histogram,
     )
 )
 """Name in a study file -> law, in the order in which laws are listed."""
