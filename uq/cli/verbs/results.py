@@ -56,7 +56,7 @@ def convergence(
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
     json: given.Json = False,
 ) -> None:
-    """Show running estimates, to judge whether there are enough rows."""
+    """Show running estimates: whether the rows are enough."""
     from uq.cli import estimates
 
     estimates.convergence(result, output, json)
@@ -105,7 +105,7 @@ def report(
     ] = None,
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
-    """Write everything that a result says to one page for a browser."""
+    """Write all that a result says to one page for a browser."""
     from uq.report import write_report
 
     path = output or result.with_suffix(".html")
