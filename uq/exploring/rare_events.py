@@ -10,8 +10,7 @@ from scipy.special import ndtr
 
 from uq.errors import InputError, nearest
 from uq.exploring.design_points import design_points, drawn_around
-from uq.exploring.evaluator import evaluator_of
-from uq.exploring.limit_state import LimitState
+from uq.exploring.limit_state import LimitState, evaluator_of
 from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
 from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, Floats, subset_simulation
 from uq.intervals import Ends, binomial_interval

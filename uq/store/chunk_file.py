@@ -33,10 +33,7 @@ def row_type(workload: Workload) -> np.dtype[Any]:
 
 
 def pack(
-    kind: np.dtype[Any],
-    rows: Rows,
-    columns: Mapping[str, NDArray[Any]],
-    status: NDArray[np.int8],
+    kind: np.dtype[Any], rows: Rows, columns: Mapping[str, NDArray[Any]], status: NDArray[np.int8]
 ) -> NDArray[Any]:
     """Return rows as one structured array."""
     data = np.empty(len(status), kind)
