@@ -11,6 +11,7 @@ from scipy.special import ndtr
 
 from uq.contract import Output, Status
 from uq.errors import InputError, nearest
+from uq.exploring.subset_simulation import Floats
 from uq.inputs.values import unknown_name
 from uq.rows.columns import censored_name
 from uq.rows.evaluate import Chunk
@@ -23,9 +24,7 @@ from uq.running.options import RunOptions
 from uq.store import MemoryStore
 from uq.study.definition import Study
 
-Floats = NDArray[np.float64]
-
-Evaluator = Callable[[NDArray[np.float64], NDArray[np.uint64]], Chunk]
+Evaluator = Callable[[Floats, NDArray[np.uint64]], Chunk]
 """``evaluator(x, seed)`` -> outputs of rows x (n, d), in declared order, with seeds (n,): the same
 bits wherever they are computed."""
 
@@ -49,7 +48,7 @@ def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Eva
     work = work._replace(output=output if cheap else "")
     with Executor(work, options) as executor:
 
-        def evaluator(x: NDArray[np.float64], seed: NDArray[np.uint64]) -> Chunk:
+        def evaluator(x: Floats, seed: NDArray[np.uint64]) -> Chunk:
             zeros = np.zeros(len(x), np.int64)
             rows = Rows(x, seed, zeros.astype(np.int32), zeros, zeros.astype(np.int16))
             batch = work._replace(total=len(x), block=rows.part)
