@@ -1,9 +1,9 @@
-"""The vibrator: two unbalanced motors on one body, which must synchronise by themselves.
+"""The vibrator: two unbalanced motors on one body, which must self-synchronise.
 
 After J. Michalczyk and G. Cieplok, "Disturbances in self-synchronisation of vibrators in vibratory
 machines", Arch. Min. Sci. 59 (2014).
 
-Read `parameters`, then `batch`, from rows to outputs. Below it, from the ground up: `theory` of
+Read `parameters`, then `batch`, from rows to outputs. It builds on, from the bottom up: `theory` of
 synchronous running, `equations` of motion, the propagators `lanes` and `exact`, and `start` from
 standstill. `trajectory` is one labelled run; `paper` reproduces the paper.
 """
@@ -15,7 +15,7 @@ from uq.contract import Model, Trajectory
 
 
 def _batch(x: Any, seed: Any, settings: Settings) -> Any:
-    from models.vibrator.batch import batch  # numba only when something is computed
+    from models.vibrator.batch import batch  # imports numba only when needed
 
     return batch(x, seed, settings)
 

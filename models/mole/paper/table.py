@@ -1,6 +1,6 @@
-"""The claims of Ho, Nguyen & Woo 2011 beside the model: ``python -m models.mole.paper.table``.
+"""The claims of Ho, Nguyen & Woo 2011 against the model: ``python -m models.mole.paper.table``.
 
-Each claim is looked at in two formulations: as printed, which is what the paper computed, and
+Each claim is checked in two formulations: as printed, which is what the paper computed, and
 physical, with the friction of the mole on the bar and the jump of the voltage restored.
 """
 
@@ -24,25 +24,25 @@ from models.mole.parameters import (
 )
 from models.mole.theory.periods import common_periods
 
-STARTS = 16  # neighbouring ones over which a chaotic response is averaged, too
+STARTS = 16  # neighbouring starts over which a chaotic response is averaged, too
 LONG = 3000  # control periods of each
-LONGEST = 25_600  # control periods of one whose regime is undecided
+LONGEST = 25_600  # control periods if the regime is undecided
 CURVE = 2000  # strobe points by which closed curves are counted
 
 NOTE = """\
-A period counts common periods of control and half a mains cycle. At 29.5 to 47 rad/s there is
-none, and the simplest response is one closed curve of the states at which the relay closes. The
-paper's exponent 6.67 at 2.5 Hz is not the model's: leaving the jumps of the tangent flow at the
-ends of slips out of account, one finds 6.6 bit/s, and a positive number on periodic orbits as well.
-At 9 Hz the bar does not reach the stop as printed; with the voltage's jump at switching restored it
-does, but chaotically over 56 mm where 30 mm were measured, "quite regular". Irregular motion at
-2.5 Hz and alternation at 5 Hz were measured and are lost in the physical formulation. From the
-second start at 47 rad/s, as printed, the closed curve is steeply folded: it is near a doubling of
-the torus."""
+Periods are counted in common periods of control and half a mains cycle. At 29.5 to 47 rad/s there
+is none, and the simplest response is one closed curve of the states at which the relay closes. The
+paper's exponent 6.67 at 2.5 Hz is not the model's: neglecting the jumps of the tangent flow at the
+ends of slips gives 6.6 bit/s, and a positive exponent on periodic orbits as well. At 9 Hz, as
+printed, the bar does not reach the stop; with the voltage's jump at switching restored it does, but
+chaotically over 56 mm, where 30 mm were measured, "quite regular". Irregular motion at 2.5 Hz and
+alternation at 5 Hz were measured but do not occur in the physical formulation. From the second
+start at 47 rad/s, as printed, the closed curve is steeply folded: it is near a doubling of the
+torus."""
 
 
 class Claim(NamedTuple):
-    """What the paper says of one case.
+    """The paper's claim about one case.
 
     Attributes
     ----------
@@ -116,8 +116,8 @@ def responses(formulation: Any) -> dict[str, NDArray[Any]]:
 def closed_curves(params: Params, settings: Settings) -> int:
     """Count the closed curves on which a quasi-periodic response meets its strobe, 0 if too many.
 
-    On n of them, every n-th state lies on the same one, where its place follows from the mains'
-    phase: in the order of phases, neighbours are close.
+    With n curves, every n-th state lies on the same one, at a place given by the mains' phase: in
+    the order of phases, neighbours are close.
     """
     section = poincare_section(params, settings, CURVE, dropped=400)
     u = section["displacement"].to_numpy()
@@ -131,7 +131,7 @@ def closed_curves(params: Params, settings: Settings) -> int:
 
 
 def described(outputs: dict[str, NDArray[Any]], i: int, common: int, curves: int) -> str:
-    """Say in a few words what one response is."""
+    """Describe one response in a few words."""
     regime, period = outputs["regime"][i], int(outputs["period"][i])
     exponent = f"{outputs['lyapunov_exponent'][i]:.3g}"
     if regime == CHAOTIC:
