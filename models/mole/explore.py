@@ -48,8 +48,13 @@ def history(
 ) -> xr.Dataset:
     """Return part of the time history of one mole.
 
-    Parameters ---------- params : Params Each field a float. settings : Settings Only formulation
-    and tolerance are used. begin, end : float
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    settings : Settings
+        Only formulation and tolerance are used.
+    begin, end : float
         Since the relay first closed [s].
     points : int
         Evenly spaced, including both ends.
@@ -90,12 +95,21 @@ def poincare_section(
 ) -> xr.Dataset:
     """Return the states of a mole at the instants at which its relay closes.
 
-    Parameters ---------- params : Params Each field a float. settings : Settings Only formulation
-    and tolerance are used. periods : int Number of points returned. dropped : int Control periods
-    dropped before the first. starts : array_like, shape (k, 2), optional Initial displacements [m]
-    and velocities [m/s] to follow, instead of that in `params`. common : bool Whether to sample
-    once per common period of control and half a mains cycle instead of once per control period: a
-    period-1 response is then one point.
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    settings : Settings
+        Only formulation and tolerance are used.
+    periods : int
+        Number of points returned.
+    dropped : int
+        Control periods dropped before the first.
+    starts : array_like, shape (k, 2), optional
+        Initial displacements [m] and velocities [m/s] to follow, instead of those in `params`.
+    common : bool
+        Whether to sample once per common period of control and half a mains cycle instead of once
+        per control period: a period-1 response is then one point.
 
     Returns
     -------

@@ -40,7 +40,9 @@ class Outcome(NamedTuple):
     time : float
         Time reached.
     guard : int
-        The guard that became negative, -1 if none. step : float To try next.
+        The guard that became negative, -1 if none.
+    step : float
+        To try next.
     steps : int
         Steps tried, including rejected ones.
     sampled : int

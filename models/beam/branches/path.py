@@ -46,10 +46,12 @@ class Branch(NamedTuple):
     orbits : tuple of Orbit
         One at each.
     events : tuple of Event
-        In order along the branch. end : str The event at which stability was lost, if that ends the
-        branch; ``symmetry-breaking`` if asymmetric orbits become symmetric, beyond which there are
-        only their mirror images; ``stop`` or ``start`` if it left the range; ``stalled`` if even
-        the smallest step failed; ``budget`` after `POINTS` points.
+        In order along the branch.
+    end : str
+        The event at which stability was lost, if that ends the branch; ``symmetry-breaking`` if
+        asymmetric orbits become symmetric, beyond which there are only their mirror images;
+        ``stop`` or ``start`` if it left the range; ``stalled`` if even the smallest step failed;
+        ``budget`` after `POINTS` points.
     """
 
     values: Array

@@ -57,8 +57,9 @@ def continue_orbit(
         A guess of the orbit at `start`, such as a ``state`` of a result; by default a stable orbit
         is found by letting the beam settle from the initial state in `params`.
     stable_only : bool
-        Whether to end the branch where stability is lost. largest_step : float Relative to the
-        range and to the state.
+        Whether to end the branch where stability is lost.
+    largest_step : float
+        Relative to the range and to the state.
     tolerance : float
         Of event location, relative to the same.
 

@@ -16,8 +16,12 @@ def work_rate_against_gap(
 ) -> xr.Dataset:
     """Return the work-rates of the settled response at constant gaps.
 
-    Parameters ---------- params : Params Each field a float; the gap asymmetry is not used.
-    settings : Settings gaps : array_like, shape (n,) or (n, 2)
+    Parameters
+    ----------
+    params : Params
+        Each field a float; the gap asymmetry is not used.
+    settings : Settings
+    gaps : array_like, shape (n,) or (n, 2)
         Of both sites, or of the right and the left [m].
     sweep : {"none", "up", "down"}
         Start each gap from the initial state of `params`, or, with the exact propagator, from the

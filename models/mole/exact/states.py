@@ -42,7 +42,9 @@ class Motion(NamedTuple):
     state : State
         The last one.
     contacts : int
-        Contacts begun. events : int All events, including switching.
+        Contacts begun.
+    events : int
+        All events, including switching.
     lowest, highest : float
         Displacement u [m].
     steps : int

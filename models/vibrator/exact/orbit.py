@@ -5,7 +5,7 @@ A fixed point, with psi_2 also turned once, is a periodic orbit; the eigenvalues
 Floquet multipliers except the trivial 1. The derivative is taken by central differences.
 
 Coordinates that cannot vary are left out of P: those of rigid mounts and, if the feed rides at
-psi_1 = 0, its height. If it flies there, its height and their rate are included. The flight may
+psi_1 = 0, its height. If it flies there, its height and its rate are included. The flight may
 then begin or end at any other phase: P is smooth as long as the same events occur in the same
 order.
 """
@@ -28,10 +28,7 @@ SAMPLES = 2048  # of an orbit: impacts of the feed cause errors of up to 1e-4 in
 _ITERATIONS, _DERIVATIVES = 15, 4  # at most
 _ROUGH = 1e-8  # tolerance that suffices for the derivative in a search
 _NUDGE = 1e-4  # of central differences, in units of the propagator's scales
-_CLOSE, _STALLED = (
-    1e-9,
-    1e-6,
-)  # last step: below the first, or stalled below the second
+_CLOSE, _STALLED = 1e-9, 1e-6  # last step: below the first, or stalled below the second
 _BOLDEST = 0.5  # longest step of psi_2 and of log(speed)
 _SLOWEST = 5.0  # longest turn tried, in turns at the guessed speed
 

@@ -46,7 +46,9 @@ class Motion(NamedTuple):
     ----------
     status : int
         `REACHED_END`, `GUARDED` (turns completed), `OUT_OF_BUDGET` or `STUCK`, of
-        `models.numerics.dop853`. time : float [s] since the start.
+        `models.numerics.dop853`.
+    time : float
+        [s] since the start.
     state : ndarray
         At that time.
     samples : ndarray, shape (k, len(state))

@@ -87,9 +87,10 @@ def advance(
         Centre of the band of the disphasing angle [rad]; NaN for none.
     steps : int
     band : float
-        Its half-width [rad]. accurate : bool Steps of order 8 instead of 5. They cost twice as
-        much; in run-ups of 5 s, six per turn have a measured error of 1e-8 rad, as have twenty of
-        order 5.
+        Its half-width [rad].
+    accurate : bool
+        Steps of order 8 instead of 5. They cost twice as much; in run-ups of 5 s, six per turn have
+        a measured error of 1e-8 rad, as have twenty of order 5.
 
     Returns
     -------

@@ -46,8 +46,12 @@ _LOCKED = 0.2  # range in the last second below which motors are locked [rad]
 def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
     """Switch on n machines and find their outcomes.
 
-    Parameters ---------- p : Params Each field an ndarray of shape (n,). settings : Settings
-    `propagator` and `steps_per_turn` are not used.
+    Parameters
+    ----------
+    p : Params
+        Each field an ndarray of shape (n,).
+    settings : Settings
+        `propagator` and `steps_per_turn` are not used.
 
     Returns
     -------
