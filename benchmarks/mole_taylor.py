@@ -1,4 +1,4 @@
-"""The mole by heyoka's Taylor series, some machines abreast: the best tool of others.
+"""The mole by heyoka's Taylor series, several machines at a time: the best alternative.
 
 One integrator serves all modes, whose constants are its parameters, and which may differ among
 machines side by side. heyoka finds the events; what follows them is compiled.
@@ -12,7 +12,7 @@ from models.mole.lanes.modes import mole_of
 
 
 class Taylor:
-    """Series to one tolerance, compiled for it and for so many machines abreast."""
+    """Series to one tolerance, compiled for it and for so many machines side by side."""
 
     def __init__(self, batch, tolerance):
         y = hy.make_vars(*(f"y_{i}" for i in range(modes.STATE)))

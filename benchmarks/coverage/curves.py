@@ -3,10 +3,12 @@
 import numpy as np
 from scipy import stats
 
-from benchmarks.coverage.lives import B_LIVES, FIT_ROWS, with_life
+from benchmarks.coverage.lives import FIT_ROWS, with_life
 from benchmarks.coverage.tally import Tally
-from uq.analysis.life_fit import fitted_laws
+from uq.analysis.life_fit import fits_of
+from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.lifetime import survival
+from uq.rows.elements import elements_of
 
 EARLY = 0.05
 """Share of lives that end by infant mortality."""
@@ -31,20 +33,20 @@ WRONG = {"gamma life, shape 2": stats.gamma(2.0), "life with 5 % infant mortalit
 
 
 def wrong_fits(repetitions):
-    """Count what a law that is not the right one makes of B-lives, where it is not refused."""
+    """Count the B-lives of a wrong law, where it is not rejected."""
     lines = []
     for name, law in WRONG.items():
         tally = Tally(f"{name}, {FIT_ROWS} independent rows", REASONS)
         rng = np.random.default_rng(1)
         for _ in range(repetitions):
             ds = with_life(law.rvs(FIT_ROWS, random_state=rng))
-            for family, fit in fitted_laws(ds, "life")["life"].items():
-                refused = "refused" in fit
-                tally.add(f"{family} refused", 1.0, 1.0, 2.0 if refused else 0.0)
-                if not refused:
+            for family, fit in fits_of(*elements_of(ds, ["life"]), independent=True).items():
+                tally.add(f"{family} refused", 1.0, 1.0, 2.0 if fit.refused else 0.0)
+                if not fit.refused:
                     for label, p in B_LIVES.items():
-                        marked = ", extrapolated" * fit[label]["extrapolated"]
-                        tally.entry(f"{label} of {family}{marked}", law.ppf(p), fit[label])
+                        marked = ", extrapolated" * (label in fit.extrapolated)
+                        found = fit.b_lives[label]
+                        tally.estimate(f"{label} of {family}{marked}", law.ppf(p), found)
         lines += tally.lines()
     return lines
 
@@ -53,7 +55,7 @@ WEIBULL = stats.weibull_min(2.0)
 
 
 def bands(repetitions):
-    """Count the bands that hold the whole curve, up to where they end."""
+    """Count the bands that contain the entire curve, up to where they end."""
     lines = []
     for never, censored in ((0.0, False), (0.6, False), (0.0, True), (0.6, True)):
         for rows in (100, 500):
@@ -75,8 +77,8 @@ def bands(repetitions):
 
 
 HALF_SEEN = (
-    "conservative: Kolmogorov's law is that of the largest deviation of a whole law, of which only"
-    " 40 % ends"
+    "conservative: Kolmogorov's law describes the largest deviation over the entire distribution,"
+    " of which only 40 % is finite"
 )
 
 
@@ -89,12 +91,12 @@ def _holds(curve, truth):
 
 
 LAW_ALONE = (
-    "the law is not that of the lives: below 1/61 its B1 comes from the law alone, is marked"
-    " `extrapolated`, and stands beside that of the other law"
+    "wrong law: below 1/61 its B1 comes from the law alone, is marked `extrapolated`, and is shown"
+    " beside that of the other law"
 )
 REASONS = {
-    "B": "the law is not that of the lives, and 60 rows cannot tell",
+    "B": "wrong law, which 60 rows cannot detect",
     **{f"B1 of {law}, extrapolated": LAW_ALONE for law in ("weibull", "lognormal")},
-    "weibull refused": "60 rows do not always tell one law from another",
-    "lognormal refused": "60 rows do not always tell one law from another",
+    "weibull refused": "60 rows do not always distinguish the laws",
+    "lognormal refused": "60 rows do not always distinguish the laws",
 }

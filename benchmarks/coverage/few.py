@@ -1,4 +1,4 @@
-"""Few hits and failed rows: shares, indices and twins of what is rarely seen, or not at all."""
+"""Few hits and failed rows: shares, indices and twins of events seen rarely, or not at all."""
 
 from dataclasses import replace
 
@@ -125,10 +125,10 @@ def twin(repetitions):
     study = study_of("monte-carlo", 300, laws=UNIFORMS, analysis=analysis)
     tally = Tally("Ishigami, 300 independent rows and 30,000 of a cheap twin", REASONS)
     for ds in repeated(study, repetitions):
-        found = with_twin(ds, NAME)["outputs"]["ishigami"]
+        found = with_twin(ds, NAME).outputs["ishigami"]
         for hits, limit in limits.items():
-            entry = found[f"P(>{limit!r})"]
-            tally.entry(f"by the twin, {hits:g} hits expected", hits / 300, entry)
+            estimate = found[f"P(>{limit!r})"].estimate
+            tally.estimate(f"by the twin, {hits:g} hits expected", hits / 300, estimate)
     return tally.lines()
 
 
@@ -167,8 +167,8 @@ def failed(repetitions):
     return tally.lines()
 
 
-EXACT = "conservative by design: the interval of Clopper and Pearson, where hits are few"
-WIDENED = "conservative by design: widened by what one more row might do, where few rows count"
+EXACT = "conservative by design: Clopper and Pearson's interval, where hits are few"
+WIDENED = "conservative by design: widened by the effect of one more row, where few rows matter"
 BOUNDS = "conservative by design: bounds with all failed rows on either side"
 REFUSED = "refused: fewer than 5 hits in each replicate"
 REASONS = (

@@ -1,4 +1,4 @@
-"""Twins, runs that stop when they know enough, and rare events."""
+"""Twins, runs that stop when an interval is narrow enough, and rare events."""
 
 from functools import partial
 
@@ -23,6 +23,7 @@ from benchmarks.coverage.problems import (
 )
 from benchmarks.coverage.tally import Tally
 from uq.analysis.twin import with_twin
+from uq.estimate import NOTHING
 from uq.exploring.design_points import design_points, drawn_around
 from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
 from uq.exploring.subset_simulation import subset_simulation
@@ -32,8 +33,6 @@ from uq.rows import stopping
 UNIFORMS = {
     name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")
 }
-
-NOT_GIVEN = dict.fromkeys(("value", "low", "high"))
 
 
 def twin(repetitions):
@@ -46,10 +45,12 @@ def twin(repetitions):
     study = study_of("monte-carlo", 300, laws=UNIFORMS, analysis=analysis)
     tally = Tally("Ishigami, 300 independent rows and 30,000 of a cheap twin", REASONS)
     for ds in repeated(study, repetitions):
-        found = with_twin(ds, NAME)["outputs"]["ishigami"]
+        found = with_twin(ds, NAME).outputs["ishigami"]
         # A sample in a thousand seems to have a tail too heavy for a mean.
-        tally.entry("mean by the twin", ISHIGAMI_MEAN, found.get("mean", NOT_GIVEN))
-        tally.entry("P(> 9.0) by the twin", 1 - ishigami_cdf(9.0), found["P(>9.0)"])
+        mean = found["mean"].estimate if "mean" in found else NOTHING
+        tally.estimate("mean by the twin", ISHIGAMI_MEAN, mean)
+        above = found["P(>9.0)"].estimate
+        tally.estimate("P(> 9.0) by the twin", 1 - ishigami_cdf(9.0), above)
     return tally.lines()
 
 
@@ -62,7 +63,7 @@ UNTIL = {
 
 def stopped(repetitions):
     """Count the intervals at which runs stop."""
-    tally = Tally("runs that stop at one of 7 looks, at most 2048 independent rows", REASONS)
+    tally = Tally("runs that stop at one of 7 checks, at most 2048 independent rows", REASONS)
     for what, (until, truth) in UNTIL.items():
         study = study_of("monte-carlo", 2048, laws=UNIFORMS, design={"until": until})
         for seed in range(repetitions):
@@ -197,7 +198,7 @@ def _sampled(margin):
 FLAT = "conservative by design: no more than the independent rows of the first level support"
 REASONS = {
     **{f"P = {share:g}": FLAT for share in PLATEAU},
-    "mean when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
-    "median when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
-    "P(> 2.5) when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
+    "mean when stopped": "conservative: 5 % is the probability that any of 7 checks misses",
+    "median when stopped": "conservative: 5 % is the probability that any of 7 checks misses",
+    "P(> 2.5) when stopped": "conservative: 5 % is the probability that any of 7 checks misses",
 }

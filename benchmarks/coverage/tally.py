@@ -15,7 +15,7 @@ OURS = "uq"
 
 
 class Line(NamedTuple):
-    """What became of one interval over all repetitions.
+    """The outcome of one interval over all repetitions.
 
     Attributes
     ----------
@@ -80,6 +80,10 @@ class Tally:
     def entry(self, what, truth, entry, by=OURS):
         """Count the interval of an entry with ``low`` and ``high``."""
         self.add(what, truth, entry["low"], entry["high"], by)
+
+    def estimate(self, what, truth, estimate, by=OURS):
+        """Count the interval of an `uq.estimate.Estimate`."""
+        self.add(what, truth, estimate.low, estimate.high, by)
 
     def lines(self):
         """Return what was counted."""

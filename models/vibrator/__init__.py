@@ -3,9 +3,17 @@
 After J. Michalczyk and G. Cieplok, "Disturbances in self-synchronisation of vibrators in vibratory
 machines", Arch. Min. Sci. 59 (2014).
 
-Read `parameters`, then `batch`, from rows to outputs. It builds on, from the bottom up: `theory` of
-synchronous running, `equations` of motion, the propagators `lanes` and `exact`, and `start` from
-standstill. `trajectory` is one labelled run; `paper` reproduces the paper.
+Reading order; each part imports only those above it:
+
+    parameters    inputs, settings and outputs
+    theory        the averaged theory of synchronous running
+    equations     the equations of motion
+    exact         one propagator: any machine, one at a time
+    lanes         the other: sixteen rigid machines at a time
+    start         from standstill to the steady state
+    batch         from rows of a study to outputs
+    trajectory    one labelled run
+    paper         the paper's claims compared with the model
 """
 
 from typing import Any

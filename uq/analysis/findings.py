@@ -1,26 +1,24 @@
-"""A result, and what is computed of it once, however many tables and figures show it."""
+"""A result with what several tables and figures show of it, computed once."""
 
 from functools import cached_property
 
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.convergence import running_estimates
+from uq.analysis.convergence import COLUMNS, running_estimates
 from uq.analysis.summary import Summary, summarise
 from uq.errors import InputError
 from uq.indices.sensitivities import Sensitivities, sensitivities
 from uq.rows.elements import elements_of, independent_rows, output_names
 
-_COLUMNS = ["output", "estimate", "samples", "value", "low", "high"]
-
 
 class Findings:
-    """What is known of a result, each part computed when it is first asked for.
+    """What is known of a result, each part computed when first needed.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        A result, which nobody changes while this is in use.
+        A result; it must not be changed while this is in use.
     """
 
     def __init__(self, ds: xr.Dataset):
@@ -34,7 +32,7 @@ class Findings:
 
     @cached_property
     def absent(self) -> frozenset[str]:
-        """The outputs that none of the independent rows has."""
+        """The outputs that no independent row has."""
         names = output_names(self.rows)
         there = (one.output for one in elements_of(self.rows, names) if one.present.any())
         return frozenset(names) - frozenset(there)
@@ -51,7 +49,7 @@ class Findings:
 
     @property
     def not_running(self) -> str:
-        """Why nothing is known of fewer rows, or ""."""
+        """Why there are no running estimates, or ""."""
         return self._running[1]
 
     @cached_property
@@ -59,7 +57,7 @@ class Findings:
         try:
             return running_estimates(self.ds), ""
         except InputError as refused:
-            return pd.DataFrame(columns=_COLUMNS), str(refused)
+            return pd.DataFrame(columns=COLUMNS), str(refused)
 
     def sensitivities(self, method: str) -> Sensitivities:
         """Return what `uq.indices.sensitivities.sensitivities` finds by a method.
@@ -67,7 +65,7 @@ class Findings:
         Raises
         ------
         InputError
-            When the method has nothing to say of this result.
+            When the method does not apply to this result.
         """
         if method not in self._sensitivities:
             self._sensitivities[method] = sensitivities(self.ds, method)

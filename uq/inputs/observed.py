@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from uq.inputs.law import LIST, BaseLaw, Positive, Scipy
+from uq.inputs.law import LIST, Law, Positive, Scipy
 
 Floats = NDArray[np.float64]
 Numbers = Annotated[tuple[float, ...], LIST]
@@ -66,7 +66,7 @@ def _steps(values: tuple[float, ...], weights: tuple[float, ...] | None) -> Step
     return Steps(found, cumulated / cumulated[-1])
 
 
-class Listed(BaseLaw):
+class Listed(Law):
     """A law that takes some values only."""
 
     discrete: ClassVar[bool] = True
@@ -131,6 +131,8 @@ class IntegerRange(Listed):
 class Empirical(Listed):
     """The values in a column of a CSV file, all alike: sampling them is drawing one of them."""
 
+    either = (("file", "column"), ("values",))
+
     distribution: Literal["empirical"]
     file: str | None = Field(None, description="CSV file with a header, beside the study file")
     column: str | None = Field(None, description="name of the column")
@@ -138,11 +140,6 @@ class Empirical(Listed):
 
     @model_validator(mode="after")
     def _check_values(self) -> Self:
-        if {"file", "column", "values"} & self.model_fields_set not in (
-            {"file", "column"},
-            {"values"},
-        ):
-            raise ValueError("an empirical law takes either file and column, or values")
         if self.values is not None and (problem := values_problem(self.values)):
             raise ValueError(problem)
         return self
@@ -162,7 +159,7 @@ def values_problem(values: tuple[float, ...]) -> str | None:
     return None
 
 
-class Histogram(BaseLaw):
+class Histogram(Law):
     """Counts of values in bins, alike within each bin."""
 
     distribution: Literal["histogram"]

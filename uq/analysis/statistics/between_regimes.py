@@ -11,7 +11,7 @@ from uq.wording import number
 
 
 def _shown(share: float) -> str:
-    """Return the share, less what chance makes of it."""
+    """Return the share in words; it is corrected for chance, so it may be negative."""
     return number(share) if share > 0 else "none seen"
 
 
@@ -19,7 +19,7 @@ _KIND = Kind(shown=_shown, readers=frozenset((JSON, TERMINAL, REPORT)))
 
 
 def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield the share for the output, or the logarithm or rank of a lifetime."""
+    """Yield the share of the variance between regimes, of a life by its logarithm or rank."""
     target = number_of(element)
     if "regime" not in output_names(context.rows) or target.refused:
         return
