@@ -88,7 +88,7 @@ class Orbit(NamedTuple):
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether the work at both sites is equal."""
+        """Whether the work is equal at both sites."""
         return bool(abs(self.work[RIGHT] - self.work[LEFT]) <= SYMMETRIC * self.work.sum())
 
 

@@ -150,7 +150,7 @@ def _settle_random(
     rows: NDArray[np.intp],
     out: Response,
 ) -> None:
-    """Average over a random load: nothing repeats, so only silence is told apart."""
+    """Average over a random load: nothing repeats, so silence is the only other regime."""
     now = state[rows]
     mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, 0)
     state[rows] = now

@@ -5,13 +5,13 @@ resonances are about 0.3 Hz wide. So only half of the edges are evenly spaced; t
 power that a white force supplies to the modes, sum_i b_i d_i/((w - w_i)^2 + d_i^2), into equal
 shares.
 
-A sum of fixed lines never loses its memory, as a random process does. So all lines are redrawn
-after each epoch of 2/d + 200/B, with the slowest decay d and the bandwidth B: a few correlation
-times of beam and force. The force never repeats, and the time mean of a work-rate converges to that
-of the process. Between epochs the force jumps, and the steady response with it; the modes take up
-the difference as free vibration. The jumps blur the band: outside it the level is S_F B/(2 pi^2 |f
-- f_low| |f - f_high|) over the epoch. Where modes outside the band would thus contribute more than
-1 % of the tip's variance, the epoch is longer, up to 30 times.
+Unlike a random process, a sum of fixed lines never loses its memory. So all lines are redrawn after
+each epoch of 2/d + 200/B, with the slowest decay d and the bandwidth B: a few correlation times of
+beam and force. The force never repeats, and the time mean of a work-rate converges to that of the
+process. Between epochs the force jumps, and the steady response with it; the modes take up the
+difference as free vibration. The jumps blur the band: outside it the level is
+S_F B/(2 pi^2 |f - f_low| |f - f_high|) over the epoch. Where modes outside the band would thus
+contribute more than 1 % of the tip's variance, the epoch is longer, up to 30 times.
 """
 
 import numpy as np

@@ -62,7 +62,7 @@ def follow_repeating(machines: Machines, rows: Counts, duration: int, out: Respo
         done, flow = places[ended], flow[ended].reshape(-1, MEASURED, MEASURED)
         here = rows[done]
         time = left[done] * common[here] / frequency[here]
-        # After an odd number of half mains cycles current and voltage have opposite signs.
+        # After an odd number of half mains cycles current and voltage have changed sign.
         odd = np.round(time * half_cycles[here]) % 2 == 1
         flow[odd, :, CURRENT : P + 1] *= -1
         out.growth[here, 0] = growth[done] + log_multiplier(flow)
