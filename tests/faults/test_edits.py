@@ -73,7 +73,7 @@ def test_an_extension_may_be_killed(study, undisturbed, start, call, injected):
     injected("SIGKILL of an extension")
     assert kept().rows < 1500
     assert OUT.read_bytes() == before
-    assert "stays" in call("status", OUT)[1]
+    assert "is kept" in call("status", OUT)[1]
     assert call(*extend)[0] == 0
     assert OUT.read_bytes() == undisturbed
 

@@ -80,7 +80,7 @@ def test_a_trajectory_overwrites_nothing_but_a_trajectory(uq, write_study, folde
         ended = uq("simulate", "sample_models:KINDS", "-o", path.name)
         assert (ended.code, ended.out) == (2, "")
         assert ended.err == (
-            f"{path.name}: exists, and is no trajectory of 'uq simulate'; choose another name\n"
+            f"{path.name}: exists and is not a trajectory of 'uq simulate'; choose another name\n"
         )
         assert path.read_bytes() == before
 
