@@ -56,6 +56,7 @@ def test_methods_without_replicates_count_their_hits_too():
     assert "in 512 rows: 5 are needed" in refusal
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.05, 0.1])
 def test_s1_of_an_input_that_acts_in_a_rare_regime_alone_is_covered(share):
     held, repetitions = 0, 40

@@ -22,6 +22,7 @@ def words(figure):
     return " ".join(" ".join(texts).split())
 
 
+@pytest.mark.slow
 def test_every_figure_of_a_study_is_written_as_png_svg_and_pdf(tmp_path):
     asked = {"outputs": ["life", "angle", "regime"], "thresholds": {"life": 1.0}}
     ds = kinds(samples=96, analysis=asked | {"sensitivity": ["pawn"]})
@@ -64,12 +65,22 @@ def test_panels_need_axes_of_a_grid():
         plots.scatter(kinds(samples=40), "work", axes=axes)
 
 
-def test_the_same_result_gives_the_same_bytes(tmp_path):
-    ds = linear(samples=32)
+@pytest.mark.parametrize(
+    ("ds", "expected"),
+    [
+        (linear("morris", samples=8, replicates=2), {"morris-y"}),
+        pytest.param(
+            linear(samples=32),
+            {"histogram-y", "quantiles-y", "scatter-y", "convergence-y", "inputs"},
+            marks=pytest.mark.slow,
+        ),
+    ],
+    ids=["one figure", "all figures"],
+)
+def test_the_same_result_gives_the_same_bytes(tmp_path, ds, expected):
     once, again = (plots.save_all(ds, tmp_path / name) for name in ("once", "again"))
-    stems = {path.stem for path in once}
-    assert stems == {"histogram-y", "quantiles-y", "scatter-y", "convergence-y", "inputs"}
-    assert len(once) == 3 * len(stems)
+    assert {path.stem for path in once} == expected
+    assert len(once) == 3 * len(expected)
     for one, other in zip(once, again, strict=True):
         assert one.read_bytes() == other.read_bytes()
 

@@ -12,6 +12,7 @@ from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.dataset import sensitivity
 from uq.rows.sampling import group_size, row_block, rows
+from uq.store.files import write_result
 
 DRAWN = [name for name, design in DESIGNS.items() if design.draw is not None]
 GROUPED = ["saltelli", "shapley", "morris", "morris-optimised", "fast"]
@@ -233,6 +234,7 @@ def test_a_model_that_is_not_random_has_no_share_of_noise():
     assert "random" not in ds.attrs and "noise" not in sensitivity(ds)
 
 
+@pytest.mark.slow
 def test_share_of_noise_covers_its_truth():
     study = noisy(samples=32)
     held = []
@@ -303,6 +305,11 @@ def test_tables_show_the_share_of_noise(uq, folder):
     assert uq("extend", "noisy.nc", *more).code == 0
     shown = uq("sensitivity", "noisy.nc").out
     assert "noise" in shown and "share of variance" in shown
+
+
+@pytest.mark.slow
+def test_the_report_and_figures_show_the_share_of_noise(uq, folder):
+    write_result(computed(noisy(samples=16)), folder / "noisy.nc")
     assert uq("report", "noisy.nc", "-o", "noisy.html").code == 0
     assert "Share of noise" in (folder / "noisy.html").read_text()
     assert uq("plot", "noisy.nc", "-o", "figures").code == 0

@@ -219,6 +219,7 @@ def test_on_a_plateau_the_command_prints_what_the_rows_support():
 LIFE_ENDS = stats.norm.sf(np.log(1.8e-9 / 2.5e-10) / 0.5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [2e-5, 3e-4, 2e-3])
 def test_intervals_on_a_plateau_hold_the_truth(share):
     held = 0
@@ -305,6 +306,7 @@ def test_imported_rows_have_no_laws_to_draw_from(folder):
     assert len(refused.value.lines) == 1
 
 
+@pytest.mark.slow
 def test_workers_change_no_bit():
     here, there = (
         rare_event(linear(), "y", LAST, samples=200, replicates=2, workers=workers)

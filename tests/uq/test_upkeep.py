@@ -98,6 +98,7 @@ def test_failed_rows_are_run_again_with_changed_settings(uq, result):
     assert np.array_equal(api.open_result("out.nc")["rerun"].values[:200], last["rerun"].values)
 
 
+@pytest.mark.slow
 def test_endless_rows_are_stopped_when_extending_and_running_again(uq, write_study, monkeypatch):
     monkeypatch.setattr(isolation, "_FIRST_SECONDS", 0.5)
     more = '[settings]\nfail_above = 0.85\nfail_how = "hang"'

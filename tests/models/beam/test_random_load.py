@@ -58,6 +58,7 @@ def many_forces(n, seconds, rate, **values):
     return np.array([p.initial_gap[0] * force(load, periods) for load in b.load])
 
 
+@pytest.mark.slow
 def test_the_force_has_the_level_asked_for_within_the_band_and_little_outside():
     low, high = 5.0, 120.0
     band = {"random_force_low": low, "random_force_high": high, "mass_damping": 60.0}
@@ -345,6 +346,7 @@ def test_a_fit_of_next_to_nothing_is_no_overflow():
     assert np.isposinf(wear.life(1.0)[0]) or wear.life(1.0)[0] > 0
 
 
+@pytest.mark.slow
 def test_contacts_that_are_rare_are_waited_for():
     """One in some hundred periods: a thousand periods without one are no zero."""
     x = rows(4, force_amplitude=0.0, random_force_level=9e-7)
@@ -354,6 +356,7 @@ def test_contacts_that_are_rare_are_waited_for():
     assert (outputs["work_rate_heavy"][done] > 0).all()
 
 
+@pytest.mark.slow
 def test_what_is_averaged_has_forgotten_its_start():
     """At 1600 Hz the first mode remembers for longer than the budget lasts."""
     x = rows(2, forcing_frequency=[57.0, 1600.0], mass_damping=0.5, force_amplitude=0.0)
