@@ -36,9 +36,11 @@ slow: $(TEST)
 faults: $(TEST)
 	@$(BIN)/python -m pytest tests/faults -m "slow or not slow"
 
-# The figures of the machines' papers from our data: docs/papers.md and docs/papers/*.svg.
+# The figures of the machines' papers from our data, docs/papers.md and docs/papers/*.svg, and the
+# picture of the house from its source.
 figures: $(BASE)
 	@$(BIN)/python docs/papers
+	@$(BIN)/python docs/house.py
 
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks

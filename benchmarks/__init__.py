@@ -1,6 +1,6 @@
-"""Speed and accuracy beside what one would use instead; run with ``python -m benchmarks.NAME``.
+"""Speed and accuracy compared with common alternatives; run with ``python -m benchmarks.NAME``.
 
-heyoka, beside which the vibrator runs, is optional: install it to see its lines.
+heyoka, a rival of some, is optional: install it to see its lines.
 """
 
 import models.numerics.jit  # noqa: F401  (before numba: what it may compile for is read at import)

@@ -1,4 +1,4 @@
-"""The beam: the fast propagator beside Newmark, at equal accuracy.
+"""The beam: the fast propagator compared with Newmark's method at equal accuracy.
 
 Prints, for the paper's two cases, the error of the work-rate and the time per forcing period and
 row. Everything on one core, in one run.

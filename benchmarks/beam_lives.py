@@ -1,9 +1,9 @@
-"""The beam's lives: what a row costs, by regime, and whether the errors stated cover.
+"""The beam's lives: cost of a row, by regime, and coverage of the stated errors.
 
 Rows of the shipped lifetime studies, to a depth of one initial gap: core-milliseconds per row,
-then their lives beside those at a tenth of the accuracy. The regimes met on the way are told from
-the drifting strobe points; here they are compared with those of the same states settled at gaps
-that no longer wear.
+then their lives compared with those at a tenth of the accuracy. Regimes during wear are identified
+from drifting stroboscopic points; here they are compared with those of the same states settled at
+gaps that no longer wear.
 """
 
 import time

@@ -1,4 +1,4 @@
-"""The beam: what mesh and modes do to work-rate and life, beside 40 elements with all modes.
+"""The beam: effect of mesh and modes on work-rate and life, against 40 elements with all modes.
 
 Prints, for the paper's two cases, the error of the heavier site's work-rate and of the life to
 twice the gap, and what they cost: microseconds per forcing period and row, milliseconds per row

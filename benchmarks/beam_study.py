@@ -1,4 +1,4 @@
-"""Whole lifetime studies of the beam: how long they take, how wrong they are, and what else would.
+"""Complete lifetime studies of the beam: run time and error, and those of the alternatives.
 
 For the paper's two cases: the wall time of the shipped lifetime study to a depth of one initial
 gap, by the command a user types, on two worker processes; the error of its lives, on rows solved

@@ -1,4 +1,4 @@
-"""Tools beside each other: each with its cheapest setting that is good enough, timed by turns."""
+"""Comparison of tools: each with its cheapest setting that is accurate enough, timed in turn."""
 
 import time
 from collections.abc import Callable, Sequence

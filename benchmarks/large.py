@@ -1,4 +1,4 @@
-"""A million rows of ten inputs and twenty outputs: time and memory of what is said of them.
+"""A million rows of ten inputs and twenty outputs: time and memory of their analyses.
 
 ``python -m benchmarks.large``. Each command runs in a process of its own.
 """

@@ -1,11 +1,11 @@
-"""The mole: settled motion and the shipped study beside other tools, at equal error.
+"""The mole: settled motion and the shipped study compared with other tools at equal error.
 
-Prints what a simulated second costs in our lanes, by our exact propagator, by heyoka, by
-Runge-Kutta steps through the friction's jumps and by scipy. heyoka is optional: it is no
-dependency of the project, and without it its lines are left out. The error is that of the means of
+Prints the cost of a simulated second in our lanes, by our exact propagator, by heyoka, by
+Runge-Kutta steps through the friction's jumps and by scipy. heyoka is optional: it is not
+a dependency of the project, and without it its lines are omitted. The error is that of the means of
 progression, impact and electrical power, relative to them, and of the state at the end. Each tool
 has its cheapest setting that reaches the error, on the same rows; everything on one core, in one
-run. Compilation is left out.
+run. Compilation is excluded.
 """
 
 from pathlib import Path
@@ -157,7 +157,7 @@ def study():
 
 if __name__ == "__main__":
     if Taylor is None:
-        print("heyoka is not installed and left out")
+        print("heyoka is not installed and omitted")
     print("Settled motion: setting, error, time per simulated second, ratio")
     for hertz in FREQUENCIES:
         settled_motion(hertz)

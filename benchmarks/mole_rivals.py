@@ -1,4 +1,4 @@
-"""The mole as one would find it with scipy or with numba: one machine at a time."""
+"""The mole as one would write it with scipy or numba: one machine at a time."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The mole by heyoka's Taylor series, some machines abreast: the best tool of others.
+"""The mole by heyoka's Taylor series, several machines at a time: the best alternative.
 
 One integrator serves all modes, whose constants are its parameters, and which may differ among
 machines side by side. heyoka finds the events; what follows them is compiled.

@@ -1,4 +1,4 @@
-"""Synchronous running as one would find it with numba: shooting, one machine at a time.
+"""Synchronous running as one would compute it with numba: shooting, one machine at a time.
 
 Classical Runge-Kutta steps, derivatives by central differences, Newton's method.
 """

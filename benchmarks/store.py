@@ -1,7 +1,7 @@
-"""What it costs that no row can be lost: ``python -m benchmarks.store``.
+"""The cost of never losing a row: ``python -m benchmarks.store``.
 
-Whole commands, with rows kept on disk as they arrive and with rows in memory until the end; and how
-much memory many rows take.
+Complete commands, with rows kept on disk as they arrive and with rows in memory until the end; and
+the memory that many rows take.
 """
 
 import contextlib

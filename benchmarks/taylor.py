@@ -1,7 +1,7 @@
-"""The vibrator by heyoka's Taylor series, eight machines at a time: the best tool of others.
+"""The vibrator by heyoka's Taylor series, eight machines at a time: the best alternative.
 
-The equations of `models.vibrator.equations.rigid`, written as suits it: a product of two series is
-dear and one of a series and a constant is cheap, and all entries of the body's mass matrix are
+The equations of `models.vibrator.equations.rigid`, written to suit it: a product of two series is
+expensive and one of a series and a constant is cheap, and all entries of the body's mass matrix are
 linear in sin^2 and sin cos of the two angles. Elimination spares it the cofactors. The signum of
 the bearing loss is +1, as at any speed that matters.
 """

@@ -1,11 +1,11 @@
-"""The vibrator: run-ups and steady states beside other tools, at equal error.
+"""The vibrator: run-ups and steady states compared with other tools at equal error.
 
-Prints what a start from standstill costs in our lanes, by scipy, by our exact propagator and by
-heyoka, which is optional: it is no dependency of the project, and without it its lines are left
-out. Then the steady state beside shooting one machine at a time; the rows of the shipped study;
-and the averaged theory. Each tool has its cheapest setting that reaches the error, on the same
-rows; everything on one core, in one run. Compilation is left out, and so is what heyoka and
-shooting need to set up.
+Prints the cost of a start from standstill in our lanes, by scipy, by our exact propagator and by
+heyoka, which is optional: it is not a dependency of the project, and without it its lines are
+omitted. Then the steady state against shooting, one machine at a time; the rows of the shipped
+study; and the averaged theory. Each tool has its cheapest setting that reaches the error, on the
+same rows; everything on one core, in one run. Compilation is excluded, and so is the setup of
+heyoka and shooting.
 """
 
 from pathlib import Path
@@ -122,7 +122,7 @@ def run_ups():
         ),
     }
     if Taylor is None:
-        print("  heyoka is not installed and left out")
+        print("  heyoka is not installed and omitted")
     else:
         made = {}
 

@@ -19,10 +19,10 @@ from uq.contract import Status
 from uq.designs.design import Design
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
+from uq.inputs.registry import LAWS
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.plots import FIGURES
 from uq.study.file import (
-    LAWS,
     AnalysisTable,
     DependenceTable,
     DesignTable,
@@ -31,10 +31,8 @@ from uq.study.file import (
     Until,
 )
 from uq.study.reading import read_study_text
-from uq.study.registry import find_model
+from uq.study.registry import find_model, model_names, module_of
 
-MACHINES = ("beam", "vibrator", "mole")
-KNOWN_ANSWERS = ("ishigami", "g-function", "linear", "exponential-wear")
 STUDY_TABLES = {
     "study": StudyTable,
     "design": DesignTable,
@@ -118,6 +116,11 @@ def _minus(text: str) -> str:
     return text.replace("-", "−", 1) if text.startswith("-") else text
 
 
+def machines() -> list[str]:
+    """Return the names of the models that are no functions with known answers."""
+    return [name for name in model_names() if module_of(name) != "models.analytic"]
+
+
 def parameters(name: str) -> str:
     """Tabulate the parameters of a model."""
     model = find_model(name)
@@ -197,7 +200,7 @@ def nomenclature() -> str:
     """Tabulate every parameter of every model, by name."""
     lines = [
         (f"`{name}`", formula(one.symbol), unit(one.unit), one.meaning, machine)
-        for machine in (*MACHINES, *KNOWN_ANSWERS)
+        for machine in model_names()
         for name in find_model(machine).nominal
         for one in [find_model(machine).parameter(name)]
     ]
@@ -208,7 +211,7 @@ def all_outputs() -> str:
     """Tabulate every output of every model, by name."""
     lines = [
         (f"`{name}`", unit(one.unit), one.meaning, machine)
-        for machine in (*MACHINES, *KNOWN_ANSWERS)
+        for machine in model_names()
         for name, one in find_model(machine).outputs.items()
     ]
     return table(("name", "unit", "meaning", "model"), sorted(lines))
@@ -221,7 +224,8 @@ def regimes() -> str:
             machine,
             ", ".join(f"`{word}`" for word in find_model(machine).outputs["regime"].categories),
         )
-        for machine in MACHINES
+        for machine in machines()
+        if "regime" in find_model(machine).outputs
     ]
     return table(("machine", "regimes"), lines)
 
@@ -274,7 +278,7 @@ def designs() -> str:
 
 
 def confidence() -> str:
-    """Tabulate what the intervals come from, of statistics and of indices, by design."""
+    """Tabulate the basis of the intervals of statistics and indices, by design."""
     lines = []
     for name, design in DESIGNS.items():
         indices = {METHODS[method].intervals for method in fed_by(design)} - {""}
@@ -286,10 +290,10 @@ def _of_statistics(design: Design) -> str:
     if design.independent:
         return "formulas for independent rows"
     if design.imported:
-        return "none: how its rows came about is not known; if stated to be independent, formulas"
+        return "none: the origin of its rows is unknown; formulas if stated to be independent"
     if not design.follows_laws:
         return "no statistics: its rows do not follow the laws of the inputs"
-    return "the scatter between replicates; with one replicate none, and the summary says so"
+    return "the scatter between replicates; none from a single replicate, and the summary says so"
 
 
 def methods() -> str:
@@ -297,7 +301,7 @@ def methods() -> str:
     lines = []
     for name, method in METHODS.items():
         gives = method.gives or ", ".join(kind.words for kind in method.kinds)
-        null = "; a null beside it" if method.has_null else ""
+        null = "; compared with a null" if method.has_null else ""
         most = "" if method.most_rows is None else f"{method.most_rows:,}"
         how = method.intervals or f"none{null}"
         lines.append((f"`{name}`", gives.replace("*", "\\*"), method.source, how, most))

@@ -13,12 +13,13 @@ HOUSE = Path(__file__).parents[1]
 sys.path.insert(0, str(HOUSE / "docs"))
 
 from layers import (  # noqa: E402
+    MACHINES,
     READERS,
     RUNNERS,
-    STOREYS,
     edges,
     imports_between_packages,
     place_of,
+    reading_order,
 )
 
 SIDE_BY_SIDE = 12
@@ -70,35 +71,50 @@ def test_one_machine_does_not_import_another():
     assert not guilty
 
 
-def test_every_machine_has_its_storeys_here():
-    assert {path.parent.name for path in HOUSE.glob("models/*/parameters.py")} == set(STOREYS)
+ORDERED = [
+    str(path.parent.relative_to(HOUSE))
+    for path in sorted((HOUSE / "models").rglob("__init__.py"))
+    if "imports only those above it" in path.read_text()
+]
+"""Packages that state their order."""
 
 
-@pytest.mark.parametrize("machine", STOREYS)
-def test_a_machine_depends_one_way(machine):
-    height = {name: i for i, names in enumerate(STOREYS[machine]) for name in names}
-    package = ["models", machine]
+def test_every_machine_states_the_order_of_its_storeys():
+    assert {f"models/{machine}" for machine in MACHINES} <= set(ORDERED)
+
+
+@pytest.mark.parametrize("package", ORDERED)
+def test_a_package_depends_one_way(package):
+    order = reading_order(package)
     guilty = set()
-    for name, found in edges(f"models/{machine}").items():
-        here = name.split(".")[2:3]
-        if not here:  # MODEL, which imports what it declares, and the rest when it computes
-            continue
-        for other in found:
-            parts = other.split(".")
-            if parts[:2] == package and parts[2:3] != here:
-                below = height.get(".".join(parts[2:3]), len(height))
-                guilty |= {(name, other)} if below >= height[here[0]] else set()
+    for module, here, name, there in _inside(package):
+        apart = {here, there} == {"exact", "lanes"} or there == "paper"
+        if apart or order.index(there) >= order.index(here):
+            guilty.add((module, name))
     assert not guilty
 
 
-@pytest.mark.parametrize("machine", STOREYS)
+def _inside(package):
+    """Yield the imports of a package between what it holds: from where, of what."""
+    path = package.split("/")
+    for module, names in edges(package).items():
+        here = module.split(".")[len(path) :][:1]
+        for name in names:
+            parts = name.split(".")
+            there = parts[len(path) :][:1]
+            # The package itself declares MODEL, and imports the rest when it computes.
+            if here and there and parts[: len(path)] == path and there != here:
+                yield module, here[0], name, there[0]
+
+
+@pytest.mark.parametrize("machine", MACHINES)
 def test_few_files_stand_side_by_side(machine):
     folder = HOUSE / "models" / machine
     files = [path.parent for path in folder.rglob("*.py") if path.name != "__init__.py"]
     assert {place for place in files if files.count(place) > SIDE_BY_SIDE} == set()
 
 
-@pytest.mark.parametrize("machine", STOREYS)
+@pytest.mark.parametrize("machine", MACHINES)
 def test_each_package_says_what_to_read(machine):
     silent = set()
     for path in (HOUSE / "models" / machine).rglob("*.py"):

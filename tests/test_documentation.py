@@ -1,5 +1,6 @@
 """What the documentation names exists, its examples run, and what it quotes is what is printed."""
 
+import ast
 import doctest
 import importlib
 import re
@@ -21,6 +22,7 @@ HOUSE = Path(__file__).parents[1]
 sys.path.insert(0, str(HOUSE / "docs"))
 
 import generated  # noqa: E402
+import house  # noqa: E402
 import pages  # noqa: E402
 
 SOURCES = {
@@ -127,11 +129,32 @@ def test_files_modules_and_targets_named_exist(name):
         assert importlib.util.find_spec(module), module
     for path in re.findall(r"`((?:uq|models|tests|docs|studies|benchmarks)/[\w./-]*)`", text):
         assert (HOUSE / path).exists(), path
-    for link in re.findall(r"\]\(((?:docs/)?[\w./-]+\.(?:md|png))[#)]", text):
+    for link in re.findall(r"\]\(((?:docs/)?[\w./-]+\.(?:md|png|svg))[#)]", text):
         inside = (HOUSE / name).parent / link
         assert inside.is_file(), link
     targets = re.findall(r"^(\w+):", (HOUSE / "Makefile").read_text(), re.M)
     assert set(re.findall(r"(?:^|`)make (\w+)", text, re.M)) <= set(targets)
+
+
+@every_source
+def test_functions_named_exist(name):
+    for path, function in re.findall(r"`((?:uq|models|docs)/[\w/]+\.py):([\w.]+)`", SOURCES[name]):
+        assert (HOUSE / path).is_file(), path
+        names = definitions(ast.parse((HOUSE / path).read_text()))
+        assert function in names, f"{path} has no {function}"
+
+
+def definitions(tree, before=""):
+    """Return the names of the functions and classes of a module, those within classes too."""
+    kinds = (ast.FunctionDef, ast.ClassDef)
+    found = {before + node.name: node for node in tree.body if isinstance(node, kinds)}
+    for name, node in list(found.items()):
+        found |= definitions(node, f"{name}.") if isinstance(node, ast.ClassDef) else {}
+    return found
+
+
+def test_the_picture_of_the_house_is_what_its_script_draws():
+    assert house.PICTURE.read_text() == house.picture(), "run: python docs/house.py"
 
 
 def test_every_key_and_every_law_is_described():
@@ -148,9 +171,9 @@ def test_the_citation_is_that_of_this_version():
     project = tomllib.loads((HOUSE / "pyproject.toml").read_text())["project"]
     assert citation["version"] == project["version"]
     assert citation["license"] == project["license"]
-    cited = " ".join(text for name in generated.MACHINES for text in find_model(name).references)
+    cited = " ".join(text for name in generated.machines() for text in find_model(name).references)
     assert [one["title"] for one in citation["references"] if one["title"] not in cited] == []
-    assert len(citation["references"]) == len(generated.MACHINES)
+    assert len(citation["references"]) == len(generated.machines())
 
 
 @pytest.mark.slow

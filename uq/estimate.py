@@ -13,12 +13,12 @@ class Estimate:
     value, low, high : float
         NaN where it is not known; infinite where it is known to be.
     reason : str
-        Why the value or its interval is missing, "" if neither is.
+        Why the value or its interval is missing; "" if neither is.
     assumes : str
-        What all three rest on, beyond the rows; "" if nothing.
+        What they assume beyond the rows; "" if nothing.
     beyond : tuple of str
-        Which of the three are infinite only because rows are censored: they lie somewhere beyond
-        the horizon.
+        Which of the three are infinite only because rows are censored: they lie beyond the
+        horizon.
     """
 
     value: float = nan
@@ -35,7 +35,7 @@ class Estimate:
 
     @property
     def finite(self) -> "Estimate":
-        """The same, with every number unknown that is not finite."""
+        """The same, with NaN for every number that is not finite."""
         value, low, high = (one if isfinite(one) else nan for one in self.numbers)
         return Estimate(value, low, high, self.reason, self.assumes)
 

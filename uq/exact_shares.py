@@ -1,4 +1,4 @@
-"""The interval of a share that is known from few hits, where Wilson's misses too often."""
+"""The interval of a share estimated from few hits, where Wilson's covers too little."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ to 4 % from twenty hits on.
 
 
 def are_few(share: Floats | float, rows: Floats | float, below: int = FEW) -> NDArray[np.bool_]:
-    """Whether so many rows have few hits or few misses; not where the share is not known."""
+    """Whether there are few hits or few misses; false where the share is unknown."""
     rarer = np.minimum(share, 1 - np.asarray(share)) * rows
     return np.asarray(np.round(rarer, 6) < below)
 
@@ -29,13 +29,13 @@ def exact_interval(
     ----------
     share : float or ndarray, shape (k,)
     rows : float or ndarray, shape (k,)
-        Independent rows that tell as much; need not be whole numbers [2]_.
+        Effective number of independent rows; need not be an integer [2]_.
     confidence : float
 
     Returns
     -------
     low, high : ndarray
-        Each misses in at most half of ``1 - confidence`` of samples, in fewer where hits are few.
+        Each misses in at most ``(1 - confidence) / 2`` of samples, less often where hits are few.
 
     References
     ----------
@@ -46,7 +46,7 @@ def exact_interval(
     """
     tail = (1 - confidence) / 2
     hits = np.asarray(share * rows, dtype=float)
-    # Rounding must leave no trace of a hit where there was none.
+    # Rounding must not leave a fraction of a hit where there was none.
     hits = np.where(np.isclose(hits, np.round(hits), rtol=0, atol=1e-9), np.round(hits), hits)
     misses = np.maximum(rows - hits, 0.0)
     low = np.where(hits > 0, stats.beta.ppf(tail, np.maximum(hits, 1e-9), misses + 1), 0.0)

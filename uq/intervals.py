@@ -3,9 +3,8 @@
 Rows are either independent (``replicate`` is None) or belong to independent replicates of a
 design, given as the replicate's number for each row. Formulas for independent rows are wrong for
 the rows of a Latin hypercube or a low-discrepancy sequence, whose estimates scatter less; there
-the scatter between replicates is the only witness. Where nothing can be said (one replicate, too
-few rows, replicates that agree to the last bit) an interval is ``(nan, nan)``: never one of zero
-width.
+only the scatter between replicates shows the error. Where there is no interval (one replicate, too
+few rows, replicates that agree to the last bit) it is ``(nan, nan)``, never one of zero width.
 """
 
 from typing import Any
@@ -18,7 +17,7 @@ from uq.exact_shares import are_few, exact_interval
 
 CONFIDENCE = 0.95
 ROUNDING = 64 * np.finfo(float).eps
-"""Values that differ by less than this part of the largest differ by no more than rounding."""
+"""Values are equal but for rounding if they differ by less than this part of the largest."""
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -26,13 +25,13 @@ Replicates = NDArray[np.integer] | None
 
 
 Ends = tuple[Any, Any]
-"""Low and high end of an interval, or of several (two arrays), NaN where they are not known."""
+"""Lower and upper end of an interval, or of several (two arrays); NaN where unknown."""
 
 UNKNOWN: Ends = (np.nan, np.nan)
 
 
 def is_constant(values: Floats) -> bool:
-    """Whether finite values differ by no more than rounding."""
+    """Whether finite values are equal but for rounding."""
     return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
 
 
@@ -94,10 +93,10 @@ def share_interval(
     Returns
     -------
     low, high : float
-        Wilson's score interval [1]_. For replicates with the number of independent rows that
-        would scatter as much, and Student's t for the normal quantile [2]_. Where hits or misses
-        are few that of Clopper and Pearson (`uq.exact_shares`), which is conservative; replicates
-        then count for no more than their rows, since few hits show little of their scatter.
+        Wilson's score interval [1]_. For replicates, with the effective number of independent
+        rows and Student's t in place of the normal quantile [2]_. Where hits or misses are few, the
+        interval of Clopper and Pearson (`uq.exact_shares`), which is conservative; replicates
+        then count for at most their rows, since few hits show little of their scatter.
 
     References
     ----------
@@ -118,13 +117,13 @@ def share_interval(
 
 
 def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:
-    """Return the interval of a share known as well as from so many rows: exact where hits are few.
+    """Return the interval of a share from an effective number of rows: exact where hits are few.
 
     Parameters
     ----------
     share : float
     rows : float
-        Independent rows that tell as much.
+        Effective number of independent rows.
     confidence : float, optional
 
     Returns
@@ -137,7 +136,7 @@ def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE)
 
 
 def wilson_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:
-    """Return the interval of a share that is known as well as from so many independent rows."""
+    """Return Wilson's interval of a share from an effective number of independent rows."""
     return _floats(_wilson(share, rows, stats.norm.ppf(upper_tail(confidence))))
 
 
@@ -148,7 +147,7 @@ def scattered_share_interval(
     confidence: float = CONFIDENCE,
     rows: Floats | float | None = None,
 ) -> Ends:
-    """Return the interval of a share, or of several, from estimates by replicates.
+    """Return the interval of a share, or of several, from the estimates of replicates.
 
     Parameters
     ----------
@@ -157,10 +156,10 @@ def scattered_share_interval(
     estimates : ndarray, shape (R,) or (R, k)
         By replicate.
     scatter_at : float or ndarray, optional
-        The share whose scatter `estimates` show, if it is not exactly `share`.
+        The share whose scatter `estimates` show, if not `share` itself.
     confidence : float, optional
     rows : float or ndarray, shape (k,), optional
-        Of all replicates together: where hits are few, they count for no more than these.
+        Of all replicates together: an upper limit of the effective number where hits are few.
 
     Returns
     -------
@@ -172,7 +171,7 @@ def scattered_share_interval(
     if count < 2:
         return np.full(np.shape(share), np.nan), np.full(np.shape(share), np.nan)
     variance = estimates.var(axis=0, ddof=1) / count
-    # A curve of survival may reach 0 as a whole while a replicate's, censored, does not.
+    # A survival curve may reach 0 while that of a censored replicate does not.
     known = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
     worth = at * (1 - at) / np.where(known, variance, np.nan)
     wide = stats.t.ppf(upper_tail(confidence), count - 1)
@@ -194,7 +193,7 @@ def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) ->
 
 
 def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Ends:
-    """Return Wilson's interval; scipy's wants whole numbers of rows.
+    """Return Wilson's interval; scipy's takes only integer numbers of rows.
 
     The bounds solve (1 + w) x^2 - (2 p + w) x + p^2 = 0 with w = z^2 / rows. One comes from the
     other by the product of the roots, so that a share of 0 or 1 has a bound of exactly 0 or 1.
@@ -206,7 +205,7 @@ def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Ends:
 
 
 def upper_tail(confidence: float) -> float:
-    """Return the probability below the high end of an interval with two equal tails."""
+    """Return the probability below the upper end of an interval with equal tails."""
     return 0.5 + confidence / 2
 
 

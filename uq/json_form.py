@@ -1,4 +1,4 @@
-"""Estimates as JSON has them: a number that is not finite is null, with the reason beside it."""
+"""Estimates as JSON: a number that is not finite is null, with the reason beside it."""
 
 from math import isfinite
 from typing import Any
@@ -22,7 +22,7 @@ def ends(estimate: Estimate) -> dict[str, float | None]:
 
 
 def whole(estimate: Estimate) -> dict[str, Any]:
-    """Return value and interval, why each of the three is null, and what they rest on."""
+    """Return value and interval, why any of the three is null, and what they assume."""
     found: dict[str, Any] = numbers(estimate)
     for name in ("value", "low", "high"):
         found |= flag("" if name == "value" else f"{name}_", estimate, name)
@@ -34,7 +34,7 @@ def whole(estimate: Estimate) -> dict[str, Any]:
 
 
 def flag(prefix: str, estimate: Estimate, name: str) -> dict[str, bool]:
-    """Say that a life never ends, or beyond the horizon, instead of its number."""
+    """Flag a life that never ends, or ends beyond the horizon."""
     if getattr(estimate, name) != float("inf"):
         return {}
     return {f"{prefix}{'censored' if name in estimate.beyond else 'never'}": True}

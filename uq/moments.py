@@ -1,4 +1,4 @@
-"""Mean and standard deviation with their intervals, as far as they exist."""
+"""Mean and standard deviation with their intervals, where they exist."""
 
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ from uq.tails import FEWEST_ROWS, Tail, heavier_tail
 
 LIGHT_ENOUGH = 0.15
 """The interval of a standard deviation needs a fourth moment, which exists for k < 1/4. Measured,
-it covers 93 % or more of laws whose samples of some hundred rows show at most this k."""
+it covers 93 % or more for laws whose samples of some hundred rows show at most this k."""
 
 SUSPECT = 0.4
 """A k above which the interval of a mean carries a caution. Samples of 200 rows of Pareto's law
@@ -36,11 +36,11 @@ class Moments(NamedTuple):
     Attributes
     ----------
     mean, sd : Estimate
-        With the reason where the tail forbids the number, or its interval alone.
+        With the reason where the tail rules out the number, or only its interval.
     tail : Tail or None
         The heavier one.
     caution : str or None
-        Why the interval of the mean, although given, may be too narrow.
+        Why the interval of the mean may be too narrow.
     """
 
     mean: Estimate
@@ -69,7 +69,7 @@ def moments(
     no_mean, no_sd = ("", "") if tail is None else (_why_no_mean(tail), _why_no_sd(tail))
     if not no_sd and replicate is None and 1 < len(values) < FEWEST_ROWS:
         if not is_constant(values):
-            no_sd = f"needs {FEWEST_ROWS} rows that show how heavy the tails are"
+            no_sd = f"needs {FEWEST_ROWS} rows to judge how heavy the tails are"
     has_mean, has_sd = tail is None or not tail.no_mean, tail is None or not tail.no_variance
     return Moments(
         Estimate(
@@ -91,7 +91,7 @@ def _caution(tail: Tail) -> str | None:
     if tail.k <= SUSPECT:
         return None
     return (
-        f"the interval of the mean may be too narrow: {_seen(tail)} values leaves open whether"
+        f"the interval of the mean may be too narrow: {_seen(tail)} values does not decide whether"
         " there is a variance (k below 0.5)"
     )
 
@@ -105,7 +105,7 @@ _REMEDY = "; use quantiles, or the logarithm or rank of the output"
 
 
 def _why_no_mean(tail: Tail) -> str:
-    """Say why the mean, or its interval alone, is forbidden, or return ""."""
+    """Return why there is no mean, or no interval of it; "" if there are both."""
     if tail.no_mean:
         return f"heavy tail: {_seen(tail)} values; with k above 1 there is no mean{_REMEDY}"
     no_interval = f"{_no_variance(tail)}, hence no interval of the mean{_REMEDY}"
@@ -113,7 +113,7 @@ def _why_no_mean(tail: Tail) -> str:
 
 
 def _why_no_sd(tail: Tail) -> str:
-    """Say why the standard deviation, or its interval alone, is forbidden, or return ""."""
+    """Return why there is no standard deviation, or no interval of it; "" if there are both."""
     if tail.no_variance:
         return f"{_no_variance(tail)}{_REMEDY}"
     too_heavy = f"tail too heavy for an interval of sd: {_seen(tail)} values"
@@ -139,9 +139,9 @@ def sd_interval(
     Returns
     -------
     low, high : float
-        Independent rows: after [1]_, which takes the kurtosis from the rows. Replicates: Student's
-        t of the logarithms of their variances. Both with the high end raised by what one more row,
-        as far out as the farthest, would add: samples that lack such rows also scatter too little.
+        Independent rows: after [1]_, with the kurtosis of the rows. Replicates: Student's t of the
+        logarithms of their variances. In both the upper end is raised by what one more row as
+        extreme as the farthest would add, since samples without such rows scatter too little.
 
     References
     ----------
@@ -176,7 +176,7 @@ def _bonett(values: Floats, squares: Floats, confidence: float) -> Floats:
 
 
 def standard_deviation(values: Floats, replicate: Replicates = None) -> float:
-    """Return the root of the unbiased variance, NaN of a single row.
+    """Return the root of the unbiased variance, NaN for a single row.
 
     Parameters
     ----------
@@ -187,8 +187,8 @@ def standard_deviation(values: Floats, replicate: Replicates = None) -> float:
     -------
     float
         The mean square about the mean is too small by the variance of that mean: an n-th of the
-        variance for independent rows, much less for designs that spread evenly, where the means of
-        the replicates tell it.
+        variance for independent rows, much less for designs that spread evenly, where it is
+        estimated from the means of the replicates.
     """
     means = values[:1] if replicate is None else by_replicate(values, replicate)
     if len(means) > 1:

@@ -1,4 +1,4 @@
-"""Quantiles, their intervals and tolerance bounds, by the order of the rows."""
+"""Quantiles, their intervals, and tolerance bounds, from order statistics."""
 
 import numpy as np
 from scipy import stats
@@ -17,15 +17,15 @@ from uq.intervals import (
 
 
 def is_within(probability: float, rows: int) -> bool:
-    """Whether so many values reach a quantile: their ranks, on average, lie at i/(n + 1).
+    """Whether there are enough values for a quantile: their ranks lie on average at i/(n + 1).
 
-    Rows of replicates count together: their designs spread as evenly, or more so.
+    The rows of all replicates count, since their designs spread at least as evenly.
     """
     return bool(1 - ROUNDING <= probability * (rows + 1) <= rows + ROUNDING * rows)
 
 
 def rows_to_reach(probability: float) -> int:
-    """Return the least number of values that reach a quantile."""
+    """Return the least number of values that gives a quantile."""
     rarer = min(probability, 1 - probability)
     rows = int(np.ceil(1 / rarer - 1))
     return next(n for n in (rows - 1, rows, rows + 1) if n > 0 and is_within(probability, n))
@@ -43,7 +43,7 @@ def quantile(values: Floats, probability: float) -> float:
     Returns
     -------
     float
-        Infinite as soon as an infinite value takes part; NaN beyond what the values reach, see
+        Infinite if an infinite value takes part; NaN where there are too few values, see
         `is_within`.
 
     References
@@ -124,11 +124,11 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
     values : ndarray, shape (n,)
         Finite or +inf.
     failed : int
-        Number of further rows without a value: they count as the worst one on each side.
+        Number of further rows without a value: they count as the worst on each side.
     coverage : float
-        Share of all values that a bound must have on its side.
+        Share of all values that must lie on the right side of a bound.
     confidence : float
-        Probability that it has.
+        Probability that it does.
 
     Returns
     -------

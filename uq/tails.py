@@ -1,9 +1,9 @@
-"""How heavy the tails of an output are, and hence which of its moments exist.
+"""How heavy the tails of an output are, and thus which of its moments exist.
 
 Beyond a high threshold the values of almost any law follow a generalised Pareto law [1]_, whose
-shape k says how fast the tail falls: P(Y > y) ~ y^(-1/k) for k > 0. The variance exists where
-k < 1/2, the mean where k < 1. Without a variance no interval for a mean, no standard deviation
-and no variance-based index means anything, however many rows there are.
+shape k states how fast the tail decays: P(Y > y) ~ y^(-1/k) for k > 0. The variance exists where
+k < 1/2, the mean where k < 1. Without a variance, intervals of means, standard deviations and
+variance-based indices are meaningless, however many rows there are.
 
 References
 ----------
@@ -20,21 +20,21 @@ from scipy import stats
 Floats = NDArray[np.float64]
 
 MIN_TAIL = 20
-"""Fewer values tell no tail from another."""
+"""Fewer values do not distinguish tails."""
 
 MAX_TAIL = 1000
-"""Of more rows the tail starts further out, where it is nearer to its limit."""
+"""With more rows the tail starts farther out, where it is closer to its limit."""
 
 LARGEST_SHARE = 0.4
-"""Share of the rows that counts as tail if a generalised Pareto law fits it."""
+"""Largest share of rows taken as tail if a generalised Pareto law fits them."""
 
 FEWEST_ROWS = int(MIN_TAIL / LARGEST_SHARE)
 
 DISTINCT = 10
-"""Values that a tail must have at least: of fewer the law is a list."""
+"""Least number of distinct values in a tail; with fewer the law is discrete."""
 
 LUMP = 0.2
-"""Share of a tail that one value may hold: more are rows in a state, and no part of a tail."""
+"""Largest share of a tail with one value; beyond it they are an atom of the law, not a tail."""
 
 LIGHT = 1 / 3
 """The k that samples of a lognormal law with sigma = 1 show, whose moments all exist."""
@@ -43,7 +43,7 @@ SIGNIFICANCE = 0.01
 """Chance of calling so light a tail heavy."""
 
 MISFIT = 1.0
-"""Distance of Anderson and Darling that a heavy tail has from its fit in 1 % of samples."""
+"""Anderson-Darling distance of a heavy tail from its fit that 1 % of samples exceed."""
 
 _PRIOR_VALUES, _PRIOR_K = 10, 0.5
 
@@ -58,7 +58,7 @@ class Tail(NamedTuple):
     low, high : float
         Its 95 % interval.
     values : int
-        How many of the extreme values it was fitted to.
+        Number of extreme values that it was fitted to.
     side : {"upper", "lower"}
     """
 
@@ -70,14 +70,14 @@ class Tail(NamedTuple):
 
     @property
     def no_variance(self) -> bool:
-        """Whether the rows speak against a finite variance: k is above 1/2, significantly so."""
+        """Whether the rows contradict a finite variance: k is significantly above 1/2."""
         light = _shrunk(LIGHT, self.values)
         reach = stats.norm.isf(SIGNIFICANCE) * _error(LIGHT, self.values)
         return self.k > max(0.5, light + reach)
 
     @property
     def no_mean(self) -> bool:
-        """Whether they speak against a finite mean."""
+        """Whether they contradict a finite mean."""
         return self.no_variance and self.k >= 1
 
 
@@ -129,7 +129,7 @@ def heavier_tail(values: Floats) -> Tail | None:
 
 
 def lacks_variance(values: Floats) -> bool:
-    """Whether the finite ones among some values speak against a finite variance."""
+    """Whether the finite values contradict a finite variance."""
     tail = heavier_tail(values[np.isfinite(values)])
     return tail is not None and tail.no_variance
 
@@ -188,7 +188,7 @@ def generalised_pareto(excess: Floats) -> tuple[float, float]:
 
 
 def _distance(excess: Floats, shape: float, scale: float) -> float:
-    """Return the statistic of Anderson and Darling of ascending values and this law."""
+    """Return the Anderson-Darling statistic of ascending values and this law."""
     left = stats.genpareto.logcdf(excess, shape, scale=scale)
     right = stats.genpareto.logsf(excess, shape, scale=scale)
     n = len(excess)

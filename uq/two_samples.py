@@ -1,4 +1,4 @@
-"""How far two estimates lie apart, with an interval, from the interval of each."""
+"""The difference and ratio of two estimates, with intervals from the interval of each."""
 
 import numpy as np
 
@@ -12,13 +12,13 @@ def difference(first: Estimate, second: Estimate, correlation: float) -> Estimat
     ----------
     first, second : Estimate
     correlation : float
-        Of the two estimates; -1 gives an interval wide enough for any.
+        Of the two estimates; -1 gives a conservative interval.
 
     Returns
     -------
     Estimate
-        By the method of variance estimates recovery [1]_, which for shares of independent rows is
-        that of [2]_.
+        By variance estimates recovery [1]_; for shares of independent rows this is the method of
+        [2]_.
 
     References
     ----------
@@ -29,7 +29,7 @@ def difference(first: Estimate, second: Estimate, correlation: float) -> Estimat
     """
 
     def reach(one: float, other: float) -> float:
-        # Beyond rounding this is never negative: (one - other)^2 is the least.
+        # Negative only by rounding: it is at least (one - other)^2.
         return float(np.sqrt(max(one**2 + other**2 - 2 * correlation * one * other, 0.0)))
 
     value = second.value - first.value

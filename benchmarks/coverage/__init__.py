@@ -1,1 +1,1 @@
-"""How often each printed interval holds the truth: ``python -m benchmarks.coverage``."""
+"""How often each reported interval contains the truth: ``python -m benchmarks.coverage``."""

@@ -1,4 +1,4 @@
-"""Count how often each printed interval holds the truth, and write docs/coverage.md.
+"""Count how often each reported interval contains the truth, and write docs/coverage.md.
 
 ``python -m benchmarks.coverage [PART ...]``: without a name, every part that is not yet counted;
 with names, these again. Each part is kept in results/coverage.

@@ -75,8 +75,8 @@ def bands(repetitions):
 
 
 HALF_SEEN = (
-    "conservative: Kolmogorov's law is that of the largest deviation of a whole law, of which only"
-    " 40 % ends"
+    "conservative: Kolmogorov's law describes the largest deviation over the entire distribution,"
+    " of which only 40 % is finite"
 )
 
 
@@ -89,12 +89,12 @@ def _holds(curve, truth):
 
 
 LAW_ALONE = (
-    "the law is not that of the lives: below 1/61 its B1 comes from the law alone, is marked"
-    " `extrapolated`, and stands beside that of the other law"
+    "wrong law: below 1/61 its B1 comes from the law alone, is marked `extrapolated`, and is shown"
+    " beside that of the other law"
 )
 REASONS = {
-    "B": "the law is not that of the lives, and 60 rows cannot tell",
+    "B": "wrong law, which 60 rows cannot detect",
     **{f"B1 of {law}, extrapolated": LAW_ALONE for law in ("weibull", "lognormal")},
-    "weibull refused": "60 rows do not always tell one law from another",
-    "lognormal refused": "60 rows do not always tell one law from another",
+    "weibull refused": "60 rows do not always distinguish the laws",
+    "lognormal refused": "60 rows do not always distinguish the laws",
 }

@@ -1,4 +1,4 @@
-"""Differences between two studies, whose rows or replicates are pairs or strangers."""
+"""Differences between two studies, whose rows or replicates are paired or not."""
 
 from functools import cache
 
@@ -15,9 +15,9 @@ NARROW = WIDE | {"x4": {"distribution": "uniform", "lower": 0.3, "upper": 0.7}}
 THRESHOLD = 4.0
 QUANTILES = ("0.05", "0.5", "0.95")
 PAIRS = {
-    "200 independent rows, pairs": (("monte-carlo", 200), 0),
-    "200 independent rows, strangers": (("monte-carlo", 200), 1_000_000),
-    "sobol, 8 replicates of 64 rows, pairs": (("sobol", 64, 8), 0),
+    "200 independent rows, paired": (("monte-carlo", 200), 0),
+    "200 independent rows, unpaired": (("monte-carlo", 200), 1_000_000),
+    "sobol, 8 replicates of 64 rows, paired": (("sobol", 64, 8), 0),
 }
 
 
@@ -65,7 +65,7 @@ def _truth():
     return {name: narrow[name] - wide[name] for name in wide} | {"ratio": narrow["sd"] / wide["sd"]}
 
 
-FEW_RANKS = "conservative: ranks of few rows are whole numbers; 94 to 98 % from 4,096 rows"
-RAISED = "conservative: the ends are moved by one more row as far out as the farthest"
+FEW_RANKS = "conservative: with few rows, ranks are coarse; 94 to 98 % from 4,096 rows"
+RAISED = "conservative: the ends allow for one more row as extreme as the most extreme"
 REASONS = {f"difference of quantile {p}": FEW_RANKS for p in QUANTILES} | {"ratio of sd": RAISED}
 """Quantity -> why its coverage is not 95 %."""

@@ -1,4 +1,4 @@
-"""Few hits and failed rows: shares, indices and twins of what is rarely seen, or not at all."""
+"""Few hits and failed rows: shares, indices and twins of events seen rarely, or not at all."""
 
 from dataclasses import replace
 
@@ -167,8 +167,8 @@ def failed(repetitions):
     return tally.lines()
 
 
-EXACT = "conservative by design: the interval of Clopper and Pearson, where hits are few"
-WIDENED = "conservative by design: widened by what one more row might do, where few rows count"
+EXACT = "conservative by design: Clopper and Pearson's interval, where hits are few"
+WIDENED = "conservative by design: widened by the effect of one more row, where few rows matter"
 BOUNDS = "conservative by design: bounds with all failed rows on either side"
 REFUSED = "refused: fewer than 5 hits in each replicate"
 REASONS = (

@@ -1,4 +1,4 @@
-"""Twins, runs that stop when they know enough, and rare events."""
+"""Twins, runs that stop when an interval is narrow enough, and rare events."""
 
 from functools import partial
 
@@ -62,7 +62,7 @@ UNTIL = {
 
 def stopped(repetitions):
     """Count the intervals at which runs stop."""
-    tally = Tally("runs that stop at one of 7 looks, at most 2048 independent rows", REASONS)
+    tally = Tally("runs that stop at one of 7 checks, at most 2048 independent rows", REASONS)
     for what, (until, truth) in UNTIL.items():
         study = study_of("monte-carlo", 2048, laws=UNIFORMS, design={"until": until})
         for seed in range(repetitions):
@@ -197,7 +197,7 @@ def _sampled(margin):
 FLAT = "conservative by design: no more than the independent rows of the first level support"
 REASONS = {
     **{f"P = {share:g}": FLAT for share in PLATEAU},
-    "mean when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
-    "median when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
-    "P(> 2.5) when stopped": "conservative: the chance of any of 7 looks to miss is 5 %",
+    "mean when stopped": "conservative: 5 % is the probability that any of 7 checks misses",
+    "median when stopped": "conservative: 5 % is the probability that any of 7 checks misses",
+    "P(> 2.5) when stopped": "conservative: 5 % is the probability that any of 7 checks misses",
 }

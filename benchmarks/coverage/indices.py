@@ -191,7 +191,7 @@ def bootstraps(repetitions):
 
 
 def nulls(method, repetitions):
-    """Count how often an input that plays no part stays below the dummy beside the indices."""
+    """Count how often an input without effect stays below the dummy of the indices."""
     samples = {"hdmr": 1024, "quantile": 512}.get(method, 256)
     laws = dict.fromkeys(("x1", "x2", "x3"), {"distribution": "uniform", "lower": 0, "upper": 1})
     study = study_of(
@@ -212,11 +212,11 @@ def nulls(method, repetitions):
 
 
 TWO = (
-    "conservative: effects of two values, each in half of the cases, have the largest standard"
-    " deviation there is; from all trajectories it varies less than from single replicates"
+    "conservative: effects that take two values equally often have the largest possible standard"
+    " deviation; the pooled one varies less than those of single replicates"
 )
 REASONS = {
     "sigma x1": TWO,
     "sigma x2": TWO,
-    "hdmr": "the dummy of hdmr is one input: passed in every second case, as is said beside it",
+    "hdmr": "the dummy of hdmr is a single input, exceeded in every second case, as stated",
 }

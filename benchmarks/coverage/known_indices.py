@@ -139,8 +139,8 @@ def _first_and_total(given_one, given_others, mean, variance, kink):
 
 
 WIDENED = (
-    "conservative: the variance rests on fewer than 50 rows of each replicate, and intervals are"
-    " widened by what one more such row might do"
+    "conservative: the variance rests on fewer than 50 rows of each replicate, so intervals are"
+    " widened by the effect of one more such row"
 )
 REASONS = {"rate(never)": WIDENED, f"P(never<{SOONER!r})": WIDENED}
 """Quantity -> why its coverage is not 95 %."""

@@ -212,12 +212,10 @@ def _asymptotic(tally, law, life, parameters):
     tally.add("sigma", parameters["sigma"], low[1], high[1], by=by)
 
 
-RARE = (
-    "conservative by design: seven rows of 512 lie beyond, and the interval of so few hits is exact"
-)
+RARE = "conservative by design: seven rows of 512 are hits, and the interval of so few is exact"
 STEPS = (
-    "conservative: the 1st and the 11th of 500 lives hold B1 in 98.0 %, and neither end can move to"
-    " the next life without missing on its side in more than 2.5 %"
+    "conservative: the 1st and 11th of 500 lives cover B1 in 98.0 %; moving either end to the next"
+    " life would miss in more than 2.5 % on that side"
 )
 REASONS = {
     ("latin-hypercube", "never"): {"P(< 2.0)": RARE},

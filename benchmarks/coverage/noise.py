@@ -1,8 +1,8 @@
-"""A random model: what is its inputs' and what is its noise's, in closed form.
+"""A random model: the shares of its inputs and of its noise, in closed form.
 
 y = x1 + (1 + 2 x2) e, with inputs uniform on [0, 1] and e on [-1/2, 1/2], independent from seed to
 seed. In units of 1/12 the variance is 16/3: 1 of x1, and 13/3 that remain once both inputs are
-known. What e and x2 do together has 1/3.
+known. The interaction of e and x2 contributes 1/3.
 """
 
 import numpy as np

@@ -32,12 +32,12 @@ EVERY = 5
 """Others are asked for the intervals of every fifth repetition."""
 
 TAIL = (
-    "no interval without further assumptions is right for the mean of so heavy a tail (infinite"
-    " skewness; Bahadur and Savage 1956): its quantiles, B-lives and P(T < t) are"
+    "without further assumptions no interval is valid for the mean of so heavy a tail (infinite"
+    " skewness; Bahadur and Savage 1956): those of quantiles, B-lives and P(T < t) are"
 )
 FEW = (
-    "a replicate has some six rows below, never more than ten: so low a count is too skewed for"
-    " Student's law; with 128 groups instead of 64 it covers 95 %"
+    "a replicate has about six rows below, never more than ten: such counts are too skewed for"
+    " Student's law; with 128 groups instead of 64 the interval covers 95 %"
 )
 TRUTH = {
     "ishigami": (lambda: ISHIGAMI_MEAN, lambda p: ishigami_ppf(p), lambda t: ishigami_cdf(t)),
@@ -150,8 +150,8 @@ def _ends(interval):
 
 
 def _taken_for_independent(tally, y):
-    """Count what formulas for independent rows make of rows that are not."""
-    by = "scipy, rows taken for independent"
+    """Count the intervals of formulas for independent rows, applied to rows that are not."""
+    by = "scipy, rows assumed independent"
     tally.add("mean", ISHIGAMI_MEAN, *stats.ttest_1samp(y, 0.0).confidence_interval(), by=by)
     found = stats.quantile_test(y, p=0.5).confidence_interval()
     tally.add("quantile 0.5", ishigami_ppf(0.5), *found, by=by)

@@ -76,10 +76,10 @@ def _held(truth, interval, excused):
     return 1.0, 2.0 if held else 0.0
 
 
-LEFT = "given only where the tail looks light, hence to samples that lack their far end"
+LEFT = "given only where the tail appears light, hence for samples without extreme values"
 REFUSED = "refused in nearly all samples"
-FEW = "200 rows tell such a law from a lognormal one in 45 % of samples only"
-RAISED = "conservative: the high end is raised by one more row as far out as the farthest"
+FEW = "200 rows distinguish such a law from a lognormal one in only 45 % of samples"
+RAISED = "conservative: the upper end allows for one more row as extreme as the most extreme"
 SKEWED = ("exponential", "lognormal, sigma 0.5")
 HELD_SD = "sd, held or refused"
 REASONS = {
@@ -92,7 +92,7 @@ REASONS = {
     **{(name, rows): {"sd": RAISED} for name in LAWS for rows in (64, 125, 200, 1000)},
     **{(name, rows): {"sd": LEFT, HELD_SD: RAISED} for name in SKEWED for rows in (64, 200)},
     **{("lognormal, sigma 1", rows): {"sd": LEFT, HELD_SD: REFUSED} for rows in (64, 200, 1000)},
-    ("lognormal, sigma 1", 64): {"sd": LEFT, HELD_SD: "64 rows seldom tell it from a light tail"},
+    ("lognormal, sigma 1", 64): {"sd": LEFT, HELD_SD: "64 rows seldom reveal its heavy tail"},
     ("lognormal, sigma 1", 125): {HELD_SD: REFUSED},
 }
 """Law and rows -> quantity -> why its coverage is not 95 %."""

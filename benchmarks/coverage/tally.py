@@ -15,7 +15,7 @@ OURS = "uq"
 
 
 class Line(NamedTuple):
-    """What became of one interval over all repetitions.
+    """The outcome of one interval over all repetitions.
 
     Attributes
     ----------

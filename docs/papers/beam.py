@@ -26,8 +26,8 @@ NOTE = """\
 J. Knudsen, A. R. Massih, *Impact work-rate and wear of a loosely supported beam subject to harmonic
 excitation*, ASME IMECE 2002; the bifurcation diagram is that of their paper in the Journal of Sound
 and Vibration 278 (2004) 1025. Most of the papers' parameters had to be recovered (`uq models beam`
-says which); no set that was tried meets every published fact, and none was tuned to a figure. The
-facts as a table: [beam-facts.md](beam-facts.md)."""
+lists them); no set that was tried reproduces every published fact, and none was tuned to a figure.
+[beam-facts.md](beam-facts.md) tabulates the facts."""
 
 
 def shown() -> Iterator[Shown]:
@@ -98,8 +98,8 @@ def work_rates_along_branches(branches: dict[float, xr.Dataset]) -> Shown:
         "Figure 2: work-rates along the stable period-one branches",
         "beam-2-branches",
         figure,
-        "Gaps as new and alike; each branch followed both ways until it loses stability.",
-        f"The paper has stable asymmetric branches near 5.604 to 5.63 and from 9.704 on; ours lie "
+        "Initial gaps, both equal; each branch is followed both ways until it loses stability.",
+        f"The paper has stable asymmetric branches near 5.604 to 5.63 and from 9.704 on; ours are "
         f"between {low:.4f} and {low_end:.4f}, which agrees, and between {high:.3f} and "
         f"{high_end:.3f}, which is too narrow.",
     )
@@ -137,9 +137,10 @@ def work_rates(worn: dict[float, xr.Dataset]) -> Shown:
         figure,
         made(worn),
         f"At 5.6 the paper's work-rates fall until x_1 = 1.34, change abruptly, then rise; in ours "
-        f"the sites become alike at {change:.2f} and the rates are least at {float(least):.2f}. At "
-        f"9.9 rates and asymmetry grow as in the paper, but impacts do not end at x_1 = 4.0: both "
-        f"sites together still take {float(at_four['work_rate'].sum()):.1f} W there.",
+        f"the sites become symmetric at {change:.2f} and the rates are smallest at "
+        f"{float(least):.2f}. At 9.9 rates and asymmetry grow as in the paper, but impacts do not "
+        f"end at x_1 = 4.0: both sites together still absorb "
+        f"{float(at_four['work_rate'].sum()):.1f} W there.",
     )
 
 
@@ -152,11 +153,11 @@ def gaps(worn: dict[float, xr.Dataset]) -> Shown:
         "beam-5-gaps",
         figure,
         made(worn),
-        f"The life taken from the first work-rate alone is too short at 5.6 by {1 / low:.2f} if "
-        f"the gap is to double, by {1 / lower:.2f} if it is to treble (paper: 1.48), and too long "
-        f"at 9.9 by {high:.2f} or {higher:.2f} (paper: about 2). The paper's words, a wear depth "
-        "of twice the initial gap, mean a gap that has trebled. No one reading meets both of its "
-        "numbers.",
+        "The life estimated from the initial work-rate alone is too short at 5.6, by a factor of "
+        f"{1 / low:.2f} until the gap has doubled and {1 / lower:.2f} until it has trebled (paper: "
+        f"1.48), and too long at 9.9, by {high:.2f} or {higher:.2f} (paper: about 2). The paper's "
+        "wear depth of twice the initial gap means a gap that has trebled. Neither reading "
+        "reproduces both of its numbers.",
     )
 
 
@@ -179,11 +180,10 @@ def portraits(low: xr.Dataset) -> Shown:
         "Figure 6: phase portraits before and after the abrupt change",
         "beam-6-portraits",
         figure,
-        "omega = 5.61; gaps of the wear history of Figure 3, one after another, the response "
-        "settled at each.",
-        "The paper's portraits lie on either side of an abrupt change, at x_1 = 1.40 by the "
-        f"caption and 1.34 by the text. In ours the change is at {change:.2f}, and the responses "
-        f"are ({words[0]}) and ({words[1]}).",
+        "omega = 5.61; the settled response at successive gaps of the wear history of Figure 3.",
+        "The paper's portraits show the motion before and after an abrupt change, at x_1 = 1.40 "
+        f"according to the caption and 1.34 according to the text. In ours the change is at "
+        f"{change:.2f}, and the responses are ({words[0]}) and ({words[1]}).",
     )
 
 
@@ -203,18 +203,18 @@ def bifurcations() -> Shown:
         "Journal paper: impact velocity against the forcing frequency",
         "beam-bifurcation",
         figure,
-        f"{SWEPT} frequencies, omega = 3 to 11, gaps as new; each from rest, 32 periods of the "
+        f"{SWEPT} frequencies, omega = 3 to 11, initial gaps; each from rest, 32 periods of the "
         "settled response.",
-        f"From rest the responses are {shares}. We have the figure's axes but not its points, so "
-        "that nothing finer than the branches of Figure 2 is compared.",
+        f"From rest the responses are {shares}. Of the paper's figure we have the axes but not the "
+        "points, so no comparison finer than that of the branches in Figure 2 is possible.",
     )
 
 
 def made(worn: dict[float, xr.Dataset]) -> str:
-    """Say how the wear histories were made."""
+    """Describe how the wear histories were computed."""
     reach = " and ".join(f"{WIDEST[omega]:g} at omega = {omega:g}" for omega in worn)
     return (
-        f"Nominal beam from rest, gaps as new and alike, worn until both gaps are {reach} "
-        f"(in initial gaps) within {PERIODS} forcing periods; dotted lines: the regime changes. "
-        "The right site is the paper's site 1, that which begins with the larger work-rate."
+        f"Nominal beam from rest, with equal initial gaps, worn until both gaps are {reach} "
+        f"(in initial gaps) within {PERIODS} forcing periods; dotted lines mark changes of regime. "
+        "The right site is the paper's site 1, which initially has the larger work-rate."
     )

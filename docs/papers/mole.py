@@ -20,21 +20,22 @@ POINTS = 3000  # of a Poincare section
 LOOK = {"formulation": "as-printed", "transient": 400, "duration": 800}  # of a basin
 GRID = 21, 15  # points of a basin along displacement and velocity
 MEASURED = {
-    "2.5 Hz": "Irregular motion was measured, too, which the physical formulation loses.",
-    "5 Hz": "The alternation was measured, too, which the physical formulation loses.",
-    "9 Hz": "What was measured, 30 mm and quite regular, is met by neither.",
+    "2.5 Hz": "Measured motion is irregular, too, unlike that of the physical formulation.",
+    "5 Hz": "Measured motion alternates, too, unlike that of the physical formulation.",
+    "9 Hz": "Neither reproduces the measurement, 30 mm and quite regular.",
 }
 NOTE = """\
 J.-H. Ho, V.-D. Nguyen, K.-C. Woo, *Nonlinear dynamics of a new electro-vibro-impact system*,
-Nonlinear Dynamics 63 (2011) 35-49. The paper's equation (20) lacks the friction of the mole on the
-bar, so that energy is not conserved; the formulation `as-printed` is what it computed, `physical`
-restores what is lost. Figures show the former, and both in the narrow time windows. Figure 2
-compares with an inductance that was measured and is not published. A period counts common periods
-of control and half a mains cycle. The claims as a table: `python -m models.mole.paper.table`."""
+Nonlinear Dynamics 63 (2011) 35-49. The paper's equation (20) lacks the ground friction in the bar's
+equation, so energy is not conserved; the formulation `as-printed` is what the paper computed,
+`physical` restores the missing terms. Figures show the former, and both in the narrow time windows.
+Figure 2 is omitted: it compares the inductance with a measurement that was not published. A period
+is counted in common periods of the control and half a mains cycle. For the claims as a table, run
+`python -m models.mole.paper.table`."""
 
 
 class Case(NamedTuple):
-    """One of the paper's claims as both formulations have it.
+    """One of the paper's claims in both formulations.
 
     Attributes
     ----------
@@ -42,7 +43,7 @@ class Case(NamedTuple):
         What the paper says.
     params : Params
     printed, physical : str
-        What they give, in words.
+        The results, in words.
     measured : str
         What the paper's measurements add, if anything.
     """
@@ -71,7 +72,7 @@ def shown() -> Iterator[Shown]:
 
 
 def cases() -> dict[tuple[str, int], Case]:
-    """Return the claims, by their label and how many of the same label come before."""
+    """Return the claims, by label and the number of earlier ones with the same label."""
     outputs = {name: responses(name) for name in ("as-printed", "physical")}
     told: dict[tuple[str, int], Case] = {}
     for i, claim in enumerate(CLAIMS):
@@ -87,7 +88,7 @@ def cases() -> dict[tuple[str, int], Case]:
 
 
 def in_words(params: Params, formulation: Any, outputs: Any, i: int) -> str:
-    """Say what one of the claims is in one formulation."""
+    """Describe the result for one of the claims in one formulation."""
     curves = 0
     if outputs["regime"][i] == QUASI_PERIODIC:
         curves = closed_curves(params, Settings(formulation=formulation))
@@ -161,11 +162,11 @@ def basins(told: dict[tuple[str, int], Case]) -> Shown:
         "Figure 10: basins of attraction",
         "mole-10-basins",
         figure,
-        f"As printed, {GRID[0]} x {GRID[1]} starts, {LOOK['transient']} control periods left out "
-        f"and {LOOK['duration']} looked at, up to 16 times as many where these do not decide the "
-        "regime; attractors told apart by regime and progression rate.",
-        "The paper has chaos, period-2, period-1 and, at 47 rad/s, two period-1 attractors. Shares "
-        f"of the starts that lead to each of ours: {'; '.join(shares)}.",
+        f"As printed, {GRID[0]} x {GRID[1]} starts, {LOOK['transient']} control periods dropped "
+        f"and {LOOK['duration']} observed, up to 16 times as many where these do not decide the "
+        "regime; attractors are distinguished by regime and progression rate.",
+        "The paper has chaos, period-2, period-1 and, at 47 rad/s, two period-1 attractors. Share "
+        f"of the starts that lead to each of our attractors: {'; '.join(shares)}.",
     )
 
 
@@ -190,8 +191,9 @@ def two_orbits(told: dict[tuple[str, int], Case]) -> Shown:
         "Figure 11: the two attractors at 47 rad/s",
         "mole-11-47-rad-s",
         figure,
-        f"As printed; {dropped} control periods dropped; 20 shown, and 1000 points of a section.",
+        f"As printed; {dropped} control periods dropped, 20 shown, and 1000 points per section.",
         f"From the first start: {pair[0].compared()} From the second: {pair[1].compared()} "
-        "Closed curves are quasi-periodic. As printed, the one from the second start is smooth, "
-        "but steeply folded, and its exponent near zero: it is close to a doubling of the torus.",
+        "Closed curves are quasi-periodic. As printed, the one from the second start is smooth "
+        "but steeply folded, and its exponent is near zero: it is close to a doubling of the "
+        "torus.",
     )

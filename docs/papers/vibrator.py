@@ -18,17 +18,18 @@ VARIED = ("damping_ratio", "stiffness_x", "support_offset")
 SYMMETRIC = (2, 6)  # rows of the table, from 0: equally stiff supports level with the centre
 NOTE = """\
 J. Michalczyk, G. Cieplok, *Disturbances in self-synchronisation of vibrators in vibratory
-machines*, Archives of Mining Sciences 59 (2014). Our copy has lost its signs, many digits and the
-single numbers of Table 1, so that the table is compared by the ranges that are legible.
+machines*, Archives of Mining Sciences 59 (2014). Signs, many digits and the
+individual values of Table 1 are missing from our copy, so the table is compared by its legible
+ranges.
 
-Sections 4 and 5 have no figure that is legible. Of section 4, equations (9) to (11) of a motor set
-on elastic mounts are in `models.vibrator.paper.closed_forms`, and theory and simulation carry the
-set on such mounts; each vibrator on a mount of its own (4.1) is not modelled. Of section 5, theory
-and simulation follow a feed that is thrown and lands without rebound
+Sections 4 and 5 have no legible figure. Of section 4, equations (9) to (11) of a motor set on
+elastic mounts are in `models.vibrator.paper.closed_forms`, and theory and simulation include the
+set on such mounts; individual mounts for each vibrator (4.1) are not modelled. Of section 5, theory
+and simulation include a feed that is thrown and lands without rebound
 (`studies/vibrator-feed.toml`).
-The paper has the largest disphasing near a throw coefficient of 1.75, a small one near 2.7 and none
-at 2.97. Ours is largest at 1.71 if the weight of the feed is the same at each throw coefficient, at
-1.34 if its mass is; at 2.7 it has fallen to 32 or 18 % of that; it changes sign at 2.97 to 2.98."""
+In the paper, disphasing is largest near a throw coefficient of 1.75, small near 2.7 and zero at
+2.97. In ours it is largest at 1.71 for a constant weight of the feed and at 1.34 for a constant
+mass; at 2.7 it has fallen to 32 or 18 % of that; it changes sign at 2.97 to 2.98."""
 
 
 def shown() -> Iterator[Shown]:
@@ -70,12 +71,12 @@ def table_1(p: Any, found: Any) -> Shown:
     angles, turns = np.abs(found.disphasing[others]), found.angular_amplitude[others]
     apart = np.abs(guess.angle - found.disphasing).max()
     return Shown(
-        "Table 1: disphasing by unlike supports",
+        "Table 1: disphasing caused by unequal supports",
         "vibrator-table-1",
         table(head, rows),
-        "Nominal machine but for the three columns; from standstill to the periodic orbit.",
-        "The paper's angles lie between 0.027 and 0.052 rad, with a rotation of a few 1e-5 rad, "
-        f"in six rows, and are 0 in rows 3 and 7. Ours lie between {angles.min():.3f} and "
+        "Nominal machine except for the three columns; from standstill to the periodic orbit.",
+        "The paper's angles are between 0.027 and 0.052 rad, with a rotation of a few 1e-5 rad, "
+        f"in six rows, and are 0 in rows 3 and 7. Ours are between {angles.min():.3f} and "
         f"{angles.max():.3f} rad, with {turns.min():.1e} to {turns.max():.1e} rad, in the six, "
         f"and within {np.abs(found.disphasing[list(SYMMETRIC)]).max():.0e} rad of 0 in the two. "
         f"Theory and simulation differ by {apart:.0e} rad at most.",
@@ -99,19 +100,19 @@ def run_up(p: Any, found: Any, row: int) -> Shown:
         f"vibrator-{row + 5}-row-{row + 1}",
         figure,
         f"Damping ratio {given['damping_ratio']:g}, k_x = {given['stiffness_x']:.3g} N/m, h = "
-        f"{given['support_offset']:g} m; both motors switched on at t = 0, at rest, both "
-        "unbalances hanging down.",
-        f"In the last 0.2 s of {end:.0f} s the angle, less {abs(turns)} whole turn"
+        f"{given['support_offset']:g} m; both motors switched on at t = 0 from rest, with "
+        "both unbalances hanging down.",
+        f"In the last 0.2 s of {end:.0f} s the angle, minus {abs(turns)} full turn"
         f"{'s' * (abs(turns) != 1)}, is "
         f"{angle:z.4f} rad "
-        f"({steady:z.4f} rad on the periodic orbit) and the body turns by {turn:.1e} rad "
-        f"({amplitude:.2g} rad on the orbit): motions of the springs die out with a time constant "
-        f"of seconds, so that the angle settles within the figure and the rotation does not. The "
-        "paper's curves are legible in kind only: synchronised at a small constant angle, as "
+        f"({steady:z.4f} rad on the periodic orbit) and the body rotates by {turn:.1e} rad "
+        f"({amplitude:.2g} rad on the orbit): vibrations on the springs decay with a time constant "
+        f"of seconds, so the angle settles within the figure and the rotation does not. The "
+        "paper's curves are legible only qualitatively: synchronised at a small constant angle, as "
         "here.",
     )
 
 
 def tidy(angle: Any) -> float:
-    """Return an angle without the sign of what is zero but for rounding."""
+    """Return an angle; zero without a sign where only rounding errors are left."""
     return 0.0 if abs(angle) < 5e-7 else float(angle)

@@ -3,9 +3,17 @@
 After J. Michalczyk and G. Cieplok, "Disturbances in self-synchronisation of vibrators in vibratory
 machines", Arch. Min. Sci. 59 (2014).
 
-Read `parameters`, then `batch`, from rows to outputs. Below it, from the ground up: `theory` of
-synchronous running, `equations` of motion, the propagators `lanes` and `exact`, and `start` from
-standstill. `trajectory` is one labelled run; `paper` reproduces the paper.
+Reading order; a storey imports only those above it:
+
+    parameters    inputs, settings and outputs
+    theory        synchronous running on paper
+    equations     the equations of motion
+    exact         one propagator: any machine, one at a time
+    lanes         the other: sixteen rigid machines abreast, what studies run on
+    start         from standstill to the steady state
+    batch         from rows of a study to outputs
+    trajectory    one labelled run
+    paper         the paper's claims beside ours
 """
 
 from typing import Any

@@ -1,6 +1,6 @@
-"""A ball dropped on a plate: the machine of notebook 06, as a package of its own.
+"""A ball dropped on a plate: the machine of notebook 06, as a separate package.
 
-While it lies in the folder one works in, ``uq run drop.toml --model bouncing_ball:MODEL`` finds it.
+In this folder, ``uq run drop.toml --model bouncing_ball:MODEL`` finds it.
 """
 
 from bouncing_ball.machine import MODEL

@@ -12,10 +12,10 @@ def drop(height, restitution, gravity, smallest_rise, most_bounces):
     Returns
     -------
     time : float
-        Of the last impact that was followed [s].
+        Of the last impact followed [s].
     bounces : int
     at_rest : bool
-        False where the budget of bounces ended first.
+        False if the budget of bounces ran out first.
     """
     time = sqrt(2 * height / gravity)
     speed = sqrt(2 * height * gravity)

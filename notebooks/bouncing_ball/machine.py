@@ -1,4 +1,4 @@
-"""What the platform sees of the ball: parameters, settings, outputs, and two functions."""
+"""The ball as the platform sees it: parameters, settings, outputs, and two functions."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -38,14 +38,14 @@ class Settings:
 
 
 OUTPUTS = {
-    "time_to_rest": Output("s", "time until the ball lies still", "lifetime"),
-    "bounces": Output("1", "impacts until the ball lies still", may_be_undefined=True),
+    "time_to_rest": Output("s", "time until the ball comes to rest", "lifetime"),
+    "bounces": Output("1", "impacts until the ball comes to rest", may_be_undefined=True),
     "regime": Output("1", "how the motion ends", "category", categories=REGIMES),
 }
 
 
 def batch(x, seed, settings):
-    """Compute n balls: row i of all that is returned depends on x[i], seed[i] and settings alone.
+    """Compute n balls: row i of all results depends only on x[i], seed[i] and settings.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def batch(x, seed, settings):
     status = np.full(n, Status.OK, np.int8)
     for i, (height, restitution, gravity) in enumerate(x):
         if restitution == 1:
-            continue  # known without computing: never at rest, and no failure
+            continue  # known without computing: never at rest, which is no failure
         found = drop(height, restitution, gravity, settings.smallest_rise, settings.most_bounces)
         time[i], count, at_rest = found
         regime[i] = REGIMES.index("comes-to-rest")
@@ -80,7 +80,7 @@ def batch(x, seed, settings):
 
 
 def simulate(params, settings, seed=0):
-    """Return the time history of one ball, until it lies still or the budget of bounces ends.
+    """Return the time history of one ball, until it comes to rest or the budget of bounces ends.
 
     Parameters
     ----------

@@ -102,10 +102,10 @@ def test_paired_replicates_tell_a_quantile_apart_as_well_as_all_their_rows_do():
         assert apart == pytest.approx(alone, rel=1e-6)
 
 
-def test_the_same_numbers_dealt_out_otherwise_are_reckoned_with_at_their_worst():
+def test_intervals_of_studies_that_share_a_seed_without_pairs_are_conservative():
     three = {name: law for name, law in FOUR.items() if name != "x3"}
     found = compared(study(FOUR), study(three))
-    assert found["pairing"] == "unknown" and "another seed" in found["notes"][0]
+    assert found["pairing"] == "unknown" and "different seeds" in found["notes"][0]
     output = found["outputs"]["y"]
     for one in (output["mean"], output["sd"], output["quantiles"]["0.5"]):
         a, b, apart = one["a"], one["b"], one["difference"]
@@ -216,7 +216,7 @@ def test_studies_that_cannot_be_compared_are_refused_in_a_line(uq, folder):
     for name, ds in (("a", linear()), ("k", kinds()), ("m", morris)):
         write_result(ds, folder / f"{name}.nc")
     for pair, line in (
-        (("a.nc", "k.nc"), "model 'linear', the second of 'kinds': only studies of one model"),
+        (("a.nc", "k.nc"), "model 'linear', the second of 'kinds': only studies of the same model"),
         (("a.nc", "m.nc"), "the second, a 'morris' design, do not follow the laws"),
         (("a.nc", "none.nc"), "none.nc: no such file"),
     ):
@@ -238,14 +238,14 @@ def test_compare_on_the_command_line(uq, folder):
         "x4 A uniform(lower = 0.0, upper = 1.0) B uniform(lower = 0.3, upper = 0.7)",
         "Only x4 differs (sd 0.2",
         "less variance",
-        "rows of the same number are pairs",
+        "rows with the same number are paired",
     ):
         assert said in words, said
     assert max(map(len, ended.out.splitlines())) <= 80
     found = json.loads(uq("compare", "a.nc", "b.nc", "--json").out)
     assert found["a"]["file"] == "a.nc" and found["pairing"] == "rows"
     assert set(found["outputs"]["y"]["sd"]) == {"a", "b", "difference", "ratio"}
-    assert "\nnothing" in "\n".join(map(str.strip, uq("compare", "a.nc", "a.nc").out.splitlines()))
+    assert "\nnone" in "\n".join(map(str.strip, uq("compare", "a.nc", "a.nc").out.splitlines()))
 
 
 def test_times_are_told_in_a_unit_people_use(uq, folder):

@@ -10,7 +10,7 @@ from scipy import stats
 
 from uq.contract import Parameter
 from uq.inputs.conditioning import law_problem, ppf_within
-from uq.study.file import LAW
+from uq.inputs.registry import law_of
 
 LAWS = {
     "uniform": {"lower": 2.0, "upper": 5.0},
@@ -26,7 +26,7 @@ LAWS = {
 
 
 def law(distribution, **arguments):
-    return LAW.validate_python({"distribution": distribution, **arguments})
+    return law_of({"distribution": distribution, **arguments})
 
 
 def parameter(low, high):

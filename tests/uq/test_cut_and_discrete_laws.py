@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from input_studies import BELL, inputs_of, refusal, tables
 from scipy import stats
 
-from uq.study.file import LAW
+from uq.inputs.registry import law_of
 
 
 @pytest.mark.parametrize(
@@ -24,7 +24,7 @@ from uq.study.file import LAW
 )
 def test_a_truncated_law_is_the_law_given_that_it_falls_between(entry):
     x = inputs_of(study_of(tables({"x1": entry}, "sobol")))["x1"]
-    plain = LAW.validate_python({k: v for k, v in entry.items() if k != "truncate"}).frozen()
+    plain = law_of({k: v for k, v in entry.items() if k != "truncate"}).frozen()
     low, high = entry["truncate"]
     low = max(low, entry.get("lower", low))
     share = (plain.cdf(x) - plain.cdf(low)) / (plain.cdf(high) - plain.cdf(low))
@@ -58,7 +58,7 @@ def test_discrete_laws_take_their_values_with_their_weights():
 def test_a_discrete_law_gives_none_but_its_values(values, ends, u):
     from uq.inputs.conditioning import ppf_within
 
-    law = LAW.validate_python({"distribution": "discrete-choice", "values": values})
+    law = law_of({"distribution": "discrete-choice", "values": values})
     low, high = sorted(ends)
     inside = [value for value in values if low <= value <= high]
     if inside:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from uq.study.file import LAW, LAWS
+from uq.inputs.registry import LAWS, law_of
 
 # name -> arguments, mean, standard deviation in closed form
 MOMENTS = {
@@ -57,7 +57,7 @@ MOMENTS = {
 
 
 def law(distribution, **arguments):
-    return LAW.validate_python({"distribution": distribution, **arguments})
+    return law_of({"distribution": distribution, **arguments})
 
 
 def test_every_law_has_its_moments_stated():

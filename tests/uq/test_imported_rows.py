@@ -44,7 +44,7 @@ def test_imported_rows_are_those_of_the_file_to_the_bit(table, file):
     assert sensitivities(ds)["method"] == "delta"
     found = summarised(ds)
     assert found["outputs"]["y"]["mean_interval"]["low"] is None
-    assert "nothing is known of how imported rows came about" in found["notes"][0]
+    assert "how the imported rows were drawn is unknown" in found["notes"][0]
     assert not any("replicates" in note for note in found["notes"])
     again = study_from_text(ds.attrs["study"])
     assert again.identity == study.identity

@@ -175,8 +175,8 @@ def test_beside_quantiles_of_censored_rows_stand_those_of_kaplan_and_meier_as_b_
 @pytest.mark.parametrize(
     ("values", "time", "value", "reason"),
     [
-        ([1.0, 2.0, 3.0, 4.0], 2.5, 0.0, "no row ended before then"),
-        ([1.0, 2.0, 3.0, 4.0], 9.0, None, "the last row was seen before then"),
+        ([1.0, 2.0, 3.0, 4.0], 2.5, 0.0, "no row ended before it"),
+        ([1.0, 2.0, 3.0, 4.0], 9.0, None, "it is after the last observation"),
     ],
 )
 def test_a_share_after_kaplan_and_meier_without_interval_has_a_reason(values, time, value, reason):

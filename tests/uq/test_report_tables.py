@@ -86,7 +86,7 @@ def test_a_probability_that_supposes_something_says_so():
     entry = summarised(ds)["outputs"]["life"]["thresholds"][f"{14 * DAY!r}"]
     _, table = results_of(ds)
     line = lines(table)["life"]
-    assert line["note"].startswith(entry["reason"]) and "Kaplan and Meier" in line["note"]
+    assert line["note"].startswith(entry["reason"]) and "Kaplan-Meier" in line["note"]
     assert line["P(below)"] == f"{entry['kaplan_meier']['below']['value']:.5g}"
 
 

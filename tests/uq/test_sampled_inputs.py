@@ -9,15 +9,15 @@ from scipy import stats
 from uq import plots
 from uq.analysis.sampled_inputs import compare
 from uq.errors import InputError
-from uq.study.file import LAW
+from uq.inputs.registry import law_of
 
 
 def test_the_distance_is_that_of_kolmogorov_and_smirnov():
-    law = LAW.validate_python(BELL)
+    law = law_of(BELL)
     x = np.random.default_rng(1).normal(0.52, 0.05, 500)
     exact = stats.kstest(x, stats.norm(0.5, 0.05).cdf).statistic
     assert compare(law, x).distance == pytest.approx(exact, rel=1e-12)
-    die = LAW.validate_python({"distribution": "integer-range", "lower": 1, "upper": 6})
+    die = law_of({"distribution": "integer-range", "lower": 1, "upper": 6})
     assert compare(die, np.repeat(np.arange(1.0, 7.0), 10)).distance == pytest.approx(0)
     assert compare(die, np.ones(10)).distance == pytest.approx(5 / 6)
 

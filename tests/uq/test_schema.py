@@ -8,8 +8,9 @@ import pytest
 from jsonschema import Draft7Validator
 from study_text import UNIFORM, study_text
 
+from uq.inputs.registry import LAWS
 from uq.study import registry
-from uq.study.file import LAWS, AnalysisTable, DesignTable
+from uq.study.file import AnalysisTable, DesignTable
 from uq.study.registry import find_model, model_names
 from uq.study.schema import json_schema
 from uq.study.template import template

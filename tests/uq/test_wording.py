@@ -5,9 +5,9 @@ from math import inf, nan
 import pytest
 
 from uq.estimate import Estimate
+from uq.inputs.registry import law_of
 from uq.methods.indices import S1, ST
 from uq.methods.morris import MU, MU_STAR
-from uq.study.file import LAW
 from uq.wording import (
     brief,
     duration,
@@ -95,9 +95,9 @@ def test_effects_have_digits_whatever_their_unit():
 
 def test_a_law_is_told_by_its_arguments_alone():
     given = {"distribution": "normal", "mean": 1.0, "sd": 0.1, "source": "a book", "times": "x"}
-    assert law(LAW.validate_python(given)) == "normal(mean = 1.0, sd = 0.1)"
+    assert law(law_of(given)) == "normal(mean = 1.0, sd = 0.1)"
     drawn = {"distribution": "empirical", "values": [1.0, 2.0]}
-    assert law(LAW.validate_python(drawn)) == "empirical(values = [1.0, 2.0])"
+    assert law(law_of(drawn)) == "empirical(values = [1.0, 2.0])"
 
 
 def test_what_is_estimated_has_no_idle_digits():

@@ -5,7 +5,7 @@ from itertools import groupby
 from typing import Any
 
 from uq import json_form
-from uq.analysis.comparison import Compared, ComparedOutput, Comparison, OnlyChange, Side
+from uq.analysis.compared import Compared, ComparedOutput, Comparison, OnlyChange, Side
 from uq.analysis.statistics.statistic import JSON
 from uq.analysis.statistics.table import EMPTY, JSON_ORDER
 from uq.analysis.summary import Described, Summary, regime_json
@@ -21,13 +21,13 @@ def summary_json(summary: Summary) -> dict[str, Any]:
         independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
         element -> mean, sd, their intervals, ``tail``: the shape k of its heavier tail with its
         interval, the number of values it was fitted to and their side, ``reasons``: why the tail
-        forbids any of these four, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
+        rules out any of these four, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
         ``between_regimes``: the share of the variance of the number named ``of``, itself or the
         logarithm or rank of a lifetime, that lies between them,
         ``accuracy``: how many rows state an error beyond the accuracy asked for, if one was,
-        counts of never, censored, undefined and failed rows) and ``notes``, sentences on what could
-        not be given. A number that does not exist or is not finite is None; beside it ``never``,
-        ``low_censored`` and the like say why. Where rows failed, each probability, quantile and
+        counts of never, censored, undefined and failed rows) and ``notes``, sentences on what is
+        missing. A number that does not exist or is not finite is None; beside it ``never``,
+        ``low_censored`` and the like state why. Where rows failed, each probability, quantile and
         B-life has ``failed_low`` and ``failed_high`` (`uq.analysis.failed_rows`).
     """
     return {
@@ -70,7 +70,7 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
         ``replicates``, ``strangers`` or ``unknown``. ``regime``: label -> estimate; ``outputs``:
         element -> its statistics under their keys in a summary, where one is ``a`` and ``b``, as
         `summary_json` has them, and ``difference``: ``value``, ``low``, ``high`` of b less a, and
-        ``identical`` where the rows are pairs and both of each say the same: then there is no
+        ``identical`` where the rows are paired and agree: then there is no
         interval; that of sd also has ``ratio``. ``notes``: sentences.
     """
     return {

@@ -1,4 +1,4 @@
-"""What estimates are made of: the rows that take part, and how far each of them pulls."""
+"""Estimators: the rows that take part, and the influence of each."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,29 +18,29 @@ class Sample(NamedTuple):
 
 
 def with_value(element: Element) -> Sample:
-    """Return the values of an element, censored ones as late as they may be: never."""
+    """Return the values of an element, censored rows never ending."""
     return Sample(element.present, np.where(element.censored, np.inf, element.values))
 
 
 def whole(element: Element) -> Sample:
-    """Return all that is known of each row: its value, and whether it is only a lower bound."""
+    """Return value and censoring of each row."""
     return Sample(element.present, np.column_stack([element.values, element.censored]))
 
 
 @dataclass(frozen=True)
 class Estimator:
-    """What is made of the rows that take part, and how far each of them pulls it off.
+    """A function of the rows that take part, and the influence of each row on it.
 
     Attributes
     ----------
     of : callable
         Rows -> estimate.
     pull : callable
-        Rows -> the influence of each, up to a factor; they sum up to nothing.
+        Rows -> the influence of each, up to a factor; they sum to zero.
     sample : callable
         Element -> its rows; None where censored rows leave open which they are.
     is_share : bool
-        Whether it is a share of rows, or the value beyond which one lies.
+        Whether it is a share of rows, or the value beyond which such a share lies.
     counts_hits : bool
         Whether the numbers of the rows are 0 and 1.
     is_scale : bool
@@ -73,7 +73,7 @@ def share(sample: Callable[[Element], Sample | None] = with_value) -> Estimator:
 
 
 def quantile(probability: float) -> Estimator:
-    """Return the estimator of a quantile; a row pulls it to its own side, however far it lies."""
+    """Return the estimator of a quantile; the influence of a row is its side alone."""
 
     def of(x: Floats) -> float:
         return order_statistics.quantile(x, probability)

@@ -1,4 +1,4 @@
-"""A result, and what is computed of it once, however many tables and figures show it."""
+"""A result with what several tables and figures show of it, computed once."""
 
 from functools import cached_property
 
@@ -15,12 +15,12 @@ _COLUMNS = ["output", "estimate", "samples", "value", "low", "high"]
 
 
 class Findings:
-    """What is known of a result, each part computed when it is first asked for.
+    """What is known of a result, each part computed when first needed.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        A result, which nobody changes while this is in use.
+        A result; it must not be changed while this is in use.
     """
 
     def __init__(self, ds: xr.Dataset):
@@ -34,7 +34,7 @@ class Findings:
 
     @cached_property
     def absent(self) -> frozenset[str]:
-        """The outputs that none of the independent rows has."""
+        """The outputs that no independent row has."""
         names = output_names(self.rows)
         there = (one.output for one in elements_of(self.rows, names) if one.present.any())
         return frozenset(names) - frozenset(there)
@@ -51,7 +51,7 @@ class Findings:
 
     @property
     def not_running(self) -> str:
-        """Why nothing is known of fewer rows, or ""."""
+        """Why there are no running estimates, or ""."""
         return self._running[1]
 
     @cached_property
@@ -67,7 +67,7 @@ class Findings:
         Raises
         ------
         InputError
-            When the method has nothing to say of this result.
+            When the method does not apply to this result.
         """
         if method not in self._sensitivities:
             self._sensitivities[method] = sensitivities(self.ds, method)

@@ -1,4 +1,4 @@
-"""What two studies of one model have different: inputs, settings, design."""
+"""Differences between two studies of one model: inputs, settings, design."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -12,7 +12,7 @@ from uq.wording import law
 
 
 class Change(NamedTuple):
-    """One entry that two studies have different.
+    """One entry that differs between two studies.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Spread(NamedTuple):
 
 
 def changes(first: xr.Dataset, second: xr.Dataset) -> list[Change]:
-    """Return all that two studies have different, but for what they ask of their rows.
+    """Return all differences between two studies, apart from [analysis].
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def _inputs(first: xr.Dataset, second: xr.Dataset) -> Iterator[Change]:
 
 
 def _stated(ds: xr.Dataset, study: StudyFile, name: str) -> tuple[str, Any]:
-    """Return in words what an input is, and all that decides its rows."""
+    """Return an input in words, and all that determines its rows."""
     unit = ds[name].attrs["units"]
     behind = "" if unit == "1" else f" {unit}"
     entry = study.uncertain.get(name)
@@ -111,6 +111,6 @@ def spread(ds: xr.Dataset, name: str) -> Spread:
 
 
 def only_change(found: list[Change]) -> str | None:
-    """Return the one input in which two studies differ, if nothing else does but their rows."""
+    """Return the only input in which two studies differ, if nothing but their design does, too."""
     decisive = [change for change in found if change.kind != "design"]
     return decisive[0].name if [change.kind for change in decisive] == ["input"] else None

@@ -1,4 +1,4 @@
-"""Times by which a share of the rows has ended, and shares that have ended by a time."""
+"""Times by which a given share of rows has ended, and shares that have ended by a given time."""
 
 from collections.abc import Mapping
 
@@ -11,10 +11,10 @@ from uq.intervals import Ends, Replicates
 from uq.rows.elements import Element, Floats
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
-"""Share of rows that has ended by each of the times that engineers ask for."""
+"""Share of rows that have ended by each of the lives that engineers quote."""
 
-ASSUMES = "that censoring says nothing of the life left"
-"""What the estimate of Kaplan and Meier asks of the rows."""
+ASSUMES = "that censoring is non-informative"
+"""What the Kaplan-Meier estimate assumes."""
 
 
 def life_quantiles(
@@ -33,9 +33,9 @@ def life_quantiles(
     Returns
     -------
     dict
-        Name -> estimate [s]. As long as it does not matter when the censored rows end, it is a
-        plain quantile. Else it is the time at which the curve of Kaplan and Meier, or an end of its
-        pointwise interval [1]_, passes the share, and says what it assumes.
+        Name -> estimate [s]. A plain quantile as long as it does not depend on when the censored
+        rows end. Otherwise the time at which the Kaplan-Meier curve, or an end of its pointwise
+        interval [1]_, crosses the share; it states what it assumes.
 
     References
     ----------
@@ -53,7 +53,7 @@ def life_quantiles(
             value, low, high = (
                 _first(seen[end] <= 1 - asked[name], time) for end in ("survival", "low", "high")
             )
-            if low == first_end:  # nothing is known of times before the first end
+            if low == first_end:  # earlier times carry no information
                 low = np.nan
             if np.isfinite(value):
                 found[name] = Estimate(value, low, high, assumes=ASSUMES)
@@ -61,7 +61,7 @@ def life_quantiles(
 
 
 def ended_by(element: Element, time: float, replicate: Replicates) -> tuple[Estimate, Estimate]:
-    """Estimate P(T > t) and P(T < t) where rows were censored before t, after Kaplan and Meier.
+    """Estimate P(T > t) and P(T < t) by Kaplan-Meier, where rows were censored before t.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def ended_by(element: Element, time: float, replicate: Replicates) -> tuple[Esti
     Returns
     -------
     above, below : Estimate
-        NaN where the last row was seen before `time`; with the reason where there is no interval.
+        NaN where `time` is after the last observation; with the reason where there is no interval.
     """
     times = _times(element)
     seen = curve(element, times, replicate)
@@ -94,22 +94,22 @@ def ended_by(element: Element, time: float, replicate: Replicates) -> tuple[Esti
 
 
 def _explained(share: Estimate, seen: int) -> Estimate:
-    """Return a share after Kaplan and Meier, with the reason where there is no interval."""
+    """Return a Kaplan-Meier share, with the reason where there is no interval."""
     reason = ""
     if np.isnan(share.low) and np.isnan(share.high):
         if not seen:
             reason = "there are no rows"
         elif np.isnan(share.value):
-            reason = "the last row was seen before then"
+            reason = "it is after the last observation"
         elif share.value in (0.0, 1.0):
-            reason = "no row ended before then"
+            reason = "no row ended before it"
         else:
-            reason = "nothing shows its scatter"
+            reason = "its scatter is unknown"
     return Estimate(*share.numbers, reason, ASSUMES)
 
 
 def quantile_estimate(element: Element, probability: float, replicate: Replicates) -> Estimate:
-    """Estimate a quantile, whenever the censored rows may end.
+    """Estimate a quantile that is valid whenever the censored rows end.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def quantile_estimate(element: Element, probability: float, replicate: Replicate
     Returns
     -------
     Estimate
-        NaN, with the reason, where the rows do not reach it; one end may still bound it.
+        NaN, with the reason, where there are too few rows; one end may still bound it.
     """
 
     def estimate(values: Floats) -> tuple[float, Ends]:
@@ -143,7 +143,7 @@ def _why_none(probability: float, rows: int) -> str:
     if rows == 0 or order_statistics.is_within(probability, rows):
         return ""
     needed = order_statistics.rows_to_reach(probability)
-    return f"{rows} rows do not reach the quantile {probability:g}: it takes {needed}"
+    return f"{rows} rows are too few for the {probability:g} quantile: it needs {needed}"
 
 
 _UNKNOWN = (np.nan, np.nan)
@@ -152,10 +152,10 @@ _UNKNOWN = (np.nan, np.nan)
 def whenever_censored_rows_end(
     value: Ends, low: Ends = _UNKNOWN, high: Ends = _UNKNOWN, reason: str = ""
 ) -> Estimate:
-    """Return an estimate that holds whenever the censored rows may end.
+    """Return an estimate that is valid whenever the censored rows end.
 
-    Each number comes twice: with the censored rows ending where they were last seen, and never
-    ending. The second is given, so that a bound from above holds whenever they end.
+    Each number is given twice: with the censored rows ending when last observed, and never. The
+    second is returned, so that an upper bound is valid in any case.
     """
     pairs = {"value": value, "low": low, "high": high}
     beyond = tuple(

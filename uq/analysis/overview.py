@@ -1,4 +1,4 @@
-"""What a result says, as a table to look at and to compute with."""
+"""The summary of a result as a table to display and to compute with."""
 
 from math import inf, isfinite, nan
 from typing import Any
@@ -31,7 +31,7 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
         ``B50`` of lifetimes; and for each threshold ``P(>t)`` and ``P(<t)`` with their intervals,
         where it is one of the output's.
         Where rows failed, ``_failed_low`` and ``_failed_high`` are the ends with these rows at best
-        and at worst. Infinity stands for never, NaN for what could not be given.
+        and at worst. Infinity means never, NaN that there is no estimate.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def _line(output: Described) -> dict[str, Any]:
 
 
 def _cells(column: str, one: Statistic) -> dict[str, float]:
-    """Return the numbers of a statistic, named after what they say."""
+    """Return the numbers of a statistic under the names of their columns."""
     if one.kind.is_count:
         return {column: int(one.estimate.value)}
     cells = {column: _number(one.estimate, "value")}

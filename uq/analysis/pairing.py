@@ -1,9 +1,9 @@
-"""Which rows of two results belong together, and how their estimates go together for that.
+"""How the rows of two results are paired, and the correlation of their estimates.
 
-Two studies with the same seed draw the same numbers. Where row by row or replicate by replicate
-that makes pairs, which are independent of each other, the difference of the two is known better
-than from strangers. Where the same numbers are dealt out otherwise nothing is known of it, and an
-interval must do for the worst.
+Two studies with the same seed draw the same numbers. Where this pairs their rows or replicates,
+and the pairs are independent of each other, the difference is known better than from independent
+samples. Where the numbers are shared but not paired, the correlation is unknown, and intervals
+are conservative.
 """
 
 from enum import Enum
@@ -28,27 +28,27 @@ from uq.study.file import Tied
 _ROUNDING = 1e-6  # the root of what an interval that is a difference of two may lose
 
 WORST = -1.0
-"""The correlation that makes a difference least certain."""
+"""The correlation at which a difference is least certain."""
 
 
 class Kinship(Enum):
-    """What two results have in common; the value says so to a reader."""
+    """How the rows of two results are related; the value is the sentence that reports it."""
 
-    STRANGERS = "the seeds differ: rows of one have nothing to do with rows of the other"
-    ROWS = "the seed is the same: rows of the same number are pairs"
-    REPLICATES = "the seed is the same: replicates of the same number are pairs"
-    ROWS_IMPORTED = "the imported rows are the same: rows of the same number are pairs"
+    STRANGERS = "The seeds differ: the two samples are independent."
+    ROWS = "The studies share a seed: rows with the same number are paired."
+    REPLICATES = "The studies share a seed: replicates with the same number are paired."
+    ROWS_IMPORTED = "The imported rows are the same: rows with the same number are paired."
     UNKNOWN_IMPORTED = (
-        "nothing is known of how imported rows came about: intervals are wide enough for the worst"
+        "How the imported rows were drawn is unknown, so these intervals are conservative."
     )
     UNKNOWN = (
-        "the seed is the same but dealt out otherwise, so that rows are neither pairs nor"
-        " strangers: intervals are wide enough for the worst; give one study another seed"
+        "The studies share a seed but are not paired, so these intervals are conservative. Use"
+        " different seeds."
     )
 
 
 def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
-    """Return what two results have in common.
+    """Return how the rows of two results are related.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
 
 
 def _kinship_of_imported(first: xr.Dataset, second: xr.Dataset) -> Kinship:
-    """Return what two results have in common of which one is imported: their seeds do not tell."""
+    """Return how two results are related if one is imported, so that seeds do not matter."""
     files = [study_file_of(ds) for ds in (first, second)]
     same = files[0].data == files[1].data and files[0].design.method == files[1].design.method
     if same and all(are_independent(ds) for ds in (first, second)):
@@ -90,7 +90,7 @@ Places = tuple[NDArray[np.intp], NDArray[np.intp]]
 
 
 def shared_rows(first: xr.Dataset, second: xr.Dataset) -> Places:
-    """Return the places of the rows that both results have, in each of them."""
+    """Return the positions in each result of the rows that both have."""
     most = max(ds.attrs["replicates"] for ds in (first, second))
     mine, other = (ds["group"].values * most + ds["replicate"].values for ds in (first, second))
     _, here, there = np.intersect1d(mine, other, assume_unique=True, return_indices=True)
@@ -98,17 +98,17 @@ def shared_rows(first: xr.Dataset, second: xr.Dataset) -> Places:
 
 
 def correlation(first: Floats, second: Floats, shared: Places, is_share: bool) -> float:
-    """Return the correlation of two estimates from what each pair of rows adds to them.
+    """Return the correlation of two estimates from the influence of each pair of rows.
 
     Parameters
     ----------
     first, second : ndarray, shape (n,) and (m,)
-        How far each row pulls its estimate from where it is; they sum up to nothing.
+        Influence of each row on its estimate; they sum to zero.
     shared : tuple of ndarray of int
         As from `shared_rows`.
     is_share : bool
-        Whether they are shares: then half a row counts against agreement, which few rows
-        overstate [1]_.
+        Whether the estimates are shares: then a continuity correction of half a row is applied,
+        since few rows overstate the agreement [1]_.
 
     Returns
     -------
@@ -127,7 +127,7 @@ def correlation(first: Floats, second: Floats, shared: Places, is_share: bool) -
 
 
 class Pair:
-    """The independent rows of two results of one model, and how their estimates go together.
+    """The independent rows of two results of one model, and how their estimates are correlated.
 
     Parameters
     ----------
@@ -144,14 +144,14 @@ class Pair:
     def difference(
         self, estimator: Estimator, samples: list[Sample], known: list[Estimate]
     ) -> Estimate:
-        """Return how far an estimate of the second lies from that of the first."""
+        """Return an estimate from the second result less that from the first."""
         if self.kinship is Kinship.REPLICATES and not estimator.is_share:
             value = known[1].value - known[0].value
             own = [self._by_replicate(estimator, i, one) for i, one in enumerate(samples)]
             if not np.isfinite(own).all():
                 return Estimate(value)
             apart = own[1] - own[0]
-            if intervals.is_constant(apart + np.abs(own).max()):  # they differ by rounding alone
+            if intervals.is_constant(apart + np.abs(own).max()):  # they differ only by rounding
                 return Estimate(value)
             return Estimate(value, *intervals.scatter_interval(value, apart))
         if estimator.counts_hits and all(one is None for one in self._replicate):
@@ -160,11 +160,11 @@ class Pair:
         wide = sum(one.high - one.low for one in known)
         paired = self.kinship in (Kinship.ROWS, Kinship.REPLICATES)
         if paired and found.high - found.low <= _ROUNDING * wide < np.inf:
-            return Estimate(found.value)  # as good as the same in each pair
+            return Estimate(found.value)  # equal in each pair, but for rounding
         return found
 
     def identical(self, samples: list[Sample]) -> bool:
-        """Whether the rows are pairs, and both of each pair say the same."""
+        """Whether the rows are paired and both rows of each pair agree."""
         if self.kinship not in (Kinship.ROWS, Kinship.REPLICATES):
             return False
         first, second = samples
@@ -181,7 +181,7 @@ class Pair:
 
     @property
     def unpaired(self) -> float:
-        """The correlation to reckon with where no rows can be held against each other."""
+        """The correlation to assume where rows are not paired."""
         return 0.0 if self.kinship is Kinship.STRANGERS else WORST
 
     def _correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
@@ -198,10 +198,10 @@ class Pair:
         return correlation(pulls[0], pulls[1], self._shared, estimator.is_share)
 
     def _replicates_correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
-        """Return the correlation of the pulls of whole replicates; NaN where one has none.
+        """Return the correlation of the mean influences of replicates; NaN where one has no rows.
 
-        With the ends of Woodruff's intervals this makes the interval of Student's t of the
-        linearised differences of the replicates, each of whose own quantiles is a poor one.
+        Together with Woodruff's intervals this gives Student's t interval of the linearised
+        differences between replicates, whose own quantiles are poor estimates.
         """
         pulls = []
         for i, sample in enumerate(samples):
@@ -215,7 +215,7 @@ class Pair:
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
         of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])
-        assert of is not None, "independent rows are not taken by replicate"
+        assert of is not None, "independent rows have no replicates"
         found = np.full(count, np.nan)
         for r in range(count):
             values = sample.numbers[sample.kept & (of == r)]
@@ -225,18 +225,20 @@ class Pair:
 
 
 def _newcombe(sample: Sample) -> Estimate:
-    """Return a share with Wilson's interval, of which that of a difference is made.
+    """Return a share with Wilson's interval, from which that of a difference is built.
 
-    The interval of a single share is exact where hits are few: two of these would make one too
-    wide.
+    For few hits the interval of a single share is exact; the difference of two such intervals would
+    be too wide.
     """
     hits = sample.numbers[sample.kept]
     return Estimate(float(hits.mean()), *intervals.wilson_interval(hits.mean(), len(hits)))
 
 
 def _factor(value: float, above: Floats, below: Floats) -> Estimate:
-    """Return a ratio with its interval from those of the replicates, in which it is logarithmic."""
-    if not (value > 0 and (above > 0).all() and (below > 0).all()):  # nor are they where unknown
+    """Return a ratio with the interval from the logarithms of the replicates' ratios."""
+    if not (
+        value > 0 and (above > 0).all() and (below > 0).all()
+    ):  # also False where they are unknown
         return Estimate(value)
     ends = intervals.scatter_interval(float(np.log(value)), np.log(above / below))
     return Estimate(value, *np.exp(ends).tolist())

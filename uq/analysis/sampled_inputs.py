@@ -9,7 +9,7 @@ import xarray as xr
 from uq.designs.registry import DESIGNS
 from uq.indices.independent_inputs import independent_inputs
 from uq.inputs.conditioning import cdf_within, factor_of, ppf_within
-from uq.inputs.distributions import Law
+from uq.inputs.law import Law
 from uq.rows.elements import Floats, independent_rows
 from uq.rows.sampling import row_block, rows
 from uq.study.definition import Study

@@ -1,4 +1,4 @@
-"""What a result says: how rows ended, the regimes, and the statistics of each output."""
+"""The summary of a result: how rows ended, the regimes, and the statistics of each output."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -33,20 +33,20 @@ from uq.rows.in_regime import within_regime
 from uq.study.file import AnalysisTable
 
 NO_INTERVALS = (
-    "no intervals: the rows of a '{design}' design are not independent, and with replicates = 1"
-    " nothing shows how far its estimates scatter; set replicates = 8"
+    "no intervals: the rows of a '{design}' design are not independent, and a single replicate"
+    " does not show how far its estimates scatter; set replicates = 8"
 )
 
 NOT_STATED = (
-    "no intervals: nothing is known of how imported rows came about; if they are independent draws"
-    " of the laws, set independent = true in [design]"
+    "no intervals: how the imported rows were drawn is unknown; if they are independent draws from"
+    " the laws, set independent = true in [design]"
 )
 
 NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
 
 SOME_FAILED = (
-    "{most} of {rows} independent rows failed. Estimates are of the others; beside each"
-    " probability, quantile and B-life stand its bounds with the failed rows at best and at worst"
+    "{most} of {rows} independent rows failed. Estimates use the others; each probability,"
+    " quantile and B-life also has bounds with the failed rows at best and at worst"
 )
 
 
@@ -92,25 +92,25 @@ class Described:
 
 @dataclass(frozen=True)
 class Summary:
-    """A result in short.
+    """The summary of a result.
 
     Attributes
     ----------
     samples : int
         All rows.
     rows_used : int
-        The independent ones, which everything but `status` is about.
+        The independent rows, on which everything but `status` is based.
     status : dict of str to int
-        How many rows ended how, all rows.
+        Number of rows with each status, of all rows.
     regimes : dict of str to Statistic
-        Share of each, and ``count`` among its facts; empty without regimes; also those that do not
-        occur.
+        Share of each, with ``count`` among its facts, also of those that do not occur; empty
+        without regimes.
     outputs : dict of str to Described
         By name of the element.
     most_failed : int
-        Rows without the value of an element because they failed, at most.
+        The largest number of rows that lack an element because they failed.
     notes : list of str
-        Sentences on what could not be given.
+        Sentences on what could not be estimated.
     """
 
     samples: int
@@ -135,9 +135,9 @@ def summarise(
     ds : xarray.Dataset
         A result.
     analysis : AnalysisTable, optional
-        What to show; by default what the result's own study asks for.
+        What to report; by default what the study of the result asks for.
     regime : str, optional
-        Describe the rows in this regime only; those that failed without one count as failed.
+        Describe only the rows in this regime; rows that failed without one count as failed.
     fits : bool
         Whether each lifetime also has the laws fitted to it.
 
@@ -173,7 +173,7 @@ def _described(element: Element, context: Context, fits: bool) -> Described:
 
 
 def status_counts(ds: xr.Dataset) -> dict[str, int]:
-    """Return how many rows ended how, all rows, for each status that occurs and ``ok``."""
+    """Return the number of rows, of all, with each status that occurs and with ``ok``."""
     codes = ds["status"].values
     counts = {label: int((codes == code).sum()) for code, label in flags(ds["status"])}
     return {label: count for label, count in counts.items() if count or label == "ok"}

@@ -1,4 +1,4 @@
-"""What ``uq compare`` shows."""
+"""The output of ``uq compare``."""
 
 from collections.abc import Iterator
 from itertools import chain
@@ -6,18 +6,19 @@ from math import isfinite, nan
 from pathlib import Path
 
 from uq.analysis.as_json import comparison_json
-from uq.analysis.comparison import Compared, ComparedOutput, Comparison, Side, comparison
+from uq.analysis.compared import Compared, ComparedOutput, Comparison, Side
+from uq.analysis.comparison import comparison
 from uq.cli.printing import console, grid, heading, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.wording import estimated, interval, known, number, time_unit
 
 _TOLD = 6
-"""Outputs of which it is said what a change of one input did."""
+"""Largest number of outputs with a sentence on the effect of a single changed input."""
 
 
 def compare(first: Path, second: Path, json: bool) -> None:
-    """Compare two results and show what was found."""
+    """Compare two results and print the comparison."""
     found = comparison(open_result(first), open_result(second))
     if not json:
         _show(found, first, second)
@@ -31,13 +32,13 @@ def compare(first: Path, second: Path, json: bool) -> None:
 def _show(found: Comparison, first: Path, second: Path) -> None:
     sides = (("A", first, found.first), ("B", second, found.second))
     grid([(name, str(path), _about(side)) for name, path, side in sides], indent=0)
-    heading("\nWhat differs in the studies")
+    heading("\nDifferences between the studies")
     for change in found.changed:
         what = change.name if change.kind == "input" else f"{change.kind} {change.name}"
         heading(f"  {what.removeprefix('design design').strip() or 'design'}")
         grid([("A", change.first), ("B", change.second)], indent=4)
     if not found.changed:
-        paragraph("nothing", indent=2)
+        paragraph("none", indent=2)
     if found.regimes:
         heading("\nregime")
         lines = [(label, *_cells(one)) for label, one in found.regimes.items()]
@@ -47,14 +48,14 @@ def _show(found: Comparison, first: Path, second: Path) -> None:
         heading(f"\n{name}{f' [{unit}]' if unit != '1' else ''}")
         grid(chain.from_iterable(_lines(one, per) for one in output.statistics), _HEADER)
     console.print()
-    paragraph("*: this interval excludes no difference. " + _MANY, indent=0)
+    paragraph("*: the interval excludes no difference. " + _POINTWISE, indent=0)
     for note in [*bought(found), *found.notes]:
         console.print()
         paragraph(note, indent=0)
 
 
 _HEADER = ("", "A", "B", "B - A", "95 % interval", "")
-_MANY = "Of twenty intervals one misses the truth."
+_POINTWISE = "The intervals are pointwise: one in twenty misses."
 
 
 def _about(side: Side) -> str:
@@ -67,7 +68,7 @@ def _about(side: Side) -> str:
 
 
 def _unit(output: ComparedOutput) -> tuple[str, float]:
-    """Return the unit that an output is told in, and its length: that of the times to be told."""
+    """Return the unit in which an output is shown, and its length."""
     medians = [one.first.estimate.value for one in output.parts["quantiles"]]
     typical = medians[len(medians) // 2] if medians else nan
     if output.units != "s" or not isfinite(typical):
@@ -98,7 +99,7 @@ def _apart(one: Estimate, identical: bool, per: float, nothing: float = 0.0) -> 
 
 
 def bought(found: Comparison) -> list[str]:
-    """Return in sentences what the change of a single input did to the scatter of the outputs."""
+    """Return sentences on how the change of a single input affected the scatter of the outputs."""
     only = found.only
     if only is None:
         return []

@@ -21,7 +21,7 @@ from uq.wording import (
 
 
 def show_summary(ds: xr.Dataset, summary: Summary) -> None:
-    """Print what `uq.analysis.summary.summarise` found."""
+    """Print a summary."""
     design = f"{ds.attrs['design']}, {summary.samples} rows"
     if summary.rows_used < summary.samples:
         some = summary.rows_used
@@ -62,7 +62,7 @@ Line = tuple[str, str, str, str]
 
 
 def _lines(output: Described) -> Iterator[Line]:
-    """Yield label, value, interval and the value in hours, days or years."""
+    """Yield label, value, interval, and the value in hours, days or years."""
     for part in output.parts.values():
         shown = [one for one in part if one.is_read_by(TERMINAL) and one.words()]
         for one in shown:
@@ -76,7 +76,7 @@ def _lines(output: Described) -> Iterator[Line]:
                 yield "", one.otherwise.estimate.assumes.removeprefix("that "), "", ""
         for assumed in dict.fromkeys(one.estimate.assumes for one in shown):
             if assumed:
-                yield "", f"{shown[0].kind.name} suppose", assumed.removeprefix("that "), ""
+                yield "", f"{shown[0].kind.name} assume", assumed.removeprefix("that "), ""
 
 
 def _line(one: Statistic) -> Line:

@@ -18,7 +18,7 @@ from uq.drawing.figure import (
 from uq.drawing.panel import figure_of, grid
 from uq.errors import InputError
 from uq.inputs.conditioning import cdf_within
-from uq.inputs.distributions import Law
+from uq.inputs.law import Law
 from uq.rows.elements import Floats
 
 _IN_ONE_COLUMN = 3  # inputs

@@ -7,16 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Parameter
-from uq.inputs.distributions import (
-    Beta,
-    Law,
-    LogUniform,
-    Normal,
-    Pert,
-    Triangular,
-    TruncatedNormal,
-    Uniform,
-)
+from uq.inputs.distributions import Normal, TruncatedNormal
+from uq.inputs.law import Law
 from uq.inputs.observed import Listed
 
 OUTSIDE_AT_MOST = 1e-6
@@ -233,8 +225,9 @@ def outside_share(law: Law, low: Any, high: Any) -> Any:
 def _remedy(law: Law) -> str:
     if law.truncate is not None:
         return f"truncate = [{law.truncate[0]!r}, {law.truncate[1]!r}] must lie within them"
-    if isinstance(law, Uniform | LogUniform | TruncatedNormal | Triangular | Pert | Beta):
-        return f"lower = {law.lower!r} and upper = {law.upper!r} must lie within them"
+    lower, upper = (getattr(law, end, None) for end in ("lower", "upper"))
+    if lower is not None and upper is not None and not law.discrete:
+        return f"lower = {lower!r} and upper = {upper!r} must lie within them"
     if isinstance(law, Normal):
         return "use a truncated-normal with lower and upper within them, or other numbers"
     return "add truncate = [lower, upper] within them, or use other numbers"

@@ -1,19 +1,18 @@
 """The laws an uncertain parameter can follow: names and arguments; scipy.stats does the rest.
 
 Each law is a small frozen table as it stands in a study file, and names its `scipy.stats`
-counterpart. To add one: write the class, add it to `Law`, state its moments in the tests.
+counterpart. `uq.inputs.observed` has those of listed values, `uq.inputs.registry` all of them.
 """
 
 from math import exp, log, log1p, sqrt
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
-from uq.inputs.law import BaseLaw, Positive, Scipy
-from uq.inputs.observed import DiscreteChoice, Empirical, Histogram, IntegerRange
+from uq.inputs.law import Law, Positive, Scipy
 
 
-class Uniform(BaseLaw):
+class Uniform(Law):
     """Equally likely everywhere between two ends."""
 
     _ascending = ("lower", "upper")
@@ -26,7 +25,7 @@ class Uniform(BaseLaw):
         return "uniform", {"loc": self.lower, "scale": self.upper - self.lower}
 
 
-class LogUniform(BaseLaw):
+class LogUniform(Law):
     """Equally likely in every octave between two positive ends."""
 
     _ascending = ("lower", "upper")
@@ -39,7 +38,7 @@ class LogUniform(BaseLaw):
         return "loguniform", {"a": self.lower, "b": self.upper}
 
 
-class Normal(BaseLaw):
+class Normal(Law):
     """Gaussian law of a mean and a standard deviation."""
 
     distribution: Literal["normal"]
@@ -50,7 +49,7 @@ class Normal(BaseLaw):
         return "norm", {"loc": self.mean, "scale": self.sd}
 
 
-class TruncatedNormal(BaseLaw):
+class TruncatedNormal(Law):
     """Gaussian law, with mean and sd before the cut, given that it falls between two ends."""
 
     _ascending = ("lower", "upper")
@@ -77,7 +76,7 @@ class TruncatedNormal(BaseLaw):
         return stats.norm(self.mean, self.sd), max(lower, self.lower), min(upper, self.upper)
 
 
-class LogNormal(BaseLaw):
+class LogNormal(Law):
     """Law whose logarithm is Gaussian, by mean and cv or by median and sigma."""
 
     model_config = ConfigDict(
@@ -107,7 +106,7 @@ class LogNormal(BaseLaw):
         return "lognorm", {"s": self.sigma, "scale": self.median}
 
 
-class Triangular(BaseLaw):
+class Triangular(Law):
     """Linear rise from one end to the mode, linear fall to the other."""
 
     _ascending = ("lower", "mode", "upper")
@@ -126,7 +125,7 @@ class Triangular(BaseLaw):
         }
 
 
-class Pert(BaseLaw):
+class Pert(Law):
     """Smooth bell between two ends: a beta law of mean (lower + 4 mode + upper) / 6."""
 
     _ascending = ("lower", "mode", "upper")
@@ -146,7 +145,7 @@ class Pert(BaseLaw):
         }
 
 
-class Beta(BaseLaw):
+class Beta(Law):
     """Beta law of two shapes, stretched between two ends."""
 
     _ascending = ("lower", "upper")
@@ -166,7 +165,7 @@ class Beta(BaseLaw):
         }
 
 
-class Weibull(BaseLaw):
+class Weibull(Law):
     """Weibull law: P(X > x) = exp(-(x/scale)^shape)."""
 
     distribution: Literal["weibull"]
@@ -177,7 +176,7 @@ class Weibull(BaseLaw):
         return "weibull_min", {"c": self.shape, "scale": self.scale}
 
 
-class Gamma(BaseLaw):
+class Gamma(Law):
     """Gamma law of mean shape * scale and variance shape * scale^2."""
 
     distribution: Literal["gamma"]
@@ -188,7 +187,7 @@ class Gamma(BaseLaw):
         return "gamma", {"a": self.shape, "scale": self.scale}
 
 
-class Gumbel(BaseLaw):
+class Gumbel(Law):
     """Law of largest values: P(X <= x) = exp(-exp(-(x - mode)/scale))."""
 
     distribution: Literal["gumbel"]
@@ -199,7 +198,7 @@ class Gumbel(BaseLaw):
         return "gumbel_r", {"loc": self.mode, "scale": self.scale}
 
 
-class Exponential(BaseLaw):
+class Exponential(Law):
     """Law without memory: P(X > x) = exp(-x/mean)."""
 
     distribution: Literal["exponential"]
@@ -207,24 +206,3 @@ class Exponential(BaseLaw):
 
     def _scipy(self) -> Scipy:
         return "expon", {"scale": self.mean}
-
-
-Law = Annotated[
-    Uniform
-    | LogUniform
-    | Normal
-    | TruncatedNormal
-    | LogNormal
-    | Triangular
-    | Pert
-    | Beta
-    | Weibull
-    | Gamma
-    | Gumbel
-    | Exponential
-    | DiscreteChoice
-    | IntegerRange
-    | Empirical
-    | Histogram,
-    Field(discriminator="distribution"),
-]

@@ -16,7 +16,7 @@ def _tuple(value: Any) -> Any:
 LIST = BeforeValidator(_tuple)
 
 
-class BaseLaw(BaseModel):
+class Law(BaseModel):
     """A law of one variable; arguments in the parameter's unit."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)

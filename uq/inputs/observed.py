@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from uq.inputs.law import LIST, BaseLaw, Positive, Scipy
+from uq.inputs.law import LIST, Law, Positive, Scipy
 
 Floats = NDArray[np.float64]
 Numbers = Annotated[tuple[float, ...], LIST]
@@ -66,7 +66,7 @@ def _steps(values: tuple[float, ...], weights: tuple[float, ...] | None) -> Step
     return Steps(found, cumulated / cumulated[-1])
 
 
-class Listed(BaseLaw):
+class Listed(Law):
     """A law that takes some values only."""
 
     discrete: ClassVar[bool] = True
@@ -162,7 +162,7 @@ def values_problem(values: tuple[float, ...]) -> str | None:
     return None
 
 
-class Histogram(BaseLaw):
+class Histogram(Law):
     """Counts of values in bins, alike within each bin."""
 
     distribution: Literal["histogram"]

@@ -7,7 +7,7 @@ import xarray as xr
 
 from uq.analysis.sampled_inputs import compare, laws_and_values
 from uq.drawing.figure import powers
-from uq.inputs.distributions import Law
+from uq.inputs.law import Law
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of
 from uq.study.file import Tied

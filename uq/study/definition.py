@@ -12,8 +12,8 @@ from uq.contract import Model
 from uq.designs.registry import DESIGNS, IMPORTED
 from uq.errors import InputError, nearest
 from uq.inputs.data_files import Columns, columns_of_files, numbers, with_columns
-from uq.inputs.distributions import Law
 from uq.inputs.faults import Fault
+from uq.inputs.law import Law
 from uq.inputs.values import read_settings
 from uq.study.checks import design_faults, model_faults
 from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied

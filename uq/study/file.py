@@ -5,7 +5,7 @@ comes from them (`uq.study.schema`).
 """
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any, NamedTuple, Self, get_args
+from typing import Annotated, Any, NamedTuple, Self
 
 from pydantic import (
     AfterValidator,
@@ -19,20 +19,15 @@ from pydantic import (
     WithJsonSchema,
     model_validator,
 )
+from pydantic_core.core_schema import CoreSchema, no_info_plain_validator_function
 
 from uq.designs.design import MAX_SAMPLES
 from uq.designs.registry import DESIGNS
 from uq.errors import nearest
-from uq.inputs.distributions import Law
-from uq.inputs.law import BaseLaw
+from uq.inputs.law import Law
+from uq.inputs.registry import any_law, law_of
 from uq.literals import shown
 from uq.methods.registry import METHODS
-
-LAW: TypeAdapter[Any] = TypeAdapter(Law)
-LAWS = {
-    get_args(law.model_fields["distribution"].annotation)[0]: law
-    for law in get_args(get_args(Law)[0])
-}
 
 
 def _one_of(kind: str, choices: Mapping[str, Any]) -> AfterValidator:
@@ -180,12 +175,24 @@ def _kind(entry: Any) -> str:
     return "equals" if tied else "distribution"
 
 
+class _AnyLaw:
+    """One of the laws, as they are by the time that a file is read or its schema written."""
+
+    def __get_pydantic_core_schema__(self, law: Any, handler: Any) -> CoreSchema:
+        return no_info_plain_validator_function(law_of)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        found: dict[str, Any] = handler(any_law().core_schema)
+        return found
+
+
 Entry = Annotated[
-    Annotated[Law, Tag("distribution")] | Annotated[Tied, Tag("equals")], Discriminator(_kind)
+    Annotated[Law, _AnyLaw(), Tag("distribution")] | Annotated[Tied, Tag("equals")],
+    Discriminator(_kind),
 ]
 """How a parameter varies: by a law, or as another does."""
 
-ENTRY: TypeAdapter[BaseLaw | Tied] = TypeAdapter(Entry)
+ENTRY: TypeAdapter[Law | Tied] = TypeAdapter(Entry)
 
 
 class DependenceTable(_Table):

@@ -18,8 +18,8 @@ from uq.inputs.conditioning import (
 )
 from uq.inputs.data_files import Columns, columns_of_files, numbers
 from uq.inputs.dependence import matrix_problem
-from uq.inputs.distributions import Law
 from uq.inputs.faults import Fault
+from uq.inputs.law import Law
 from uq.inputs.observed import Empirical, values_problem
 from uq.methods.registry import fed_by, for_dependent_inputs
 from uq.study.file import ENTRY, Tied

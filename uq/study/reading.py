@@ -8,9 +8,10 @@ from pydantic import BaseModel, ValidationError
 from uq.designs.registry import IMPORTED
 from uq.errors import InputError, nearest
 from uq.inputs.faults import Fault
-from uq.inputs.law import BaseLaw
+from uq.inputs.law import Law
+from uq.inputs.registry import LAWS
 from uq.literals import read_toml
-from uq.study.file import LAWS, DependenceTable, StudyFile, Tied, Tolerance
+from uq.study.file import DependenceTable, StudyFile, Tied, Tolerance
 
 
 def read_study_text(text: str, source: str = "study") -> StudyFile:
@@ -142,7 +143,7 @@ def _fault(error: dict[str, Any]) -> Fault:
 def _beside(path: list[Any], law: type[BaseModel] | None) -> tuple[str, list[str]]:
     """Return what could stand where something unknown stands: kind and names."""
     if law is not None:
-        common = list(BaseLaw.model_fields)[1:] if law is not Tied else []  # last, but the source
+        common = list(Law.model_fields)[1:] if law is not Tied else []  # last, but the source
         own = [name for name in law.model_fields if name not in common]
         return f"argument of {path[1]}'s law", own + common
     if len(path) == 1:

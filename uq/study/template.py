@@ -10,12 +10,13 @@ from pydantic import BaseModel
 from uq.contract import Model, Parameter
 from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import law_problem
-from uq.inputs.distributions import Law, LogNormal, Normal, Uniform
-from uq.inputs.law import BaseLaw
+from uq.inputs.distributions import LogNormal, Normal, Uniform
+from uq.inputs.law import Law
 from uq.inputs.observed import Empirical
+from uq.inputs.registry import LAWS
 from uq.inputs.values import bounds_of
 from uq.literals import toml
-from uq.study.file import LAWS, AnalysisTable, DesignTable
+from uq.study.file import AnalysisTable, DesignTable
 
 _DESIGN = {"method": "monte-carlo", "samples": 1000, "seed": 1}
 _UNCERTAIN = 3
@@ -119,7 +120,7 @@ def _uncertain(model: Model, laws: dict[str, Law]) -> Iterator[str]:
 
 
 def _menu() -> Iterator[str]:
-    common = ("distribution", *BaseLaw.model_fields)
+    common = ("distribution", *Law.model_fields)
     for name, law in LAWS.items():
         arguments = [key for key in law.model_fields if key not in common]
         if law is LogNormal:

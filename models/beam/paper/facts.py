@@ -16,10 +16,11 @@ LOW, HIGH = 5.61, 9.9
 _RANGE = 0.2  # of omega, over which a branch is followed
 
 INTRODUCTION = """\
-Frequencies are those of the force over the first of the rod, gaps x_1 and x_2 are in initial gaps.
-A life is the time until the earlier site's gap has doubled, or trebled; the linear estimate takes
-the first work-rate to last. The paper's lives are those to "wear depth twice the initial gap":
-literally the gap has trebled. Both readings are given; neither meets both published factors."""
+Frequencies are relative to the first natural frequency of the rod, gaps x_1 and x_2 to the initial
+gap. A life is the time until the first of the two gaps has doubled, or trebled; the linear estimate
+assumes that the initial work-rate persists. The paper's lives are those to "wear depth twice the
+initial gap", which literally means that the gap has trebled. Both readings are given; neither
+reproduces both published factors."""
 
 
 class Fact(NamedTuple):
@@ -82,12 +83,12 @@ def facts() -> list[Fact]:
         ),
         Fact(
             "omega 5.6: the gap ratio falls to about 0.99 and recovers",
-            f"falls to {float(worn['gap_ratio'].min()):.3f}, {float(worn['gap_ratio'][-1]):.3f} "
+            f"falls to {float(worn['gap_ratio'].min()):.3f}; {float(worn['gap_ratio'][-1]):.3f} "
             "when the gap has trebled",
         ),
         Fact(
             "omega 5.6: work-rates fall until x_1 = 1.34, change abruptly, then rise",
-            f"the sites become alike at {symmetric:.2f}; the orbit is stable until "
+            f"the sites become symmetric at {symmetric:.2f}; the orbit is stable until "
             f"{_gap(low_end):.2f} ({low_end.attrs['end']}); work-rates are least at "
             f"{least:.2f}",
         ),
@@ -98,7 +99,7 @@ def facts() -> list[Fact]:
         ),
         Fact(
             "omega 9.9: work-rates and asymmetry grow, site 1 wears faster",
-            f"so until x_1 = {_gap(high_end):.2f} ({high_end.attrs['end']}), where "
+            f"met until x_1 = {_gap(high_end):.2f} ({high_end.attrs['end']}), where "
             f"x_2/x_1 = {_ratio(high_end):.2f}",
         ),
         Fact(

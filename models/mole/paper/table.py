@@ -30,15 +30,15 @@ LONGEST = 25_600  # control periods of one whose regime is undecided
 CURVE = 2000  # strobe points by which closed curves are counted
 
 NOTE = """\
-A period counts common periods of control and half a mains cycle. At 29.5 to 47 rad/s there is
-none, and the simplest response is one closed curve of the states at which the relay closes. The
-paper's exponent 6.67 at 2.5 Hz is not the model's: leaving the jumps of the tangent flow at the
-ends of slips out of account, one finds 6.6 bit/s, and a positive number on periodic orbits as well.
-At 9 Hz the bar does not reach the stop as printed; with the voltage's jump at switching restored it
-does, but chaotically over 56 mm where 30 mm were measured, "quite regular". Irregular motion at
-2.5 Hz and alternation at 5 Hz were measured and are lost in the physical formulation. From the
-second start at 47 rad/s, as printed, the closed curve is steeply folded: it is near a doubling of
-the torus."""
+A period is counted in common periods of the control and half a mains cycle. At 29.5 to 47 rad/s
+there is none, and the simplest response is one closed curve of the states at which the relay
+closes. The paper's exponent of 6.67 at 2.5 Hz is not the model's: if the jumps of the tangent flow
+at the ends of slip phases are neglected, one finds 6.6 bit/s, and positive values on periodic
+orbits as well. At 9 Hz, as printed, the bar does not reach the stop; with the voltage jump at
+switching restored it does, but chaotically over 56 mm, where 30 mm were measured, "quite regular".
+Irregular motion at 2.5 Hz and alternation at 5 Hz were measured, but do not occur in the physical
+formulation. From the second start at 47 rad/s, as printed, the closed curve is steeply folded: it
+is near a doubling of the torus."""
 
 
 class Claim(NamedTuple):

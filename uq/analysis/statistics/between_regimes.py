@@ -11,7 +11,7 @@ from uq.wording import number
 
 
 def _shown(share: float) -> str:
-    """Return the share, less what chance makes of it."""
+    """Return the share in words; it is corrected for chance, so it may be negative."""
     return number(share) if share > 0 else "none seen"
 
 

@@ -1,4 +1,4 @@
-"""How many rows have no number, or one that is less accurate than was asked for."""
+"""How many rows have no value, or one less accurate than requested."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,7 +13,7 @@ from uq.wording import percent
 
 
 def counts(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield how many rows never end, are censored, have no meaning, or failed."""
+    """Yield how many rows never end, are censored, are undefined, or failed."""
     for name in ("never", "censored", "undefined", "failed"):
         number = float(getattr(element, name).sum())
         yield Statistic((name,), name, Estimate(number), "rows", COUNT)
@@ -24,9 +24,9 @@ _NONE_MISSED = replace(_MISSED, readers=frozenset((JSON, COLUMNS)))
 
 
 def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield how many rows state an error beyond the accuracy that was asked for.
+    """Yield how many rows state an error beyond the accuracy requested.
 
-    A row counts if it has a finite value that is not censored; one that states no error misses.
+    Rows count if their value is finite and not censored; one that states no error falls short.
     """
     asked = context.rows[element.output].attrs.get("accuracy")
     error = stated_error(context.rows, element)

@@ -1,4 +1,4 @@
-"""Mean and standard deviation, and the tail that may forbid them."""
+"""Mean, standard deviation, and the tail that may rule them out."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

@@ -29,7 +29,7 @@ _ROWS = replace(COUNT, listing=_LIVES, readers=frozenset((REPORT,)))
 
 @bounded()
 def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield quantiles, with those after Kaplan and Meier where censored rows leave them open."""
+    """Yield quantiles, with Kaplan-Meier estimates where they depend on censored rows."""
     within = context.present(element)
     asked = {repr(probability): probability for probability in context.analysis.quantiles}
     guesses = life_quantiles(element, asked, context.replicate) if element.is_lifetime else {}
@@ -54,7 +54,7 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
 
 
 def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield the times by which a share of the rows has ended, and how many rows have not."""
+    """Yield the times by which a share of rows has ended, and how many rows have not."""
     if element.is_lifetime:
         yield from _lives(element, context)
         for label, rows in (("never ending", element.never), ("censored", element.censored)):
@@ -78,7 +78,7 @@ def _lives(element: Element, context: Context) -> Iterator[Statistic]:
 
 
 def _rows_needed(element: Element, probability: float) -> int | None:
-    """Return how many rows reach a quantile, None where they do, or there are none."""
+    """Return how many rows a quantile needs; None where there are enough, or none."""
     rows = len(element.at_least)
     if rows == 0 or order_statistics.is_within(probability, rows):
         return None

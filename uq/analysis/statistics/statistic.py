@@ -1,4 +1,4 @@
-"""A statistic of an output: what it is called, what it is, and how each reader shows it."""
+"""A statistic of an output: its name, its estimate, and how each reader shows it."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -24,12 +24,12 @@ JSON, COLUMNS, TERMINAL, REPORT, COMPARED, RUNNING = (
     "running",
 )
 EVERYWHERE = frozenset((JSON, COLUMNS, TERMINAL, REPORT, COMPARED, RUNNING))
-"""Who reads a statistic: also `uq compare`, and the estimates as rows came in."""
+"""The readers of a statistic; RUNNING are the estimates from growing numbers of rows."""
 
 
 @dataclass(frozen=True)
 class Context:
-    """What a statistic may need besides the element of an output that it describes.
+    """What a statistic may need besides the element that it describes.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Context:
     replicate: Replicates
 
     def present(self, element: Element) -> Replicates:
-        """Return the replicates of the rows in which the element has a value."""
+        """Return the replicate of each row in which the element has a value."""
         return None if self.replicate is None else self.replicate[element.present]
 
 
@@ -60,11 +60,11 @@ class Listing:
     first : str
         Heading of the first column, the name of the output.
     by : str
-        What tells several lines of an output apart (`Statistic.at`), instead of the unit.
+        Heading of the column that distinguishes several lines of an output (`Statistic.at`).
     keeps_empty : bool
-        Whether columns without a number stay.
+        Whether columns without a number are kept.
     of_lives : bool
-        Whether it stands with the figures of lifetimes.
+        Whether it is shown with the figures of lifetimes.
     """
 
     caption: str = "Statistics, with 95 % intervals"
@@ -75,7 +75,7 @@ class Listing:
 
 
 def entry(one: "Statistic") -> dict[str, Any]:
-    """Return an estimate as JSON has it, with all that stands beside it."""
+    """Return a statistic as JSON."""
     found = json_form.whole(one.estimate)
     if one.rows_needed is not None:
         found["rows_needed"] = one.rows_needed
@@ -97,7 +97,7 @@ def counts(group: Sequence["Statistic"]) -> dict[str, int]:
 
 
 def facts(group: Sequence["Statistic"]) -> dict[str, Any]:
-    """Return what the statistics state in so many words."""
+    """Return the facts of the statistics."""
     return {name: fact for one in group for name, fact in one.facts.items()}
 
 
@@ -108,23 +108,23 @@ def rows_in_words(value: float) -> str:
 
 @dataclass(frozen=True)
 class Kind:
-    """How statistics of one sort are shown.
+    """How statistics of one kind are shown.
 
     Attributes
     ----------
     name : str
-        Of several, at the start of a sentence.
+        In the plural, at the start of a sentence.
     entry : callable
-        Statistic -> its JSON alone.
+        Statistic -> its own JSON.
     write : callable
-        Statistics whose keys differ in the last part alone -> their JSON.
+        Statistics whose keys differ only in the last part -> their JSON.
     shown : callable
         Value -> words.
     is_count : bool
         Whether it is a number of rows.
     has_interval : bool
     listing : Listing
-        The table of a report in which it stands.
+        The table of a report that holds it.
     readers : frozenset of str
     """
 
@@ -158,25 +158,25 @@ class Statistic:
     key : tuple of str
         Path of its entry in JSON.
     label : str
-        What it is called on a terminal, and wherever nothing else is given; "" is not shown there.
+        Its name on a terminal, and wherever no other is given; "" is not shown there.
     estimate : Estimate
     unit : str
-        ``rows`` of a number of rows.
+        ``rows`` for a number of rows.
     kind : Kind
     column, heading : str, optional
-        Its name in pandas and in a report; "" if it is not there.
+        Its name in pandas and in a report; "" if it is not shown there.
     failed : Estimate, optional
         The ends of its interval with the failed rows at best and at worst, where rows failed.
     otherwise : Statistic, optional
-        The same under an assumption, where the rows alone leave it open.
+        The same under an assumption, where the rows alone do not decide it.
     rows_needed : int, optional
-        To know it at all.
+        The least number that gives a value.
     falls : bool
-        Whether it falls as the values rise.
+        Whether it decreases as the values increase.
     at : float, optional
-        The value of the output that it is about.
+        The value of the output that it refers to.
     of : str
-        The number that it is of, if not of the output itself.
+        The quantity that it describes, if not the output itself.
     sentence : str
         For the top of a report; ``{brief}``, ``{number}`` and ``{share}`` are its value, ``{at}``
         as above.
@@ -185,9 +185,9 @@ class Statistic:
     notes : tuple of str
         Sentences below the table on a terminal.
     facts : dict
-        What JSON has of a `FACT`.
+        The JSON of a `FACT`.
     estimator : Estimator, optional
-        What it makes of the rows, for the difference of two studies that share some.
+        How it depends on the rows, for the difference between two studies with paired rows.
     """
 
     key: tuple[str, ...]
@@ -210,12 +210,12 @@ class Statistic:
     estimator: Estimator | None = None
 
     def is_read_by(self, reader: str) -> bool:
-        """Whether it is shown there."""
+        """Whether this reader shows it."""
         return reader in self.kind.readers
 
     @property
     def best(self) -> "Statistic":
-        """Itself, or what there is under an assumption where nothing is known without."""
+        """Itself, or the estimate under an assumption where there is none without."""
         if self.otherwise is None or not isnan(self.estimate.value):
             return self
         return replace(self.otherwise, label=self.label)
@@ -227,7 +227,7 @@ class Statistic:
             return self.kind.shown(value / per)
         if self.rows_needed is not None:
             return f"needs {self.rows_needed} rows"
-        return "-" if self.otherwise else known(self.estimate)  # it may lie within the horizon
+        return "-" if self.otherwise else known(self.estimate)  # it may be within the horizon
 
 
 Maker = Callable[[Element, Context], Iterable[Statistic]]

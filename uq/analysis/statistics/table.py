@@ -1,4 +1,4 @@
-"""The statistics of an output: to add one, write its maker and name it here."""
+"""The statistics of an output. To add one, write its maker and list it here."""
 
 from typing import Any
 
@@ -20,11 +20,11 @@ STATISTICS: dict[str, Maker] = {
     "counts": counts,
     "accuracy": accuracy,
 }
-"""Name -> maker, in the order in which they are read."""
+"""Name -> maker, in the order in which they are shown."""
 
 JSON_ORDER = ("moments", "tolerance", "quantiles", "thresholds", "b_lives", "counts")
 COLUMN_ORDER = ("moments", "quantiles", "tolerance", "counts", "accuracy")
-"""The order in JSON and in pandas; what is not named here follows in that of the table."""
+"""The order in JSON and in pandas; those not named here follow in the order of the table."""
 
 EMPTY: dict[str, Any] = {"tolerance": None, "quantiles": {}, "thresholds": {}, "b_lives": {}}
-"""What stands in JSON for those that have nothing to say of an output."""
+"""JSON of those that do not apply to an output."""

@@ -1,4 +1,4 @@
-"""The probabilities that an output lies above and below the thresholds a study asks for."""
+"""The probabilities that an output lies above and below the thresholds of a study."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -29,8 +29,8 @@ def event(element: Element, threshold: float) -> tuple[Mask, Mask] | None:
     Returns
     -------
     tuple of ndarray of bool, or None
-        Rows without a value lie on neither side. None where rows were censored before the
-        threshold, so that nobody knows.
+        Rows without a value lie on neither side. None where rows were censored below the
+        threshold, so that their side is unknown.
     """
     values, censored = element.values, element.censored
     if (censored & (values < threshold)).any():
@@ -119,7 +119,7 @@ def _after_kaplan_meier(
             estimate=Estimate(reason=reason),
             otherwise=replace(one, label="", estimate=above),
         )
-    more = [reason, "after Kaplan and Meier, if censoring says nothing of the life left"]
+    more = [reason, "by Kaplan-Meier, if censoring is non-informative"]
     return replace(
         one,
         estimate=Estimate(reason=reason),
@@ -137,7 +137,7 @@ def _hits(threshold: float, place: int) -> Callable[[Element], Sample | None]:
 
 
 def _sentence(element: Element, side: str) -> str:
-    """Return what a report says of the far side of a threshold: of lives, that they have ended."""
+    """Return the sentence of a report on a threshold: for lives, the share that has ended."""
     if side != ("below" if element.is_lifetime else "above"):
         return ""
     if element.is_angle:

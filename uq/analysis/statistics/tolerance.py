@@ -1,4 +1,4 @@
-"""Tolerance bounds: what a share of all values keeps to, with some confidence."""
+"""Tolerance bounds: limits for a given share of all values, with a given confidence."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -32,7 +32,7 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
 
 
 def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield both one-sided bounds and the rows they take; failed rows count as the worst ones."""
+    """Yield both one-sided bounds and the rows they need; failed rows count as the worst."""
     if context.analysis.tolerance is None or context.replicate is not None:
         return
     failed = int(element.failed.sum())

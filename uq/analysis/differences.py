@@ -1,0 +1,82 @@
+"""Differences between the statistics of two results."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import isnan
+
+from uq import two_samples
+from uq.analysis import estimators
+from uq.analysis.compared import Compared, ComparedOutput
+from uq.analysis.estimators import Sample
+from uq.analysis.pairing import Pair
+from uq.analysis.statistics.statistic import COMPARED, Statistic
+from uq.analysis.summary import Summary
+from uq.contract import Status
+from uq.estimate import NOTHING, Estimate
+from uq.rows.elements import Element, flags
+
+
+def compared_regimes(pair: Pair, found: list[Summary]) -> Iterator[tuple[str, Compared]]:
+    """Yield label and shares of every regime that both results declare."""
+    shares = [one.regimes for one in found]
+    if not all(shares):
+        return
+    codes = [rows["regime"].values for rows in pair.rows]
+    kept = [
+        (code >= 0) | (rows["status"].values == Status.OK)
+        for code, rows in zip(codes, pair.rows, strict=True)
+    ]
+    numbers = [{label: n for n, label in flags(rows["regime"])} for rows in pair.rows]
+    for label in shares[0]:
+        if label in shares[1]:
+            samples = [
+                Sample(mask, (code == number[label]).astype(float))
+                for mask, code, number in zip(kept, codes, numbers, strict=True)
+            ]
+            both = [replace(one[label], estimator=estimators.share()) for one in shares]
+            yield label, _compared(pair, both, samples, samples)
+
+
+def compared_output(pair: Pair, elements: list[Element], found: list[Summary]) -> ComparedOutput:
+    """Compare all statistics of the same element of two results."""
+    described = [one.outputs[elements[0].name] for one in found]
+    parts = {
+        name: tuple(
+            _of_elements(pair, elements, [one, other])
+            for one in statistics
+            if one.is_read_by(COMPARED) and (other := described[1].find(*one.key)) is not None
+        )
+        for name, statistics in described[0].parts.items()
+    }
+    return ComparedOutput(elements[0].units, parts)
+
+
+def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> Compared:
+    """Compare a statistic of the same element of two results."""
+    estimator = both[0].estimator
+    samples = [] if estimator is None else [estimator.sample(element) for element in elements]
+    known = [one for one in samples if one is not None]
+    depends_on_hits = estimator is not None and estimator.counts_hits and len(known) == 2
+    rows = known if depends_on_hits else [estimators.whole(element) for element in elements]
+    return _compared(pair, [one.best for one in both], known, rows)
+
+
+def _compared(
+    pair: Pair, both: list[Statistic], samples: list[Sample], rows: list[Sample]
+) -> Compared:
+    """Compare two statistics; `rows` decide whether the pairs are identical."""
+    estimator = both[0].estimator
+    is_scale = estimator is not None and estimator.is_scale
+    known = [one.estimate.finite for one in both]
+    if any(isnan(one.value) for one in known):
+        return Compared(both[0], both[1], NOTHING, ratio=NOTHING if is_scale else None)
+    if pair.identical(rows):
+        return Compared(both[0], both[1], Estimate(0.0), True, Estimate(1.0) if is_scale else None)
+    if estimator is None or any(one.estimate.assumes for one in both):
+        apart = two_samples.difference(known[0], known[1], pair.unpaired)
+    else:
+        apart = pair.difference(estimator, samples, known)
+    times = pair.ratio(samples, known) if is_scale else None
+    if any(one.reason for one in known):  # without an interval its difference has none
+        apart, times = Estimate(apart.value), times and Estimate(times.value)
+    return Compared(both[0], both[1], apart.finite, ratio=times and times.finite)
