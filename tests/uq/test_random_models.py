@@ -136,7 +136,10 @@ def test_curves_of_one_seed_give_no_plain_statistics(uq, folder):
     plain = summarised(computed(noisy("fast", 65, 8, model="SLEEPING")))
     assert plain["rows_used"] == 1040 and plain["outputs"]["y"]["mean"] == pytest.approx(0.5, 0.1)
     (folder / "noisy.toml").write_text(noisy("fast", 65, 2).text)
-    assert uq("run", "noisy.toml", "-o", "n.nc", "--model", "sample_models:NOISY").code == 0
+    assert (
+        uq("run", "noisy.toml", "-o", "n.nc", "--model", "sample_models:NOISY", "--workers", 0).code
+        == 0
+    )
     for verb in (("summary",), ("plot", "-o", "figures"), ("report", "-o", "n.html")):
         shown = uq(verb[0], "n.nc", *verb[1:])
         assert shown.code == 0, shown.err
@@ -168,9 +171,11 @@ def test_tables_show_the_share_of_noise(uq, folder):
     (folder / "noisy.toml").write_text(noisy(samples=16).text)
     told = " ".join(uq("check", "noisy.toml", "--model", "sample_models:NOISY").out.split())
     assert "5 rows each" in told and "the model is random: rows that are compared share" in told
-    run = uq("run", "noisy.toml", "-o", "noisy.nc", "--model", "sample_models:NOISY")
+    run = uq(
+        "run", "noisy.toml", "-o", "noisy.nc", "--model", "sample_models:NOISY", "--workers", 0
+    )
     assert run.code == 0
-    more = ("--samples", "32", "--model", "sample_models:NOISY")
+    more = ("--samples", "32", "--model", "sample_models:NOISY", "--workers", 0)
     assert uq("extend", "noisy.nc", *more).code == 0
     shown = uq("sensitivity", "noisy.nc").out
     assert "noise" in shown and "share of variance" in shown

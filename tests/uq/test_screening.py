@@ -112,7 +112,7 @@ def test_measures_stand_in_arrays_tables_and_figures(uq, write_study, folder):
     arrays = sensitivity(linear("morris", 8, 4))
     assert arrays["mu_star"].sel(parameter="x3").item() == pytest.approx(3)
     path = write_study("ishigami", "morris", 8, 4, name="screening")
-    assert uq("run", path).code == 0
+    assert uq("run", path, "--workers", 0).code == 0
     shown = uq("sensitivity", "results/screening.nc").out
     assert "mu_star" in shown and "sigma" in shown
     drawn = uq("plot", "results/screening.nc").out.split()

@@ -144,7 +144,7 @@ x1 = {distribution = "uniform", lower = 0.0, upper = 1.0}
 x2 = {distribution = "discrete-choice", values = [0.0, 1.0]}
 """
     (folder / "mixed.toml").write_text(text)
-    assert uq("run", "mixed.toml", "-o", "mixed.nc").code == 0
+    assert uq("run", "mixed.toml", "-o", "mixed.nc", "--workers", 0).code == 0
     shown = uq("sensitivity", "mixed.nc")
     assert shown.code == 0 and "none with many equal values: x2;" in " ".join(shown.out.split())
     assert uq("plot", "mixed.nc", "-o", "figures").code == 0
