@@ -1,7 +1,7 @@
-"""All figures; those of a result stand in one table, which `uq plot` and the report read.
+"""All figures, and the one table of the figures of a result, which `uq plot` and the report read.
 
 A figure is a function ``f(ds, output, *, axes=None)`` that returns a matplotlib figure: a new one,
-or that of the axes given. To add one of a result: its file, and an entry of `FIGURES`.
+or that of the given axes. To add one for results, write its file and an entry of `FIGURES`.
 """
 
 import os
@@ -39,13 +39,13 @@ FIGURES: dict[str, Entry] = {
         of.outputs,
         "{name}: {meaning}",
         applies=(of.is_no_lifetime,),
-        in_report=(of.is_no_lifetime, of.in_one_regime),
+        in_report=(of.in_one_regime,),
     ),
     "regimes": Entry(histogram_by_regime, of.outputs, "{name} by regime", applies=(of.in_regimes,)),
     "quantiles": Entry(
         quantile_table, of.outputs, "Quantiles of {name}", section="", needs=("summary",)
     ),
-    "scatter": Entry(scatter, of.outputs, "{name} against the inputs that move it most"),
+    "scatter": Entry(scatter, of.outputs, "{name} against its most influential inputs"),
     "convergence": Entry(
         convergence,
         of.outputs,
@@ -57,7 +57,7 @@ FIGURES: dict[str, Entry] = {
     "pairs": Entry(
         pairs,
         of.the_result,
-        "Rows by regime, over the inputs that decide it most",
+        "Rows by regime, against the inputs that best separate the regimes",
         section="rows",
         applies=(of.in_regimes, of.has_several_inputs),
     ),
@@ -78,13 +78,12 @@ FIGURES: dict[str, Entry] = {
     "inputs": Entry(
         inputs,
         of.the_result,
-        "Inputs, as stated and as the rows have them",
+        "Inputs: stated laws and sampled values",
         section="inputs",
-        applies=(of.follows_laws, of.has_numbers),
-        in_report=(of.follows_laws,),
+        applies=(of.follows_laws,),
     ),
 }
-"""Figures of a result, in the order of `uq plot`; a key is the first word of a file's name."""
+"""Figures of a result, in the order of `uq plot`; keys are the first words of file names."""
 
 
 def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
@@ -95,7 +94,7 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
     ds : xarray.Dataset
         A result.
     folder : path-like
-        Made if it does not exist.
+        Created if it does not exist.
 
     Returns
     -------
@@ -105,7 +104,7 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
     Raises
     ------
     InputError
-        When the folder cannot be made or written to.
+        When the folder cannot be created or written to.
     """
     folder = Path(folder)
     refuse_standard_output(folder)
@@ -113,7 +112,7 @@ def save_all(ds: xr.Dataset, folder: str | Path) -> list[Path]:
         Path(os.path.realpath(folder)).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            f"{folder}: cannot make this folder: {error.strerror}; choose another with -o"
+            f"{folder}: cannot create this folder: {error.strerror}; choose another with -o"
         ) from None
     try:
         return [

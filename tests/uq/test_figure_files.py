@@ -98,10 +98,10 @@ def test_categories_alone_have_the_indices_of_each(tmp_path):
     ds = kinds(analysis={"outputs": ["regime"]})
     assert list(sensitivities(ds)["outputs"]) == ["P(regime=slow)", "P(regime=fast)"]
     stems = {path.stem for path in plots.save_all(ds, tmp_path)}
-    assert stems == {"pairs", "rbd-fast-P_regime_slow", "rbd-fast-P_regime_fast"}
+    assert stems == {"pairs", "inputs", "rbd-fast-P_regime_slow", "rbd-fast-P_regime_fast"}
 
 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="file: cannot make this folder"):
+    with pytest.raises(InputError, match="file: cannot create this folder"):
         plots.save_all(linear(), tmp_path / "file")

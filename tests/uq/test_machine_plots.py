@@ -195,10 +195,10 @@ def test_what_cannot_be_drawn_is_refused_in_words(worn):
     _, gaps = worn
     with pytest.raises(InputError, match="no such quantity 'work'; did you mean 'work_rate'?"):
         plots.curve(gaps, "work", against="gap")
-    with pytest.raises(InputError, match="'regime' is not a number, and has no axis"):
+    with pytest.raises(InputError, match="'regime' is not numeric and cannot be drawn"):
         plots.curve(gaps, "regime", against="gap")
     deep = gaps.assign(cube=gaps["gap"] * xr.DataArray([1.0, 2.0], dims="layer"))
     with pytest.raises(InputError, match="along case, site, layer: one or two dimensions"):
         plots.curve(deep, "cube", against="gap")
-    with pytest.raises(InputError, match="nothing along time"):
+    with pytest.raises(InputError, match="no variable varies along time"):
         plots.history(gaps)

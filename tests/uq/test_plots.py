@@ -64,7 +64,7 @@ def test_index_bars_show_values_intervals_and_full_names():
     ]
     assert "Value of the function" in words(figure) and "95 % interval" in words(figure)
     plain = words(plots.index_bars(linear(samples=128), "y", method="pawn"))
-    assert "play no part" in plain and "PAWN" in plain and "95 %" not in plain
+    assert "without effect" in plain and "PAWN" in plain and "95 % interval" not in plain
 
 
 def test_a_wide_interval_does_not_squeeze_the_bars():
@@ -86,7 +86,7 @@ def test_titles_of_indices_are_in_words():
     assert "Whether it ends before 2 hours: meaning of life" in words(
         plots.index_bars(ds, "P(life<7200.0)")
     )
-    with pytest.raises(InputError, match=r"'life' stands for several; name one of: log\(life\), P"):
+    with pytest.raises(InputError, match=r"'life' is ambiguous; name one of: log\(life\), P"):
         plots.index_bars(ds, "life")
     flat = with_output(ds, "flat", np.ones(ds.sizes["sample"]))
     with pytest.raises(InputError, match="flat: the same value"):
@@ -114,7 +114,7 @@ def test_lifetime_figure_marks_b_lives_and_reads_both_ways():
     }
     assert marks == pytest.approx({0.01: 1.02, 0.1: 1.2, 0.5: 2.0}, abs=0.02)
     (other,) = axes.child_axes
-    assert other.get_ylabel() == "Probability of\na longer life"
+    assert other.get_ylabel() == "Survival probability"
     axes.figure.draw_without_rendering()
     assert sorted(other.get_ylim()) == pytest.approx([-0.02, 1.0])
 
@@ -145,8 +145,8 @@ def test_scatter_leads_with_what_matters_and_shows_conditional_means():
     assert len(figure.axes[0].collections) == 1 and "95 % band" in words(figure)
     assert not plots.scatter(linear("sobol", samples=256), "y").axes[0].collections
     lives = plots.scatter(kinds(samples=300), "life")
-    assert "never, at the top edge" in words(lives) and "censored" in words(lives)
-    assert "median of slices" in words(lives)
+    assert "never (at the top edge)" in words(lives) and "censored" in words(lives)
+    assert "median in slices" in words(lives)
 
 
 def test_many_rows_are_thinned_in_figures():
@@ -195,7 +195,7 @@ def test_convergence_ends_with_all_rows_and_narrows():
     (axes,) = plots.convergence(with_output(linear(), "life", lives, "lifetime"), "life").axes
     assert axes.get_ylabel().startswith("Median: ")
     assert axes.lines[0].get_xdata()[-1] == 64
-    with pytest.raises(InputError, match="designs that grow"):
+    with pytest.raises(InputError, match="designs that can be extended"):
         plots.convergence(linear("latin-hypercube", samples=64), "y")
 
 

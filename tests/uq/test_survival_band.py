@@ -82,5 +82,5 @@ def test_the_figure_shows_both_and_says_which_is_which():
     ds = asking(with_output(linear(samples=200), "life", values, "lifetime", censored))
     axes = lifetime(ds, "life").axes[0]
     title = " ".join(axes.get_title(loc="left").split())
-    assert "pointwise 95 % band" in title and "light: of the whole curve" in title
+    assert "pointwise 95 % band" in title and "light: simultaneous band" in title
     assert len(axes.collections) >= 2

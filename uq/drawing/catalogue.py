@@ -1,4 +1,4 @@
-"""A figure of a result as an entry of a table: of what it is drawn, where, and its caption."""
+"""A figure of a result as an entry of a table: its subjects, its caption, where it appears."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -13,25 +13,25 @@ from uq.drawing.figure import file_name
 
 @dataclass(frozen=True)
 class Subject:
-    """What one figure is drawn of.
+    """The subject of one figure.
 
     Attributes
     ----------
     name : str
-        An output, or a target of indices; "" for the result as a whole.
+        An output, or a target of indices; "" for the whole result.
     method : str
         Of the indices.
-    found : object
-        What is known of it already: passed on as ``found``.
+    keywords : dict
+        Passed on to the function that draws it.
     """
 
     name: str = ""
     method: str = ""
-    found: Any = None
+    keywords: Mapping[str, Any] = field(default_factory=dict)
 
 
 Applies = Callable[[Findings, str], bool]
-"""What must hold of a result and the name of one of its subjects."""
+"""A condition on a result and the name of one of its subjects."""
 
 
 @dataclass(frozen=True)
@@ -41,22 +41,22 @@ class Entry:
     Attributes
     ----------
     draw : callable
-        ``draw(ds, output, *, axes=None)`` or, of a result as a whole, ``draw(ds, *, axes=None)``.
-        The first line of its docstring stands in the documentation.
+        ``draw(ds, output, *, axes=None)`` or, for a whole result, ``draw(ds, *, axes=None)``. The
+        documentation quotes the first line of its docstring.
     of : callable
-        Findings -> what it is drawn of: a function of `uq.drawing.subjects`.
+        Findings -> subjects: a function of `uq.drawing.subjects`.
     caption : str
         With ``{name}``, ``{meaning}`` and ``{method}``.
     section : str
-        Where the report shows it; "" for nowhere.
+        Of the report; "" if the report does not show it.
     applies : tuple of callable
-        What must hold for it to be drawn.
-    in_report : tuple of callable, optional
-        What must hold for the report to show it, if not the same.
+        Conditions under which it is drawn.
+    in_report : tuple of callable
+        Further conditions under which the report shows it.
     needs : tuple of str
-        What of `Findings` is passed on by that name.
+        Attributes of `Findings` that are passed on as keywords.
     file : tuple of str
-        Words of the name of its file.
+        Parts of the name of its file.
     """
 
     draw: Callable[..., Figure]
@@ -64,14 +64,14 @@ class Entry:
     caption: str
     section: Literal["inputs", "rows", "results", "sensitivities", "convergence", ""] = "results"
     applies: tuple[Applies, ...] = ()
-    in_report: tuple[Applies, ...] | None = None
+    in_report: tuple[Applies, ...] = ()
     needs: tuple[str, ...] = ()
     file: tuple[str, ...] = ("figure", "method", "name")
 
 
 @dataclass(frozen=True)
 class Drawable:
-    """One figure of one result, not yet drawn."""
+    """One figure of a result that can be drawn."""
 
     figure: str
     entry: Entry
@@ -80,24 +80,22 @@ class Drawable:
 
     @property
     def file(self) -> str:
-        """The name of its file, without an ending."""
+        """The name of its file, without a suffix."""
         words = {"figure": self.figure, "method": self.subject.method, "name": self.subject.name}
         return file_name(*filter(None, (words[word] for word in self.entry.file)))
 
     @property
     def caption(self) -> str:
-        """What it shows, in words."""
+        """What it shows."""
         ds, name = self.findings.ds, self.subject.name
         meaning = ds[name].attrs["long_name"] if name in ds else ""
         return self.entry.caption.format(name=name, method=self.subject.method, meaning=meaning)
 
     def draw(self) -> Figure:
         """Return the figure."""
-        keywords = {need: getattr(self.findings, need) for need in self.entry.needs}
-        if self.subject.method:
-            keywords |= {"method": self.subject.method, "found": self.subject.found}
-        names = [self.subject.name] if self.subject.name else []
-        return self.entry.draw(self.findings.ds, *names, **keywords)
+        needs = {need: getattr(self.findings, need) for need in self.entry.needs}
+        names = filter(None, [self.subject.name])
+        return self.entry.draw(self.findings.ds, *names, **needs, **self.subject.keywords)
 
 
 def drawables(
@@ -105,14 +103,14 @@ def drawables(
 ) -> Iterator[Drawable]:
     """Yield every figure of a result, or those of one section of its report, in order.
 
-    Figures in a row of the table that are drawn of the same stay together: all of one output
-    before those of the next.
+    Neighbouring entries with the same subjects alternate: all figures of one output come before
+    those of the next.
     """
     chosen = [one for one in figures.items() if section in (None, one[1].section)]
     for of, entries in groupby(chosen, key=lambda one: one[1].of):
         together = list(entries)
         for subject in of(findings):
             for figure, entry in together:
-                must = entry.applies if section is None else entry.in_report or entry.applies
-                if all(holds(findings, subject.name) for holds in must):
+                conditions = entry.applies + (entry.in_report if section else ())
+                if all(applies(findings, subject.name) for applies in conditions):
                     yield Drawable(figure, entry, subject, findings)

@@ -1,4 +1,4 @@
-"""The figure of convergence: estimates from the first rows, ever more of them."""
+"""Figures of convergence: estimates from ever more of the first rows."""
 
 import numpy as np
 import pandas as pd
@@ -8,11 +8,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from uq.analysis.convergence import running_estimates
-from uq.drawing.elements_plot import label, look, told_in
-from uq.drawing.figure import COLOURS, LINES, sentence, styled, with_symbol
+from uq.drawing.elements_plot import curve_style, display_unit, label
+from uq.drawing.figure import COLOURS, LINES, in_words, sentence, styled
 from uq.drawing.index_plot import subject
 from uq.drawing.panel import column, figure_of, heading, legend
 from uq.errors import InputError
+from uq.methods.indices import ST
 from uq.rows.elements import independent_rows, named_elements
 
 
@@ -24,39 +25,39 @@ def convergence(
     running: pd.DataFrame | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw how the mean of an output, or its median, settles as rows come in, with its interval.
+    """Draw the convergence of the mean (or the median) of an output, with 95 % intervals.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
     output : str
-        An output that is no category, or one element of it.
+        An output other than a category, or one element of it.
     running : pandas.DataFrame, optional
-        What `uq.running_estimates` returns, if that is known already.
+        What `uq.running_estimates` returns, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The interval at each size is for that size alone.
+        The intervals are pointwise.
 
     Raises
     ------
     InputError
-        When the first rows of the design are no design, or neither estimate is known.
+        When the first rows of the design do not form a design, or neither estimate is known.
     """
     running = running_estimates(ds) if running is None else running
-    kind, told = followed(ds, output, running)
+    kind, own = followed(ds, output, running)
     if not kind:
-        raise InputError(f"{output}: neither its mean nor its median is known")
+        raise InputError(f"{output}: neither its mean nor its median can be estimated")
     chosen = named_elements(independent_rows(ds), output)
-    unit, per = told_in(chosen[0].units, told["value"].to_numpy(float))
+    unit, per = display_unit(chosen[0].units, own["value"].to_numpy(float))
     (panel,) = column(axes, 2.1, entries=len(chosen))
     for i, element in enumerate(chosen):
-        colour, line = look(i, element, chosen)
-        _curve(panel, told[told["output"] == element.name], per, colour, line, label(ds, element))
+        colour, line = curve_style(i, element, chosen)
+        _curve(panel, own[own["output"] == element.name], per, colour, line, label(ds, element))
     what = "mean" if kind == "mean" else "median"
     panel.set_ylabel(sentence(f"{what}: {chosen[0].meaning}", unit, width=30))
     _finish(panel, ds)
@@ -64,11 +65,11 @@ def convergence(
 
 
 def followed(ds: xr.Dataset, output: str, running: pd.DataFrame) -> tuple[str, pd.DataFrame]:
-    """Return which estimate of an output `convergence` follows, "" for none, and its lines."""
+    """Return the estimate of an output that `convergence` draws ("" for none), and its lines."""
     names = [element.name for element in named_elements(independent_rows(ds), output)]
     own = running[running["output"].isin(names)]
     own = own[np.isfinite(own["value"].astype(float))]
-    # Where some life never ends there is a mean of the first rows, but none of all of them.
+    # If a life never ends, the first rows may have a mean although all rows have none.
     of_all = own[own["samples"] == running["samples"].max()].groupby("estimate")["output"].nunique()
     kind = max(("mean", "quantile 0.5"), key=lambda one: of_all.get(one, 0))
     return kind if kind in of_all else "", own[own["estimate"] == kind]
@@ -82,14 +83,14 @@ def index_convergence(
     running: pd.DataFrame | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw how the total indices of an output settle as rows come in, with their intervals.
+    """Draw the convergence of the total indices of an output, with 95 % intervals.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result of a crossed design.
     output : str
-        One of the names that `uq.sensitivity` returns.
+        A name that `uq.sensitivity` returns.
     running, axes
         As in `convergence`.
 
@@ -106,16 +107,16 @@ def index_convergence(
     own = total_indices(running)
     own = own[own["output"] == output]
     if own.empty:
-        raise InputError(f"{output}: no total indices are known of fewer rows")
+        raise InputError(f"{output}: no total indices of fewer rows are known")
     last = own[own["samples"] == own["samples"].max()].sort_values("value", ascending=False)
-    leading = last["estimate"].tolist()[: len(COLOURS)]
+    leading = last["input"].tolist()[: len(COLOURS)]
     (panel,) = column(axes, 2.1, entries=len(leading))
-    for i, estimate in enumerate(leading):
-        name = sentence(with_symbol(ds[estimate.removeprefix("ST ")]), width=60)
+    for i, name in enumerate(leading):
+        words = sentence(in_words(ds[name]), width=60)
         colour, line = COLOURS[i], LINES[i % len(LINES)]
-        _curve(panel, own[own["estimate"] == estimate], 1.0, colour, line, name)
+        _curve(panel, own[own["input"] == name], 1.0, colour, line, words)
     panel.set_ylabel("Total index (ST) [1]")
-    # An interval from the first few rows must not squeeze the rest.
+    # Wide intervals of the first few rows must not squeeze the rest.
     low, high = panel.get_ylim()
     panel.set_ylim(max(low, -0.25), min(high, 1.25))
     _finish(panel, ds)
@@ -125,7 +126,7 @@ def index_convergence(
 
 def total_indices(running: pd.DataFrame) -> pd.DataFrame:
     """Return the lines of `uq.running_estimates` that are total indices."""
-    return running[running["estimate"].str.startswith("ST ")].dropna(subset="value")
+    return running[running["kind"] == ST.key].dropna(subset="value")
 
 
 def _curve(
@@ -145,5 +146,5 @@ def _finish(axes: Axes, ds: xr.Dataset) -> None:
     replicates = int(ds.attrs["replicates"])
     axes.set_xlabel("Samples" + (f" of each of {replicates} replicates" if replicates > 1 else ""))
     known = any(len(band.get_paths()) for band in axes.collections)
-    axes.set_title("As rows come in" + known * ", with 95 % interval", loc="left")
+    axes.set_title("Convergence" + known * ", with 95 % intervals", loc="left")
     legend(axes)

@@ -1,4 +1,4 @@
-"""How figures look, how they are written, and the words and units on their axes."""
+"""The style of figures, their files, and the words and units on their axes."""
 
 import re
 import textwrap
@@ -50,11 +50,11 @@ _STYLE: Any = {
     "pdf.fonttype": 42,  # text that can be searched and edited
 }
 styled = mpl.rc_context(_STYLE)
-"""Decorates whatever draws or writes a figure."""
+"""Decorates every function that draws or writes a figure."""
 
 
 class Drawing(Figure):
-    """A figure that a notebook shows, also where pyplot, which else sees to that, is not in use."""
+    """A figure that notebooks display without pyplot."""
 
     def _repr_png_(self) -> bytes:
         png = BytesIO()
@@ -63,7 +63,7 @@ class Drawing(Figure):
 
 
 def roomy(axes: Axes, ticks: int = 6) -> None:
-    """Have so few ticks on a horizontal axis, not yet logarithmic, that long numbers have room."""
+    """Thin out the ticks of a horizontal, linear axis until their numbers do not touch."""
     whole_numbers(axes.xaxis)
     for count in range(ticks, 0, -1):
         axes.locator_params(axis="x", nbins=count)
@@ -73,29 +73,28 @@ def roomy(axes: Axes, ticks: int = 6) -> None:
         gaps = np.diff(shown) / (high - low) * _CHARACTERS * ticks
         if all(gap >= (a + b) / 2 + 1 for gap, (a, b) in zip(gaps, pairwise(widths), strict=True)):
             return
-    axes.set_xticks([shown[0], shown[-1]])  # no step of round numbers leaves less than three
+    axes.set_xticks([shown[0], shown[-1]])  # steps of round numbers leave at least three
 
 
 def whole_numbers(axis: Axis) -> None:
-    """Write each number in full: a common factor at the end of an axis covers its label."""
-    axis.set_major_formatter(lambda value, _: _short(value))
+    """Write each number in full: a common factor at the end of the axis would cover its label."""
 
+    def short(value: float, _: float) -> str:
+        text = re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.6g}")
+        return text.replace("-", "\N{MINUS SIGN}")
 
-def _short(value: float) -> str:
-    """Return a number with the minus sign of other axes, and no more exponent than it needs."""
-    text = re.sub(r"e\+?(-?)0*", r"e\1", f"{value:.6g}")
-    return text.replace("-", "\N{MINUS SIGN}")
+    axis.set_major_formatter(short)
 
 
 class _PlainLog(LogFormatter):
-    """Numbers as one writes them, at the ticks that matplotlib would label; never as TeX."""
+    """Plain numbers instead of TeX, at the ticks that matplotlib would label."""
 
     def __call__(self, x: float, pos: int | None = None) -> str:
         return f"{x:g}".replace("-", "\N{MINUS SIGN}") if super().__call__(x, pos) else ""
 
 
 def logarithmic(axes: Axes, vertical: bool = False) -> None:
-    """Make the horizontal axis logarithmic, or the vertical one, its numbers in plain text."""
+    """Make the horizontal (or the vertical) axis logarithmic, with plain numbers."""
     axis, scale = (axes.yaxis, axes.set_yscale) if vertical else (axes.xaxis, axes.set_xscale)
     scale("log")
     axis.set_major_formatter(_PlainLog())
@@ -104,15 +103,15 @@ def logarithmic(axes: Axes, vertical: bool = False) -> None:
 
 @styled
 def lay_out(figure: Figure) -> None:
-    """Give everything in a figure its place, for all files alike."""
+    """Lay out a figure once for all its files."""
     figure.set_dpi(DOTS_PER_INCH)
     FigureCanvasAgg(figure)
     if engine := figure.get_layout_engine():
         before = _tick_labels(figure)
         engine.execute(figure)
-        if _tick_labels(figure) != before:  # in its place an axis may have longer numbers
+        if _tick_labels(figure) != before:  # the new size may call for longer numbers
             engine.execute(figure)
-        figure.set_layout_engine("none")  # it would be done again for each file
+        figure.set_layout_engine("none")  # or else each file would repeat it
 
 
 def _tick_labels(figure: Figure) -> list[str]:
@@ -122,13 +121,13 @@ def _tick_labels(figure: Figure) -> list[str]:
 
 @styled
 def write(figure: Figure, path: Path) -> list[Path]:
-    """Write a figure as PNG, SVG and PDF, the same bytes each time, and return their paths.
+    """Write a figure as PNG, SVG and PDF, with reproducible bytes, and return their paths.
 
     Parameters
     ----------
     figure : Figure
     path : Path
-        Without an ending.
+        Without a suffix.
 
     Returns
     -------
@@ -137,32 +136,29 @@ def write(figure: Figure, path: Path) -> list[Path]:
     Raises
     ------
     InputError
-        When one of them is there and is no file.
+        When one of them exists and is not a file.
     """
-    png, svg, pdf = files = tuple(
-        path.with_name(f"{path.name}.{ending}") for ending in ("png", "svg", "pdf")
-    )
+    png, svg, pdf = files = [path.with_name(f"{path.name}.{end}") for end in ("png", "svg", "pdf")]
     for file in files:
         file_behind(file)
     lay_out(figure)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": None})
-    FigureCanvasPdf(figure).print_pdf(
-        pdf, metadata={"CreationDate": None, "Creator": None, "Producer": None}
-    )
-    return [png, svg, pdf]
+    no_metadata = dict.fromkeys(("CreationDate", "Creator", "Producer"))
+    FigureCanvasPdf(figure).print_pdf(pdf, metadata=no_metadata)
+    return files
 
 
 def file_name(*words: str) -> str:
-    """Return words as the name of a file, without anything that a shell would notice."""
+    """Join words to a file name without characters special to a shell."""
     return re.sub(r"[^A-Za-z0-9.+-]+", "_", "-".join(words)).strip("_")
 
 
 def sentence(text: str, unit: str = "", width: int = 44) -> str:
-    """Return text for an axis: wrapped, with a capital, its unit behind, nothing read as TeX."""
+    """Return text for an axis: capitalised, with its unit, wrapped."""
     text = plain(text[:1].upper() + text[1:])
     if unit and unit != "1":
-        text += " " + f"[{powers(unit)}]".replace(" ", "\u00a0")  # a unit stays in one piece
+        text += " " + f"[{powers(unit)}]".replace(" ", "\u00a0")  # units are not broken
     return textwrap.fill(text, width).replace("\u00a0", " ")
 
 
@@ -173,7 +169,7 @@ def powers(unit: str) -> str:
 
 
 def place_in_words(element: Element, variable: xr.DataArray) -> str:
-    """Return which element of its output this is: ``left, 250 µm``."""
+    """Return the place of an element within its output: ``left, 250 µm``."""
     words = []
     for dim, value in element.place.items():
         attrs: Mapping[str, Any] = variable[dim].attrs if dim in variable.coords else {}
@@ -186,19 +182,20 @@ def place_in_words(element: Element, variable: xr.DataArray) -> str:
     return ", ".join(words)
 
 
+def in_words(variable: xr.DataArray) -> str:
+    """Return the meaning of a variable, with its symbol (never broken) where it has one."""
+    meaning = str(variable.attrs.get("long_name", str(variable.name).replace("_", " ")))
+    symbol = str(variable.attrs.get("symbol", "")).replace(" ", "\u00a0")
+    return f"{meaning} ({symbol})" if symbol else meaning
+
+
 def named_input(parameter: xr.DataArray, width: int = 44) -> str:
-    """Return the name of an input for an axis: its symbol tells apart those of one meaning."""
-    return sentence(with_symbol(parameter), parameter.attrs["units"], width)
-
-
-def with_symbol(parameter: xr.DataArray) -> str:
-    """Return what an input is, and its symbol, which stays in one piece."""
-    symbol = str(parameter.attrs["symbol"]).replace(" ", "\u00a0")
-    return f"{parameter.attrs['long_name']} ({symbol})"
+    """Return the label of an input for an axis."""
+    return sentence(in_words(parameter), parameter.attrs["units"], width)
 
 
 def is_wide(values: Floats) -> bool:
-    """Whether values, all positive, crowd so far down that a logarithmic axis shows them better."""
+    """Whether positive values spread so widely that a logarithmic axis shows them better."""
     if len(values) == 0 or values.min() <= 0:
         return False
     low, middle, high = np.quantile(values, (0.005, 0.5, 0.995))
@@ -206,5 +203,5 @@ def is_wide(values: Floats) -> bool:
 
 
 def thinned(count: int, most: int = 1000) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """Return which of `count` points of a curve to draw: the ends and enough between."""
+    """Return the indices of the points of a curve to draw: both ends and enough in between."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.intp))

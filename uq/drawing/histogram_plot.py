@@ -1,6 +1,6 @@
-"""Histograms of an output: of all rows, and of the rows in each regime."""
+"""Histograms of an output: of all rows, and by regime."""
 
-import textwrap
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,13 +9,13 @@ from matplotlib.figure import Figure
 
 from uq.drawing.elements_plot import (
     bins,
-    explain,
+    curve_style,
+    display_unit,
+    entitle,
     label,
-    look,
     occurring_regimes,
     regime_colours,
     rows_in_words,
-    told_in,
 )
 from uq.drawing.figure import logarithmic, roomy, sentence, styled
 from uq.drawing.panel import column, figure_of, legend
@@ -26,14 +26,14 @@ _MOST_PANELS = 4
 
 @styled
 def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
-    """Draw how the values of an output are distributed.
+    """Draw a histogram of an output.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
     output : str
-        An output that is not a lifetime or category, or one element of it.
+        An output other than a lifetime or category, or one element of it.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -45,41 +45,34 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
     values = [element.at_least for element in chosen]
     (panel,) = column(axes, 2.1, entries=len(chosen))
     together = np.concatenate(values)
-    unit, per = told_in(chosen[0].units, together)
+    unit, per = display_unit(chosen[0].units, together)
     edges, wide = bins(together / per)
     for i, (element, own) in enumerate(zip(chosen, values, strict=True)):
-        colour, line = look(i, element, chosen)
+        colour, line = curve_style(i, element, chosen)
+        style: Any = {"fill": True, "lw": 0} if len(chosen) == 1 else {"ls": line, "lw": 1.2}
         counts = np.histogram(own / per, edges)[0] / max(len(own), 1)
-        alone = len(chosen) == 1
-        panel.stairs(
-            counts,
-            edges,
-            fill=alone,
-            color=colour,
-            ls="-" if alone else line,
-            lw=0 if alone else 1.2,
-            label=label(ds, element),
-        )
+        panel.stairs(counts, edges, color=colour, label=label(ds, element), **style)
     panel.set(ylim=(0, None), ylabel="Share of rows per bin")
     panel.set_xlabel(sentence(chosen[0].meaning, unit))
     logarithmic(panel) if wide else roomy(panel)
-    explain(panel, chosen)
+    entitle(panel, rows_in_words(chosen))
+    legend(panel)
     return figure_of(panel)
 
 
 @styled
 def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
-    """Draw how the values of an output are distributed, each regime on top of the last.
+    """Draw a histogram of an output, stacked by regime.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result of a model with regimes.
     output : str
-        An output that is no category, or one element of it. Of an output with more than four
-        elements the first four are drawn; of a lifetime those that end.
+        An output other than a category, or one element of it. At most four elements are drawn,
+        and only lives that end.
     axes : matplotlib.axes.Axes, optional
-        Where to draw: panels divide its place. By default a new figure.
+        Where to draw: panels divide its area. By default a new figure.
 
     Returns
     -------
@@ -92,7 +85,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     drawn = set(codes[np.any(ended, axis=0)].tolist())
     regimes = {name: code for name, code in occurring_regimes(rows).items() if code in drawn}
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
-    unit, per = told_in(chosen[0].units, together)
+    unit, per = display_unit(chosen[0].units, together)
     edges, wide = bins(together / per)
     panels = column(axes, 0.7 + 1.1 * len(chosen), len(chosen), entries=len(regimes))
     for panel, element, mask in zip(panels, chosen, ended, strict=True):
@@ -103,9 +96,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
             panel.stairs(top, edges, baseline=base, fill=True, color=colours[name], label=name)
             base = top
         panel.set(ylim=(0, None), ylabel="Share of rows\nper bin")
-        words = label(ds, element)
-        title = f"{words}{', ' if words else ''}{rows_in_words([element])}"
-        panel.set_title(textwrap.fill(title, 46), loc="left")
+        entitle(panel, label(ds, element), rows_in_words([element]))
     panels[-1].set_xlabel(sentence(chosen[0].meaning, unit))
     logarithmic(panels[-1]) if wide else roomy(panels[-1])
     legend(panels[0])

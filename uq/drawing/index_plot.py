@@ -7,11 +7,11 @@ from matplotlib.figure import Figure
 
 from uq.drawing.figure import (
     COLOURS,
+    in_words,
     place_in_words,
     roomy,
     sentence,
     styled,
-    with_symbol,
 )
 from uq.drawing.panel import column, figure_of, heading, legend
 from uq.errors import InputError
@@ -21,6 +21,8 @@ from uq.indices.targets import FORMS, split_name
 from uq.rows.elements import named_elements
 from uq.rows.variables import is_category
 from uq.wording import time_unit
+
+_LIMITS = ("95 % limit for an input without effect", "95 % limit for the largest of them")
 
 
 @styled
@@ -39,7 +41,7 @@ def index_bars(
     ds : xarray.Dataset
         A result.
     output : str
-        One of the names that `uq.sensitivity` returns.
+        A name that `uq.sensitivity` returns.
     method : str, optional
         By default the first that the study asks for.
     found : TargetIndices, optional
@@ -54,13 +56,13 @@ def index_bars(
     Raises
     ------
     InputError
-        When there is no such output, it stands for several, or it has no indices.
+        When there is no such output, the name is ambiguous, or there are no indices.
     """
     found = found or _only(ds, output, method)
     kinds, name = found.kinds(), found.target.name
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
-    labels = [_named(ds[parameter]) for parameter in parameters]
+    labels = [sentence(in_words(ds[parameter]), width=30) for parameter in parameters]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
     (panel,) = column(axes, 0.8 + 0.13 * lines.sum(), entries=2)
     middle = np.cumsum(lines) - lines / 2
@@ -73,13 +75,12 @@ def index_bars(
         panel.barh(y, value, thickness, color=COLOURS[i], label=kind.words)
         panel.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
     for null in found.indices.nulls.values():
-        label = "largest of inputs that play no part"
-        panel.axvline(null.one, color="black", ls="--", lw=0.8, label=label)
-        if np.isfinite(null.largest):
-            label = "the largest of as many"
-            panel.axvline(null.largest, color="black", ls=":", lw=0.8, label=label)
+        limits = zip(("--", ":"), (null.one, null.largest), _LIMITS, strict=True)
+        for line, limit, label in limits:
+            if np.isfinite(limit):
+                panel.axvline(limit, color="black", ls=line, lw=0.8, label=label)
     panel.axvline(0, color="black", lw=0.6)
-    # An index lies between 0 and 1; an interval far outside must not squeeze the bars.
+    # Indices are between 0 and 1; intervals far outside must not squeeze the bars.
     shares = all(kind.unit != "output" for kind in kinds)
     if shares:
         low, high = panel.get_xlim()
@@ -89,7 +90,7 @@ def index_bars(
     roomy(panel, ticks=3)  # the labels take most of the width
     known = any(np.isfinite(one.low) for values in kinds.values() for one in values.values())
     form, *_ = split_name(name)
-    unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect, in the unit of the output"
+    unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect [unit of the output]"
     axis = "Sensitivity index [1]" if shares else unit
     panel.set_xlabel(axis + known * ",\nwith 95 % interval")
     heading(panel, subject(ds, name))
@@ -98,23 +99,18 @@ def index_bars(
 
 
 def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:
-    """Return the indices of the only target that a name stands for."""
+    """Return the indices of the only target of a name."""
     found = sensitivities(ds, method, output).targets
     if len(found) > 1:
-        raise InputError(f"'{output}' stands for several; name one of: {', '.join(found)}")
+        raise InputError(f"'{output}' is ambiguous; name one of: {', '.join(found)}")
     ((name, one),) = found.items()
     if one.refused:
         raise InputError(f"{name}: {one.refused}")
     return one
 
 
-def _named(parameter: xr.DataArray) -> str:
-    """Return the full name of a parameter; the symbol tells apart those of the same meaning."""
-    return sentence(with_symbol(parameter), width=30)
-
-
 def subject(ds: xr.Dataset, name: str) -> str:
-    """Return in words what the indices of a name of `uq.indices.sensitivities` are about."""
+    """Describe a target of `uq.indices.sensitivities`."""
     form, inside, threshold = split_name(name)
     category, _, label = inside.partition("=")
     if is_category(ds, category):

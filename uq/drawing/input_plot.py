@@ -1,4 +1,4 @@
-"""The figure of the inputs: each law as stated, and what the rows have made of it."""
+"""The figure of the inputs: the stated law of each, and its sampled values."""
 
 import numpy as np
 import xarray as xr
@@ -6,15 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values
-from uq.drawing.figure import (
-    COLOURS,
-    is_wide,
-    logarithmic,
-    named_input,
-    roomy,
-    sentence,
-    styled,
-)
+from uq.drawing.elements_plot import bins
+from uq.drawing.figure import COLOURS, logarithmic, named_input, roomy, sentence, styled
 from uq.drawing.panel import figure_of, grid
 from uq.errors import InputError
 from uq.inputs.conditioning import cdf_within
@@ -26,14 +19,14 @@ _IN_ONE_COLUMN = 3  # inputs
 
 @styled
 def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
-    """Draw how the values of each input are distributed, beside the law that was stated.
+    """Draw the distribution of each input, with its stated law.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
     axes : matplotlib.axes.Axes, optional
-        Where to draw: panels divide its place. By default a new figure.
+        Where to draw: panels divide its area. By default a new figure.
 
     Returns
     -------
@@ -61,19 +54,15 @@ def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
             factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
             panel.set_xlabel(sentence(factor, width=width))
     rows = len(next(iter(found.values()))[1])
-    panels[0].set_title(f"Share per bin of {rows} rows; line: as stated", loc="left")
+    panels[0].set_title(f"Share of {rows} rows per bin; line: stated law", loc="left")
     return figure_of(panels[0])
 
 
 def _panel(axes: Axes, law: Law, values: Floats, ticks: int) -> None:
-    wide = is_wide(values)
-    scaled = np.log10(values) if wide else values
-    count = min(len(np.histogram_bin_edges(scaled, "scott")) - 1, 60)
-    edges = np.histogram_bin_edges(scaled, max(count, 1))
-    edges = 10**edges if wide else edges
+    edges, wide = bins(values)
     edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
     rows = np.histogram(values, edges)[0] / len(values)
-    # Like the histogram: bins have their lower end, the last one its upper end too.
+    # As in the histogram: bins include their lower end, the last one also its upper end.
     upper = cdf_within(law, np.append(np.nextafter(edges[1:-1], -np.inf), edges[-1]), EVERYWHERE)
     lower = cdf_within(law, np.nextafter(edges[:1], -np.inf), EVERYWHERE)
     stated = np.diff(np.append(lower, upper))

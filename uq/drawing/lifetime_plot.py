@@ -1,4 +1,4 @@
-"""The figure of a lifetime: how likely it has ended, and how likely it goes on."""
+"""The figure of a lifetime: its distribution function and survival probability."""
 
 import numpy as np
 import xarray as xr
@@ -8,22 +8,23 @@ from numpy.typing import ArrayLike
 
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles
 from uq.analysis.lifetime import survival
-from uq.drawing.elements_plot import explain, label, look
+from uq.drawing.elements_plot import curve_style, entitle, label, rows_in_words
 from uq.drawing.figure import is_wide, logarithmic, sentence, styled, thinned
-from uq.drawing.panel import column, figure_of
+from uq.drawing.panel import column, figure_of, legend
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.wording import TimeUnit, time_unit
+
+_BANDS = (("", 0.2, "pointwise 95 % band"), ("band_", 0.1, "light: simultaneous band"))
 
 
 @styled
 def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw the probability that a life has ended against time, with its 95 % bands.
 
-    The dark band holds each point, the light one the whole curve, where there is one.
-
-    Marks stand at B1, B10 and B50, the times by which 1, 10 and 50 % have ended, with their
-    intervals. On the right the same curve is the probability of a longer life.
+    The dark band is pointwise; the light one, where there is one, is simultaneous: it covers the
+    whole curve. Marks with intervals show B1, B10 and B50, the times by which 1, 10 and 50 % have
+    ended. The right axis shows the survival probability.
 
     Parameters
     ----------
@@ -43,30 +44,28 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = time_unit(float(np.median(ends)) if len(ends) else 0.0)
     (panel,) = column(axes, 2.3, entries=len(chosen))
-    bands = ["", ""]
+    bands: dict[str, bool] = {}  # in the order in which they are drawn
     for i, element in enumerate(chosen):
         curve = survival(ds, element.name)
         curve = curve.isel(time=thinned(curve.sizes["time"]))
         time = curve["time"].values / unit.seconds
-        colour, line = look(i, element, chosen)
+        colour, line = curve_style(i, element, chosen)
         words = label(ds, element, never=float(curve["never"]))
         panel.step(time, 1 - curve["survival"], where="post", color=colour, ls=line, label=words)
-        low, high = 1 - curve["high"], 1 - curve["low"]
-        if np.isfinite(low).any():
-            panel.fill_between(time, low, high, step="post", color=colour, alpha=0.2, lw=0)
-            bands[0] = "pointwise 95 % band"
-        low, high = 1 - curve["band_high"], 1 - curve["band_low"]
-        if np.isfinite(low).any():
-            panel.fill_between(time, low, high, step="post", color=colour, alpha=0.1, lw=0)
-            bands[1] = "light: of the whole curve"
+        for which, alpha, meaning in _BANDS:
+            low, high = 1 - curve[f"{which}high"], 1 - curve[f"{which}low"]
+            if np.isfinite(low).any():
+                panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
+                bands[meaning] = True
         _mark(panel, element, replicates_of(rows), unit, colour)
     panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
     panel.set_xlabel(sentence(chosen[0].meaning, unit.name))
     other = panel.secondary_yaxis("right", functions=(_rest, _rest))
-    other.set_ylabel("Probability of\na longer life")
+    other.set_ylabel("Survival probability")
     if is_wide(ends):
         logarithmic(panel)
-    explain(panel, chosen, *filter(None, bands))
+    entitle(panel, rows_in_words(chosen), *bands)
+    legend(panel)
     return figure_of(panel)
 
 

@@ -1,4 +1,4 @@
-"""Figures of a machine's motion: time histories, phase portraits and Poincare sections."""
+"""Figures of a machine's motion: time histories, phase portraits and Poincaré sections."""
 
 from collections.abc import Iterator, Sequence
 
@@ -7,22 +7,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import COLOURS, LINES, powers, sentence, styled
-from uq.drawing.panel import above, are_many, column, figure_of, finish, legend_above
-from uq.drawing.quantities import (
-    Scale,
-    find,
-    label,
-    pair,
-    place_in,
-    scale_of,
-    with_quantities,
-    words,
-)
+from uq.drawing.figure import COLOURS, LINES, in_words, powers, sentence, styled
+from uq.drawing.panel import above, are_many, column, figure_of, finish
+from uq.drawing.quantities import find, label_axes, pair, place_in, scale_of, with_quantities
 from uq.errors import InputError
 from uq.rows.elements import Floats
 
-_BESIDE = 32  # characters that the label of a vertical axis has room for
+_BESIDE = 32  # width of the label of the vertical axis [characters]
 
 
 @styled
@@ -38,12 +29,12 @@ def history(
     ----------
     ds : xarray.Dataset
         From `uq.simulate`, with a ``trajectory``, or any Dataset with variables along ``time``.
-        For a stretch of it, ``ds.sel(time=slice(3, 4))``.
+        Select a part of it by ``ds.sel(time=slice(3, 4))``.
     quantities : sequence of str or of sequences of str, optional
-        In this order, by default all; those named together share a panel, for instance
+        In this order, by default all; quantities in an inner sequence share a panel, for instance
         ``["disphasing_angle", ["speed_1", "speed_2"]]`` for a run-up.
     axes : matplotlib.axes.Axes, optional
-        Where to draw: panels divide its place. By default a new figure.
+        Where to draw: panels divide its area. By default a new figure.
 
     Returns
     -------
@@ -52,14 +43,14 @@ def history(
     Raises
     ------
     InputError
-        When a quantity does not exist, or two of unlike units are to share a panel.
+        When a quantity does not exist, or quantities in one panel have different units.
     """
     ds = with_quantities(ds)
     if quantities is None:
         quantities = [str(name) for name, one in ds.data_vars.items() if one.dims == ("time",)]
     groups = [[one] if isinstance(one, str) else list(one) for one in quantities]
     if not groups:
-        raise InputError("there is nothing along time")
+        raise InputError("no variable varies along time")
     found = [[find(ds, name) for name in group] for group in groups]
     scales = [scale_of(group) for group in found]
     clock = scale_of([find(ds, "time")])
@@ -68,14 +59,14 @@ def history(
     for panel, group, scale in zip(panels, found, scales, strict=True):
         for i, one in enumerate(group):
             colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
-            series, text = one.values * scale.factor, sentence(words(one))
+            series, text = one.values * scale.factor, sentence(in_words(one))
             panel.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
         if len(group) > 1:
             panel.set_ylabel(f"[{powers(scale.unit)}]")
-            legend_above(panel)
+            panel.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
         else:
-            above(panel, label(group[0], scale))
-    panels[-1].set_xlabel(label(ds["time"], clock))
+            above(panel, sentence(in_words(group[0]), scale.unit))
+    panels[-1].set_xlabel(sentence(in_words(ds["time"]), clock.unit))
     return figure_of(panels[0])
 
 
@@ -88,24 +79,24 @@ def phase_portrait(
     section: xr.Dataset | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw one quantity of a motion against another, and the points of its Poincare section.
+    """Draw one quantity of a motion against another, and the points of its Poincaré section.
 
     Parameters
     ----------
     ds : xarray.Dataset
         From `uq.simulate`, or any Dataset with both quantities along time or phase, the last
-        dimension. Along the one before, if there is one, a curve for each.
+        dimension. A preceding dimension, if there is one, gives one curve for each coordinate.
     output, against : str
-        What lies along the vertical axis, and along the horizontal one.
+        The quantities on the vertical and on the horizontal axis.
     section : xarray.Dataset, optional
-        With the same quantities at the instants of a section.
+        The same quantities at the instants of a section.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        That of `axes`, if given.
+        The figure of `axes`, if given.
 
     Raises
     ------
@@ -114,12 +105,12 @@ def phase_portrait(
     """
     ds = with_quantities(ds)
     (axes,) = column(axes, 2.6)
-    scales = _label_both(axes, ds, output, against)
-    for i, (name, xs, ys) in enumerate(_families(ds, output, against, scales)):
+    factors = _label(axes, ds, output, against)
+    for i, (name, xs, ys) in enumerate(_families(ds, output, against, factors)):
         colour, thin = COLOURS[i % len(COLOURS)], 0.7 if len(xs) < 5000 else 0.4
         axes.plot(xs, ys, color=colour, lw=thin, label=name, rasterized=are_many(len(xs) // 10))
     if section is not None:
-        for name, xs, ys in _families(section, output, against, scales):
+        for name, xs, ys in _families(section, output, against, factors):
             axes.plot(xs, ys, "ko", ms=2.5, mew=0, label=f"Poincaré section {name}".strip())
     return finish(axes)
 
@@ -132,13 +123,13 @@ def section(
     against: str = "displacement",
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw the points of a Poincare section.
+    """Draw the points of a Poincaré section.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        With both quantities at the instants of the section, the last dimension. Along the one
-        before, if there is one, a colour for each.
+        Both quantities at the instants of the section, the last dimension. A preceding dimension,
+        if there is one, gives one colour for each coordinate.
     output, against, axes
         As in `phase_portrait`.
 
@@ -152,8 +143,8 @@ def section(
         When a quantity does not exist.
     """
     (axes,) = column(axes, 2.6)
-    scales = _label_both(axes, ds, output, against)
-    for i, (name, xs, ys) in enumerate(_families(ds, output, against, scales)):
+    factors = _label(axes, ds, output, against)
+    for i, (name, xs, ys) in enumerate(_families(ds, output, against, factors)):
         size, many = _point_size(xs, ys), are_many(len(xs))
         colour = COLOURS[i % len(COLOURS)]
         axes.plot(xs, ys, "o", ms=size, mew=0, color=colour, label=name, rasterized=many)
@@ -161,7 +152,7 @@ def section(
 
 
 def _point_size(xs: Floats, ys: Floats) -> float:
-    """Return how large to draw points: larger where they are few, or fall on few places."""
+    """Return the size of points: larger where few places are visited."""
     points = np.stack([xs, ys], axis=1)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:
@@ -170,21 +161,18 @@ def _point_size(xs: Floats, ys: Floats) -> float:
     return 3.0 if len(places) < 60 else 1.0
 
 
-def _label_both(axes: Axes, ds: xr.Dataset, y: str, x: str) -> tuple[Scale, Scale]:
-    across, up = find(ds, x), find(ds, y)
-    scales = scale_of([across]), scale_of([up])
-    axes.set_xlabel(label(across, scales[0]))
-    axes.set_ylabel(label(up, scales[1], _BESIDE))
-    return scales
+def _label(axes: Axes, ds: xr.Dataset, y: str, x: str) -> list[float]:
+    scales = label_axes(axes, find(ds, x), find(ds, y), _BESIDE)
+    return [scale.factor for scale in scales]
 
 
 def _families(
-    ds: xr.Dataset, y: str, x: str, scales: tuple[Scale, Scale]
+    ds: xr.Dataset, y: str, x: str, factors: Sequence[float]
 ) -> Iterator[tuple[str, Floats, Floats]]:
-    """Yield name and coordinates of each curve: of all there are along the first dimension."""
+    """Yield name and coordinates of each curve along the first of two dimensions."""
     across, up = pair(ds, x, y)
     if across.ndim == 1:
         across, up = (one.expand_dims("") for one in (across, up))
     for i in range(len(across)):
         name = place_in(across, i) if len(across) > 1 else ""
-        yield name, across[i].values * scales[0].factor, up[i].values * scales[1].factor
+        yield name, across[i].values * factors[0], up[i].values * factors[1]

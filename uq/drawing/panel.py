@@ -1,4 +1,4 @@
-"""Panels of a figure: made, or found in axes that are given; their words and their legend."""
+"""Panels of a new figure or within given axes, with their titles and legend."""
 
 from typing import Any
 
@@ -14,23 +14,23 @@ from uq.errors import InputError
 
 _ENTRY = 0.15  # height of a line of the legend [inch]
 _MANY = 4000
-_SHORT = 30  # characters that fit beside each other
+_SHORT = 30  # characters of labels that fit side by side
 
 
 def grid(
     axes: Axes | None, height: float, rows: int = 1, columns: int = 1, **shared: Any
 ) -> NDArray[Any]:
-    """Return panels: of a new figure one column wide, or where the axes given are.
+    """Return panels, of a new figure one column wide or in place of given axes.
 
     Parameters
     ----------
     axes : matplotlib.axes.Axes or None
-        Several panels divide their place.
+        Several panels divide its area.
     height : float
         Of a new figure [inch].
     rows, columns : int
     **shared
-        Which axes the panels share, as in `matplotlib.figure.Figure.subplots`.
+        The axes that panels share, as in `matplotlib.figure.Figure.subplots`.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def grid(
     Raises
     ------
     InputError
-        When the axes have no place that could be divided.
+        When several panels are asked for and the axes are not part of a grid.
     """
     if axes is None:
         figure = Drawing(figsize=(WIDTH, height), layout="constrained")
@@ -54,7 +54,7 @@ def grid(
 
 
 def column(axes: Axes | None, height: float, rows: int = 1, entries: int = 0) -> list[Axes]:
-    """Return panels from top to bottom that share the horizontal axis; see `grid`.
+    """Return panels, top to bottom, that share the horizontal axis; see `grid`.
 
     Parameters
     ----------
@@ -65,10 +65,10 @@ def column(axes: Axes | None, height: float, rows: int = 1, entries: int = 0) ->
     entries : int
         Lines of the legend below.
     """
-    panels = list(grid(axes, height + _ENTRY * entries, rows, sharex=True)[:, 0])
+    panels = grid(axes, height + _ENTRY * entries, rows, sharex=True)[:, 0]
     if axes is None:
         roomy(panels[0])
-    return panels
+    return list(panels)
 
 
 def figure_of(axes: Axes) -> Figure:
@@ -79,53 +79,39 @@ def figure_of(axes: Axes) -> Figure:
 
 
 def legend(axes: Axes) -> None:
-    """Explain colours and lines, where there is anything to say: below the figure, if it is ours.
+    """Draw the legend, if there is one: below a figure of ours, or below the given axes.
 
     Parameters
     ----------
     axes : Axes
-        One panel of a figure, or axes that were given.
+        One panel of the figure.
     """
-    if isinstance(figure_of(axes), Drawing):
-        _below_figure(axes)
-    else:
-        _below_panel(axes)
+    handles, labels = axes.get_legend_handles_labels()
+    figure = figure_of(axes)
+    if labels and isinstance(figure, Drawing):
+        shown = figure.legend(handles, labels, loc="outside lower left", markerscale=1.5)
+        for handle in shown.legend_handles:
+            if isinstance(handle, Line2D) and handle.get_linestyle() == "None":
+                handle.set(markersize=6, alpha=1)  # small, transparent points hide their colour
+    elif labels:
+        columns = len(labels) if len("".join(labels)) < _SHORT else 1
+        below_label = axes.transAxes + ScaledTranslation(0, -0.5, figure.dpi_scale_trans)
+        place = {"bbox_to_anchor": (0, 0), "bbox_transform": below_label}
+        axes.legend(loc="upper left", borderaxespad=0, ncols=columns, **place)
 
 
 def finish(axes: Axes) -> Figure:
-    """Explain the curves of a panel below it, where nothing is covered; return its figure."""
+    """Add the legend of a panel, with room for it in a figure of ours; return the figure."""
     figure = figure_of(axes)
-    if len(figure.axes) == 1:
+    if isinstance(figure, Drawing):
         entries = len(axes.get_legend_handles_labels()[1])
         figure.set_figheight(figure.get_figheight() + _ENTRY * entries)
-        _below_figure(axes)
-    else:
-        _below_panel(axes)
+    legend(axes)
     return figure
 
 
-def _below_figure(axes: Axes) -> None:
-    handles, labels = axes.get_legend_handles_labels()
-    if not labels:
-        return
-    shown = figure_of(axes).legend(handles, labels, loc="outside lower left", markerscale=1.5)
-    for handle in shown.legend_handles:
-        if isinstance(handle, Line2D) and handle.get_linestyle() == "None":
-            handle.set(markersize=6, alpha=1)  # a point as small as in the figure has no colour
-
-
-def _below_panel(axes: Axes) -> None:
-    labels = axes.get_legend_handles_labels()[1]
-    if not labels:
-        return
-    columns = len(labels) if len("".join(labels)) < _SHORT else 1
-    below_label = axes.transAxes + ScaledTranslation(0, -0.5, figure_of(axes).dpi_scale_trans)
-    place = {"bbox_to_anchor": (0, 0), "bbox_transform": below_label}
-    axes.legend(loc="upper left", borderaxespad=0, ncols=columns, **place)
-
-
 def heading(axes: Axes, text: str) -> None:
-    """Write above a figure what it is about, or above its panel in a figure that is not ours."""
+    """Write the subject of a figure above it, or above its panel in a figure not of ours."""
     if isinstance(figure := figure_of(axes), Drawing):
         figure.suptitle(text, x=0.01, ha="left", fontsize=8)
     else:
@@ -133,18 +119,13 @@ def heading(axes: Axes, text: str) -> None:
 
 
 def above(axes: Axes, text: str) -> None:
-    """Write the label of the vertical axis above it, where low panels have room for long words."""
+    """Write the label of the vertical axis above it, where a low panel has room for it."""
     axes.set_ylabel(text, rotation=0, ha="left", va="bottom")
     axes.yaxis.set_label_coords(0.0, 1.03)
-    # The layout thinks of a label as thin; a title of as many empty lines keeps its place.
+    # The layout ignores the height of this label; a title of as many empty lines reserves it.
     axes.set_title(" " + "\n " * text.count("\n"), loc="left")
 
 
-def legend_above(axes: Axes) -> None:
-    """Explain the curves of a low panel above it."""
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.0)
-
-
 def are_many(points: int) -> bool:
-    """Whether so many points, each drawn by itself, make a file too large: then draw pixels."""
+    """Whether so many points should be drawn as pixels to keep the file small."""
     return points > _MANY

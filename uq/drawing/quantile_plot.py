@@ -1,4 +1,4 @@
-"""The table of quantiles, drawn as a figure for a paper."""
+"""A table of quantiles as a figure for a paper."""
 
 import numpy as np
 import xarray as xr
@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.analysis.summary import Summary, summarise
-from uq.drawing.elements_plot import label, rows_in_words, told_in
+from uq.drawing.elements_plot import display_unit, label, rows_in_words
 from uq.drawing.figure import WIDTH, Drawing, sentence, styled
 from uq.drawing.panel import figure_of
 from uq.rows.elements import independent_rows, named_elements
@@ -23,16 +23,16 @@ def quantile_table(
     summary: Summary | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw a table of the quantiles of an output, each with its 95 % interval below.
+    """Draw a table of the quantiles of an output, with their 95 % intervals.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
     output : str
-        An output that is no category.
+        An output other than a category.
     summary : Summary, optional
-        What `uq.analysis.summary.summarise` returns, if that is known already.
+        What `uq.analysis.summary.summarise` returns, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -44,7 +44,7 @@ def quantile_table(
     outputs = (summary or summarise(ds)).outputs
     found = [outputs[element.name].parts["quantiles"] for element in chosen]
     values = [one.estimate.finite.value for quantiles in found for one in quantiles]
-    unit, per = told_in(chosen[0].units, np.array(values))
+    unit, per = display_unit(chosen[0].units, np.array(values))
     words = [label(ds, element) for element in chosen]
     lines = 3 if any(words) else 2
     height = _LINE * (4.2 + (lines + 0.4) * len(chosen))

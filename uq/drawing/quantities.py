@@ -1,12 +1,13 @@
-"""Quantities of a Dataset as axes show them: in words, with their unit, in handy numbers."""
+"""Quantities of a Dataset on axes: their labels, units and scales."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 
-from uq.drawing.figure import sentence
+from uq.drawing.figure import in_words, sentence
 from uq.errors import InputError, nearest
 from uq.wording import time_unit
 
@@ -15,14 +16,14 @@ _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 
 
 class Scale(NamedTuple):
-    """How the numbers of an axis are written.
+    """The scale and unit of an axis.
 
     Attributes
     ----------
     factor : float
-        By which values are multiplied.
+        Values are multiplied by it.
     unit : str
-        Of the products.
+        Of the scaled values.
     """
 
     factor: float
@@ -30,12 +31,12 @@ class Scale(NamedTuple):
 
 
 def with_quantities(ds: xr.Dataset) -> xr.Dataset:
-    """Return a time history of `uq.simulate` as a Dataset with a variable for each quantity.
+    """Return a time history of `uq.simulate` as a Dataset with one variable per quantity.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        One that has its quantities apart already is returned as it is.
+        Returned unchanged if it has no ``trajectory``.
 
     Returns
     -------
@@ -70,27 +71,27 @@ def find(ds: xr.Dataset, name: str) -> xr.DataArray:
 
 
 def pair(ds: xr.Dataset, x: str, y: str) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return two variables, both along all dimensions of either: of x first, one or two in all.
+    """Return two variables broadcast against each other, along one or two dimensions.
 
     Raises
     ------
     InputError
-        When one does not exist, or they have no dimension or too many.
+        When one does not exist, or they are not along one or two dimensions.
     """
     across, up = xr.broadcast(find(ds, x), find(ds, y))
     if across.ndim not in (1, 2):
         dims = ", ".join(map(str, across.dims)) or "nothing"
-        raise InputError(f"'{y}' and '{x}' are along {dims}: one or two dimensions can be drawn")
+        raise InputError(f"'{y}' and '{x}' vary along {dims}, not one or two dimensions")
     return across, up
 
 
 def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
-    """Return how to write quantities that share an axis: 0.00025 m as 0.25 mm.
+    """Return a suitable scale for quantities that share an axis: 0.00025 m become 0.25 mm.
 
     Parameters
     ----------
     variables : sequence of xarray.DataArray
-        Of numbers.
+        Numeric.
 
     Returns
     -------
@@ -99,59 +100,52 @@ def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
     Raises
     ------
     InputError
-        When they have not one unit, or are no numbers.
+        When their units differ, or they are not numeric.
     """
     for one in variables:
         if one.dtype.kind not in "fiub":
-            raise InputError(f"'{one.name}' is not a number, and has no axis")
+            raise InputError(f"'{one.name}' is not numeric and cannot be drawn")
     units = {str(one.attrs.get("units", "1")): one.name for one in variables}
     if len(units) > 1:
         unlike = ", ".join(f"{name} [{unit}]" for unit, name in units.items())
-        raise InputError(f"quantities of unlike units have no axis in common: {unlike}")
+        raise InputError(f"quantities of different units cannot share an axis: {unlike}")
     (unit,) = units
     largest = max(_largest(one) for one in variables)
     if unit == "s" and largest >= 3600.0:
         time = time_unit(largest)
         return Scale(1 / time.seconds, time.name)
-    base = unit.split(" ")[0]
-    if base not in _PREFIXED or largest == 0 or 0.1 <= largest < 1e4:
+    if unit.split(" ")[0] not in _PREFIXED or largest == 0 or 0.1 <= largest < 1e4:
         return Scale(1.0, unit)
     power = int(np.clip(3 * np.floor(np.log10(largest) / 3), min(_PREFIXES), max(_PREFIXES)))
     return Scale(10.0**-power, _PREFIXES[power] + unit)
 
 
-def words(variable: xr.DataArray) -> str:
-    """Return what a variable is, with its symbol where it has one, without its unit."""
-    meaning = str(variable.attrs.get("long_name", str(variable.name).replace("_", " ")))
-    symbol = variable.attrs.get("symbol")
-    return f"{meaning} ({symbol})" if symbol else meaning
-
-
-def label(variable: xr.DataArray, scale: Scale, width: int = 44) -> str:
-    """Return the text of an axis: what it shows, and its unit.
+def label_axes(
+    axes: Axes, across: xr.DataArray, up: xr.DataArray, width: int = 26
+) -> tuple[Scale, Scale]:
+    """Label both axes of a panel, and return their scales.
 
     Parameters
     ----------
-    variable : xarray.DataArray
-    scale : Scale
+    axes : Axes
+    across, up : xarray.DataArray
+        The horizontal and the vertical quantity.
     width : int
-        Of a line [characters].
-
-    Returns
-    -------
-    str
+        Of a line beside the vertical axis [characters].
     """
-    whole = scale.unit.replace(" ", "\u00a0")  # a unit stays on one line
-    return sentence(words(variable), whole, width).replace("\u00a0", " ")
+    scales = scale_of([across]), scale_of([up])
+    axes.set_xlabel(sentence(in_words(across), scales[0].unit))
+    axes.set_ylabel(sentence(in_words(up), scales[1].unit, width))
+    return scales
 
 
 def place_in(variable: xr.DataArray, i: int) -> str:
-    """Return in words which along its first dimension this is: ``left``, ``start 2``."""
+    """Return the words for one place along the first dimension: ``left``, ``start 2``."""
     dim = str(variable.dims[0])
     if dim not in variable.coords:
         return f"{dim} {i + 1}"
     value = variable[dim].values[i]
-    return str(value) if isinstance(value, str) else f"{words(variable[dim])} {value:g}"
+    return str(value) if isinstance(value, str) else f"{in_words(variable[dim])} {value:g}"
 
 
 def _largest(variable: xr.DataArray) -> float:

@@ -1,4 +1,4 @@
-"""Figures of how a machine responds: curves, bifurcation diagrams and basins of attraction."""
+"""Figures of a machine's response: curves, bifurcation diagrams and basins of attraction."""
 
 from collections.abc import Sequence
 from itertools import cycle
@@ -11,12 +11,11 @@ from matplotlib.figure import Figure
 
 from uq.drawing.figure import COLOURS, LINES, powers, sentence, styled
 from uq.drawing.panel import are_many, column, finish
-from uq.drawing.quantities import find, label, pair, place_in, scale_of
+from uq.drawing.quantities import find, label_axes, pair, place_in, scale_of
 from uq.errors import InputError
 from uq.wording import percent
 
-_BESIDE = 26  # characters that the label of a vertical axis has room for
-_MOST_CHANGES = 12  # of regime along a curve, before their marks cover it
+_MOST_CHANGES = 12  # of regime that are marked along a curve
 _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
 
 
@@ -26,24 +25,25 @@ def curve(
 ) -> Figure:
     """Draw one quantity against another: work-rates against gaps, gaps against the time of wear.
 
-    Where the regime, if ``ds["regime"]`` tells one, changes along a curve, there is a dotted line,
-    unless it changes so often that lines would cover the curve.
+    Dotted lines mark changes of ``ds["regime"]``, if present, along the curve, unless there are so
+    many that they would cover it.
 
     Parameters
     ----------
     ds : xarray.Dataset
     output : str
-        A variable along one dimension, and perhaps a second, for instance ``site``: a curve for
-        each.
+        A variable along one dimension, and optionally a second one, for instance ``site``, with
+        one curve for each coordinate.
     against : str, optional
-        A variable along the first of these, and perhaps the second; by default that dimension.
+        A variable along the first dimension, and optionally the second; by default the first
+        dimension.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        That of `axes`, if given.
+        The figure of `axes`, if given.
 
     Raises
     ------
@@ -51,8 +51,8 @@ def curve(
         When a quantity does not exist.
     """
     across, up = pair(ds, against or _first_dimension(ds, output), output)
-    scales = scale_of([across]), scale_of([up])
     (axes,) = column(axes, 2.2)
+    scales = label_axes(axes, across, up)
     along = across.dims[0]
     across, up = across.transpose(..., along), up.transpose(..., along)
     family = up if up.ndim > 1 else up.expand_dims("")
@@ -72,8 +72,6 @@ def curve(
         for i, where in enumerate(changes if len(changed) <= _MOST_CHANGES else ()):
             text = "" if i else "change of regime"
             axes.axvline(where, color="black", ls=":", lw=0.7, zorder=0, label=text)
-    axes.set_xlabel(label(across, scales[0]))
-    axes.set_ylabel(label(up, scales[1], _BESIDE))
     return finish(axes)
 
 
@@ -86,24 +84,24 @@ def bifurcation(
     by: str | None = None,
     axes: Axes | None = None,
 ) -> Figure:
-    """Draw all values that a quantity takes at each value of a parameter, as points.
+    """Draw the values that a quantity takes at each value of a parameter.
 
     Parameters
     ----------
     ds : xarray.Dataset
     output : str
-        A variable along the dimension of the parameter and others, NaN where there is no value.
+        A variable along the dimension of the parameter and others, NaN where it has no value.
     against : str, optional
-        The parameter, a variable along one dimension; by default the first one of the output.
+        The parameter, a variable along one dimension; by default the first dimension of `output`.
     by : str, optional
-        A variable of words along the same, for instance ``regime``: a colour for each.
+        A variable of text along the same dimension, for instance ``regime``, that sets the colour.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        That of `axes`, if given.
+        The figure of `axes`, if given.
 
     Raises
     ------
@@ -113,7 +111,7 @@ def bifurcation(
     up, across = find(ds, output), find(ds, against or _first_dimension(ds, output))
     kinds = find(ds, by) if by else xr.full_like(across, "", dtype=object)
     (axes,) = column(axes, 2.4)
-    scales = scale_of([across]), scale_of([up])
+    scales = label_axes(axes, across, up)
     up, across, kinds = xr.broadcast(up, across, kinds)
     there = np.isfinite(up.values)
     values, places = (one.values * s.factor for one, s in ((up, scales[1]), (across, scales[0])))
@@ -124,8 +122,6 @@ def bifurcation(
         size = 1.2 if there.sum() > 2000 else 2.0
         many = are_many(int(chosen.sum()))
         axes.plot(*points, "o", ms=size, mew=0, color=colour, label=word, rasterized=many)
-    axes.set_xlabel(label(across, scales[0]))
-    axes.set_ylabel(label(up, scales[1], _BESIDE))
     return finish(axes)
 
 
@@ -138,15 +134,15 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     ds : xarray.Dataset
         From `uq.basins`, over two parameters.
     outputs : sequence of str
-        Of which the legend gives the values that the first point of each basin has, beside its
-        share of the grid and the words of categories.
+        The legend lists their values at the first point of each basin, besides the categories and
+        the share of the grid.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        That of `axes`, if given.
+        The figure of `axes`, if given.
 
     Raises
     ------
@@ -157,10 +153,10 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
     if attractor.ndim != 2:
         raise InputError(f"basins are drawn over two parameters, not {attractor.ndim}")
     across, up = (ds[dim] for dim in attractor.dims)
-    scales = scale_of([across]), scale_of([up])
     texts = [_basin(ds.isel(basin=i), outputs) for i in range(ds.sizes["basin"])]
     (axes,) = column(axes, 2.6)
-    # More attractors than colours: the rare ones share the last.
+    scales = label_axes(axes, across, up)
+    # If there are more attractors than colours, the rare ones share the last.
     shown = np.where(attractor.values < 0, len(COLOURS) + 1, attractor.values)
     shown = np.where(attractor.values >= len(COLOURS), len(COLOURS), shown)
     axes.pcolormesh(
@@ -180,8 +176,6 @@ def basins(ds: xr.Dataset, outputs: Sequence[str] = (), *, axes: Axes | None = N
         entries.append((_FAILED, f"failed, {percent(float((attractor < 0).mean()))}"))
     for colour, text in entries:
         axes.plot([], [], "s", color=colour, mec="black", mew=0.4, label=text)
-    axes.set_xlabel(label(across, scales[0]))
-    axes.set_ylabel(label(up, scales[1], _BESIDE))
     return finish(axes)
 
 
@@ -190,7 +184,7 @@ def _first_dimension(ds: xr.Dataset, output: str) -> str:
 
 
 def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
-    """Return in words what is known of an attractor: its regime, numbers asked for, its share."""
+    """Describe an attractor: its categories, the chosen outputs and its share of the grid."""
     known = [
         str(value.item())
         for name, value in one.data_vars.items()

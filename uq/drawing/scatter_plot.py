@@ -1,6 +1,5 @@
-"""Rows as points: an output against the inputs that move it most, and inputs by regime."""
+"""Scatter plots: an output against its most influential inputs, and inputs by regime."""
 
-import textwrap
 from contextlib import suppress
 from typing import Any
 
@@ -12,11 +11,12 @@ from numpy.typing import NDArray
 
 from uq import intervals, order_statistics
 from uq.drawing.elements_plot import (
+    display_unit,
+    entitle,
     label,
     occurring_regimes,
     regime_colours,
     rows_in_words,
-    told_in,
 )
 from uq.drawing.figure import (
     COLOURS,
@@ -44,18 +44,18 @@ _IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
 
 @styled
 def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
-    """Draw the rows of one output against the inputs that move it most, with conditional means.
+    """Draw an output against its most influential inputs, with conditional means.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
     output : str
-        An output without dimensions, or one element of another: of an output with several, its
-        first. Where lives never end or are censored, or values spread over decades, the line is
-        the conditional median.
+        An output or one element of it; for an output with several elements, the first is drawn.
+        If lives never end or are censored, or values spread over decades, the line is the
+        conditional median.
     axes : matplotlib.axes.Axes, optional
-        Where to draw: panels divide its place. By default a new figure.
+        Where to draw: panels divide its area. By default a new figure.
 
     Returns
     -------
@@ -67,7 +67,7 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     leading = _leading(inputs, element)[:_MOST_INPUTS]
     panels = grid(axes, 0.5 + 1.5 * len(leading), len(leading), sharey=True)[:, 0]
     finite = np.isfinite(element.values)
-    unit, per = told_in(element.units, element.values)
+    unit, per = display_unit(element.units, element.values)
     wide = is_wide(element.values[finite])
     independent = replicates_of(rows) is None
     for panel, name in zip(panels, leading, strict=True):
@@ -78,9 +78,7 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
         panel.set_ylabel(sentence(element.meaning, unit, width=24))
         if wide:
             logarithmic(panel, vertical=True)
-    words = label(ds, element)
-    title = f"{words}{', ' if words else ''}{rows_in_words([element])}"
-    panels[0].set_title(textwrap.fill(title, 46), loc="left")
+    entitle(panels[0], label(ds, element), rows_in_words([element]))
     legend(panels[0])
     return figure_of(panels[0])
 
@@ -93,32 +91,23 @@ def _points(axes: Axes, x: Floats, element: Element, per: float) -> None:
     style: Any = {"ls": "", "rasterized": True, "alpha": 0.6, "mew": 0}
     axes.plot(x[ended], y[ended], ".", ms=size, color=COLOURS[4], **style)
     if (going := shown & element.censored & np.isfinite(y)).any():
-        words = "censored: still going on"
+        words = "censored at the horizon"
         axes.plot(x[going], y[going], "^", ms=size, color=COLOURS[3], label=words, **style)
     if (never := shown & element.never).any():
-        top = np.full(int(never.sum()), 1.0)
-        axes.plot(
-            x[never],
-            top,
-            "|",
-            ms=5,
-            color=COLOURS[5],
-            label="never, at the top edge",
-            transform=axes.get_xaxis_transform(),
-            clip_on=False,
-            rasterized=True,
-        )
+        edge: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False, "rasterized": True}
+        words, top = "never (at the top edge)", np.ones(never.sum())
+        axes.plot(x[never], top, "|", ms=5, color=COLOURS[5], label=words, **edge)
 
 
 def _marker(rows: int) -> float:
-    """Return the size of points so that many do not make one blot."""
+    """Return the size of points: smaller where there are many."""
     return 3.0 if rows > 1000 else 4.5
 
 
 def _conditional(
     axes: Axes, x: Floats, element: Element, per: float, wide: bool, independent: bool
 ) -> None:
-    """Draw the mean within slices of the input, or the median where the mean says little."""
+    """Draw the mean within slices of the input, or the median where the mean is uninformative."""
     present = element.present
     x, values = x[present], element.at_most / per
     medians = wide or not np.isfinite(values).all() or lacks_variance(values)
@@ -134,17 +123,17 @@ def _conditional(
         line = np.array([values[rows].mean() for rows in slices])
         ends = [intervals.mean_interval(values[rows]) for rows in slices]
     line = np.where(np.isfinite(line), line, np.nan)
-    words = f"{'median' if medians else 'mean'} of slices of {len(x) // count} rows"
+    words = f"{'median' if medians else 'mean'} in slices of {len(x) // count} rows"
     axes.plot(middle, line, color=COLOURS[1], label=words + independent * ", 95 % band")
     ended = values[np.isfinite(values)]
     if independent and len(ended):
         low, high = np.array(ends, dtype=float).T
-        top = ended.max()  # an end that is never would hide all others
+        top = ended.max()  # an infinite end would hide all others
         axes.fill_between(middle, low, np.minimum(high, top), color=COLOURS[1], alpha=0.25, lw=0)
 
 
 def _leading(inputs: dict[str, Floats], element: Element) -> list[str]:
-    """Return the inputs, the one first whose slices differ most in the mean rank of the output."""
+    """Return the inputs in order of how much the mean rank of the output varies over slices."""
     from scipy.stats import rankdata
 
     present = element.present
@@ -166,14 +155,14 @@ def _name_input(axes: Axes, rows: xr.Dataset, name: str, width: int = 38, ticks:
 
 @styled
 def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
-    """Draw the inputs that decide the regime against each other, the rows coloured by regime.
+    """Draw the inputs that best separate the regimes against each other, coloured by regime.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        A result of a model with regimes, and of a study with two uncertain inputs or more.
+        A result of a model with regimes and at least two uncertain inputs.
     axes : matplotlib.axes.Axes, optional
-        Where to draw: panels divide its place. By default a new figure.
+        Where to draw: panels divide its area. By default a new figure.
 
     Returns
     -------
@@ -182,7 +171,7 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     Raises
     ------
     InputError
-        When there are no regimes, or there is only one input.
+        When there are no regimes, or fewer than two inputs.
     """
     rows = independent_rows(ds)
     regimes = occurring_regimes(rows)
@@ -196,6 +185,7 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     height = 0.5 + (2.1 if alone else 1.45 * size) + 0.15 * len(regimes)
     panels = grid(axes, height, size, size, sharex="col", sharey="row")
     shown = thinned(len(codes), _MOST_POINTS)
+    points: Any = {"ms": _marker(len(shown)), "mew": 0, "alpha": 0.7, "rasterized": True}
     colours = regime_colours(rows)
     for i, down in enumerate(leading[1:]):
         for j, across in enumerate(leading[:-1]):
@@ -205,17 +195,8 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
                 continue
             for name, code in regimes.items():
                 own = shown[codes[shown] == code]
-                panel.plot(
-                    inputs[across][own],
-                    inputs[down][own],
-                    ".",
-                    ms=_marker(len(shown)),
-                    mew=0,
-                    alpha=0.7,
-                    color=colours[name],
-                    label=name,
-                    rasterized=True,
-                )
+                place = inputs[across][own], inputs[down][own]
+                panel.plot(*place, ".", color=colours[name], label=name, **points)
             panel.locator_params(axis="y", nbins=4)
             whole_numbers(panel.yaxis)
             if i == size - 1:
@@ -228,10 +209,10 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
 
 
 def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
-    """Return the inputs, first the one whose values differ most between a regime and the others."""
+    """Return the inputs in order of how well they separate one regime from the others."""
     columns = np.column_stack(list(inputs.values()))
     far = np.zeros(len(inputs))
     for code in np.unique(codes[codes >= 0]):
-        with suppress(RefusedError):  # of a few rows any input seems far from the others
+        with suppress(RefusedError):  # with few rows, any distance is chance
             far = np.maximum(far, ks_distances(columns, (codes == code).astype(float)))
     return [list(inputs)[i] for i in np.argsort(-far, kind="stable")]

@@ -1,4 +1,4 @@
-"""What figures of a result are drawn of, and which of these suit which figure."""
+"""The subjects of figures, and the conditions under which a figure applies to them."""
 
 from collections.abc import Iterator
 
@@ -15,14 +15,16 @@ from uq.rows.variables import outputs_of
 
 
 def the_result(findings: Findings) -> Iterator[Subject]:
-    """Yield the result as a whole."""
+    """Yield the result itself."""
     yield Subject()
 
 
 def outputs(findings: Findings) -> Iterator[Subject]:
     """Yield each output with numbers."""
     if findings.rows.sizes["sample"]:
-        yield from map(Subject, _numbers(findings))
+        known, ds = outputs_of(findings.ds), findings.ds
+        shown = shown_outputs(ds, analysis_of(ds))
+        yield from (Subject(output) for output in shown if not known[output].is_category)
 
 
 def targets(findings: Findings) -> Iterator[Subject]:
@@ -30,30 +32,19 @@ def targets(findings: Findings) -> Iterator[Subject]:
     for method in methods(findings.ds):
         try:
             targets_of = findings.sensitivities(method).targets
-        except InputError:  # the report says why
+        except InputError:  # the report gives the reason
             continue
         for name, found in targets_of.items():
             if not found.refused and found.kinds():
-                yield Subject(name, method, found)
+                yield Subject(name, method, {"method": method, "found": found})
 
 
 def crossed_targets(findings: Findings) -> Iterator[Subject]:
-    """Yield each target with total indices of fewer rows."""
+    """Yield each target whose total indices are known for fewer rows."""
     if any(outputs(findings)):
         names = findings.running["output"]
         known = total_indices(findings.running)["output"]
         yield from map(Subject, names[names.isin(known)].unique())
-
-
-def _numbers(findings: Findings) -> list[str]:
-    declared = outputs_of(findings.ds)
-    shown = shown_outputs(findings.ds, analysis_of(findings.ds))
-    return [output for output in shown if not declared[output].is_category]
-
-
-def has_numbers(findings: Findings, name: str) -> bool:
-    """Whether any output has numbers."""
-    return bool(_numbers(findings))
 
 
 def is_lifetime(findings: Findings, name: str) -> bool:
@@ -62,30 +53,30 @@ def is_lifetime(findings: Findings, name: str) -> bool:
 
 
 def is_no_lifetime(findings: Findings, name: str) -> bool:
-    """Whether the output is something else."""
+    """Whether the output is not a lifetime."""
     return not is_lifetime(findings, name)
 
 
 def in_regimes(findings: Findings, name: str) -> bool:
-    """Whether rows are in several regimes."""
+    """Whether the rows are in several regimes."""
     return len(occurring_regimes(findings.rows)) > 1
 
 
 def in_one_regime(findings: Findings, name: str) -> bool:
-    """Whether rows are all in one regime, or the model knows none."""
+    """Whether all rows are in one regime, or the model has none."""
     return not in_regimes(findings, name)
 
 
 def has_several_inputs(findings: Findings, name: str) -> bool:
-    """Whether two inputs or more vary by themselves."""
+    """Whether at least two inputs vary independently."""
     return len(independent_inputs(findings.rows)) > 1
 
 
 def follows_laws(findings: Findings, name: str) -> bool:
-    """Whether rows follow the laws of the inputs."""
+    """Whether the rows follow the laws of the inputs."""
     return bool(laws_and_values(findings.ds))
 
 
 def settles(findings: Findings, name: str) -> bool:
-    """Whether an estimate of the output is known of fewer rows."""
+    """Whether an estimate of the output is known for fewer rows."""
     return bool(followed(findings.ds, name, findings.running)[0])

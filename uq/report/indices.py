@@ -8,7 +8,7 @@ from typing import NamedTuple
 import xarray as xr
 
 from uq.analysis.findings import Findings
-from uq.drawing.figure import sentence, with_symbol
+from uq.drawing.figure import in_words, sentence
 from uq.drawing.index_plot import subject
 from uq.errors import InputError
 from uq.estimate import Estimate
@@ -128,7 +128,7 @@ def _leading(ds: xr.Dataset, method: str, words: str, found: TargetIndices) -> s
         )
     if kind.unit == "variance" and index.value < _LEAST:
         return f"No input alone does much to {words} ({told} is {kind.text(index.value)} at most)."
-    name = sentence(with_symbol(ds[first]), width=1000)
+    name = sentence(in_words(ds[first]), width=1000)
     return f"{name} matters most to {words} ({told} = {kind.text(index.value)})."
 
 
