@@ -80,7 +80,7 @@ class Executor:
             return
         if not workers and self._crew is None:
             dispatcher.pilot(share=1)
-        # Not worth starting workers, together with the rows before.
+        # Work that is not worth starting workers, with the rows before.
         seconds = self._seconds + dispatcher.row_seconds * dispatcher.left
         short = self._crew is None and seconds < SHORT_SECONDS
         if workers == 0 or (workers is None and short):
