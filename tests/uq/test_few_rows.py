@@ -5,7 +5,7 @@ import pytest
 from asked_indices import sensitivities
 from computed import linear, with_output
 
-from uq.methods.few_rows import effective_rows
+from uq.methods.groups import effective_rows
 
 ATTRS = {
     "role": "output",
