@@ -96,7 +96,7 @@ def hdmr_indices(sample: Sample) -> Indices:
 
 
 def _best(x: Floats, y: Floats, degrees: tuple[int, ...]) -> tuple[int, float]:
-    """Return the degree that explains most of the rows held out, 0 for none, and what it explains."""
+    """Return the degree that explains most of the rows held out, 0 for none, and how much."""
     half, k = len(y) // 2, x.shape[1]
     best, explained = 0, float("-inf")
     for degree in degrees:
