@@ -1,6 +1,6 @@
-"""Two fidelities: the rows of a result, and many more of a cheap twin of the same model.
+"""Two fidelities: the rows of a result, and many more rows of a cheap twin of the same model.
 
-The twin is an output that the model can compute alone, or the same outputs under settings that make
+The twin is an output that the model can compute alone, or the same outputs with settings that make
 a row cheap, such as fewer modes.
 """
 
@@ -120,7 +120,7 @@ def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
 
 
 def with_twin(ds: xr.Dataset, model: str | None = None) -> TwoFidelities:
-    """Return what `two_fidelities` makes a table of."""
+    """Return the estimates of `two_fidelities` as records."""
     study = study_from_text(ds.attrs["study"], "study of this result", model)
     twin = study.analysis.twin
     if not twin:
@@ -188,7 +188,7 @@ def _note_on_few(hits: int, rows: int) -> str:
 
 
 def _filled(control: Element) -> Floats:
-    """Return what a mean is controlled by, (n, 2): the value, and where there is none."""
+    """Return the controls of a mean, (n, 2): the value, and whether there is none."""
     finite = np.isfinite(control.values)
     return np.stack([np.where(finite, control.values, 0.0), ~finite], axis=1)
 
@@ -202,7 +202,7 @@ def _here(study: Study, ds: xr.Dataset) -> list[Element]:
 
 
 def _many(study: Study, start: int) -> list[Element]:
-    """Return the twin of the rows that would come next in the study: independent of all others."""
+    """Return the twin of the rows that come next in the study, independent of all others."""
     per_row = PER_ROW if isinstance(study.analysis.twin, str) else PER_ROW_OF_SETTINGS
     wanted = min(per_row * start, MOST_ROWS)
     per_sample = rows(study) // study.design.samples
