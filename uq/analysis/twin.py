@@ -49,10 +49,10 @@ class Sharpened:
     ----------
     estimate : Estimate
         By control variates.
+    reduction : float
+        Variance of the plain estimate over that of this one.
     plain : Estimate
         From the rows of the result alone.
-    reduction : float
-        Variance of the plain estimate over that of the other.
     failed : Estimate, optional
         Ends of the plain interval with the failed rows at best and at worst, where rows failed.
     note : str
@@ -60,8 +60,8 @@ class Sharpened:
     """
 
     estimate: Estimate
-    plain: Estimate
     reduction: float
+    plain: Estimate
     failed: Estimate | None = None
     note: str = ""
 
@@ -155,23 +155,17 @@ def _estimates(
         alone = moments(element.values[present]).mean
         if not alone.reason:
             found = controlled_mean(element.values, present, *map(_filled, (control, many)))
-            yield "mean", Sharpened(found.estimate, alone, found.reduction)
+            yield "mean", Sharpened(*found, alone)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         sides = event(element, threshold)
         if sides is None or not kept.any():
             continue
         for sign, hits in zip("><", sides, strict=True):
             found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
-            yield (
-                f"P({sign}{threshold!r})",
-                Sharpened(
-                    found.estimate,
-                    Estimate(float(hits[kept].mean()), *share_interval(hits[kept])),
-                    found.reduction,
-                    failed_share_bounds(hits, element.failed, None),
-                    _note_on_few(int(hits[kept].sum()), int(kept.sum())),
-                ),
-            )
+            plain = Estimate(float(hits[kept].mean()), *share_interval(hits[kept]))
+            failed = failed_share_bounds(hits, element.failed, None)
+            note = _note_on_few(int(hits[kept].sum()), int(kept.sum()))
+            yield f"P({sign}{threshold!r})", Sharpened(*found, plain, failed, note)
 
 
 def _note_on_few(hits: int, rows: int) -> str:
