@@ -15,6 +15,7 @@ import typer
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
 
+from uq.analysis.statistics.table import STATISTICS
 from uq.cli.app import app
 from uq.contract import Status
 from uq.designs.design import Design
@@ -322,6 +323,12 @@ def questions() -> str:
         f"\n\nPlain samples come from the designs {', '.join(plain)}. {', '.join(dependent)} also"
         " accept dependent inputs, and imported rows that are not stated to be independent."
     )
+
+
+def statistics() -> str:
+    """Tabulate what a summary may say of an output."""
+    lines = [(f"`{name}`", _first_line(make, "Yield")) for name, make in STATISTICS.items()]
+    return table(("statistics", ""), lines)
 
 
 def figures() -> str:

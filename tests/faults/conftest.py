@@ -12,7 +12,6 @@ import command
 import pytest
 
 from uq.store.folder import history
-from uq.store.records import RowsRecord
 
 PATIENCE = 180.0
 """How long a busy machine may take for what should take a moment [s]."""
@@ -184,7 +183,8 @@ class Kept(NamedTuple):
 
 def kept():
     """Return how many chunk files and rows the journal names."""
-    records = [record for record in history(ROWS) if isinstance(record, RowsRecord)]
+    found = history(ROWS)
+    records = found.chunks if found else []
     return Kept(len(records), sum(record.rows for record in records))
 
 

@@ -37,7 +37,7 @@ def test_comments_and_analysis_may_change(study, undisturbed, under_way, call, i
     study.write_text(study.read_text() + "# a comment\nquantiles = [0.5]\n")
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert "rows were done already" in said
+    assert "rows were already done" in said
     assert OUT.read_bytes() != undisturbed  # it holds the new text
     study.write_text(study.read_text().removesuffix("# a comment\nquantiles = [0.5]\n"))
     assert "complete already" in call("run", study, *MODEL[:-1])[1]
@@ -100,8 +100,8 @@ def test_rows_of_an_edited_model_are_mixed_on_request_alone(
     model.write_text(model.read_text() + "# edited\n")
     injected("code of the model edited between runs", 2)
     refused = (
-        f"{OUT}: holds rows that other code of model 'patient' computed, whose version was left as "
-        "it was; start anew with uq run --fresh, or go on with --mixed\n"
+        f"{OUT}: holds rows that other code of model 'patient' computed, although its version is "
+        "the same; start anew with uq run --fresh, or go on with --mixed\n"
     )
     before = {path.name for path in ROWS.iterdir()} - {"lock"}
     assert call("run", study, *options) == (2, refused)

@@ -1,0 +1,132 @@
+"""A result with more samples, or with its failed rows computed again."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq import store
+from uq.errors import InputError
+from uq.inputs.values import read_settings
+from uq.rows import results
+from uq.rows.workload import workload_of
+from uq.running import runner
+from uq.running.options import DEFAULTS, RunOptions
+from uq.study.changes import refusal_to_extend
+from uq.study.definition import Study
+from uq.upkeep.stored_study import study_of
+
+
+def extend(
+    path: Path, samples: int, model: str | None = None, options: RunOptions = DEFAULTS
+) -> xr.Dataset:
+    """Add samples to a result; nothing is computed again.
+
+    Parameters
+    ----------
+    path : Path
+        A result, complete or not.
+    samples : int
+        Total base size of each replicate.
+    model : str, optional
+        Where its model lives, if it is not installed.
+    options : RunOptions
+
+    Returns
+    -------
+    xarray.Dataset
+        The same bits as if it had had this many samples from the start.
+
+    Raises
+    ------
+    InputError
+        When the design cannot be extended, or there are more samples already.
+    RunError
+        As in `uq.running.runner.run`.
+    """
+    study = study_of(path, model)
+    there = study.design.samples
+    if samples < there:
+        raise InputError(f"--samples {samples}: {path} has {there} already; ask for more")
+    problem = refusal_to_extend(study)
+    if samples > there and problem:
+        raise InputError(f"{path}: {problem}")
+    study = study.with_samples(samples)
+    # This many are wanted, whatever the precision: [design] until does not apply.
+    design = study.design.model_copy(update={"until": None})
+    return runner.run_study(replace(study, design=design), path, options)
+
+
+def rerun_failed(
+    path: Path,
+    settings: Mapping[str, Any],
+    model: str | None = None,
+    options: RunOptions = DEFAULTS,
+) -> xr.Dataset:
+    """Compute the failed rows of a result again.
+
+    Parameters
+    ----------
+    path : Path
+        A complete result; replaced once all these rows are done.
+    settings : dict
+        Numerical settings that differ from the study's; the variable ``rerun`` of the result says
+        which rows were computed with them.
+    model : str, optional
+        Where the model lives, if it is not installed.
+    options : RunOptions
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    InputError
+        When a setting is not admissible, or changes the outputs.
+    RunError
+        As in `uq.running.runner.run`.
+    """
+    ds = results.open_result(path)
+    study = study_of(path, model)
+    changed = changed_settings(study, settings)
+    failed = int(np.count_nonzero(results.failed(ds)))
+    if not failed:
+        options.say(f"{path}: no row failed; nothing to do")
+        return ds
+    new, old = asdict(changed), asdict(study.settings)
+    differing = {name: new[name] for name in settings if new[name] != old[name]}
+    plain = json.loads(json.dumps(differing))  # as read back later
+    with store.keep(study, path, options.fresh, plain, options.say, options.mixed) as kept:
+        workload = workload_of(study)._replace(settings=changed)
+        return runner.carry_out(workload, options, kept)
+
+
+def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
+    """Return the settings of a study with some changes.
+
+    Raises
+    ------
+    InputError
+        When one is not admissible, or would change shapes or coordinates of the outputs.
+    """
+    changed, wrong = read_settings(study.model, asdict(study.settings) | dict(settings))
+    if wrong:
+        raise InputError(
+            *(
+                f"--setting {name} = {settings[name]!r}: {problem}" if name in settings else problem
+                for name, problem in wrong.items()
+            )
+        )
+    axes, others = (
+        {dim: list(values) for dim, values in study.model.coordinates(each).items()}
+        for each in (changed, study.settings)
+    )
+    if axes != others:
+        names = ", ".join(settings)
+        raise InputError(f"--setting {names}: would give these rows other outputs than the rest")
+    return changed
