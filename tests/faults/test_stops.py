@@ -131,8 +131,8 @@ def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     code, said = run.wait()
     assert code == 128 + number
     told = re.fullmatch(
-        rf"interrupted after (\d+) of 1500 rows, kept in {ROWS}; the same command goes on from "
-        r"there\n",
+        rf"interrupted after (\d+) of 1500 rows, kept in {ROWS}; the same command resumes "
+        r"the run\n",
         said,
     )
     assert told
