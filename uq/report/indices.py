@@ -1,4 +1,4 @@
-"""What a report says of sensitivities: one table for each target of each method."""
+"""Sensitivities in a report: one table for each target of each method."""
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
@@ -36,8 +36,8 @@ class Subject(NamedTuple):
     pictures : tuple of Picture
     notes : list of str
     leading : str
-        A sentence on the input with the largest index; "" where none is larger than that of an
-        input without effect.
+        A sentence on the input with the largest index; "" if no index exceeds that of an input
+        without effect.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Subject(NamedTuple):
 
 
 class Method(NamedTuple):
-    """What one method has to say; where it has nothing at all, ``refused`` says why."""
+    """The results of one method, or in ``refused`` why there are none."""
 
     name: str
     refused: str = ""
@@ -63,7 +63,7 @@ Drawn = defaultdict[tuple[str, str], list[Picture]]
 
 
 def sensitivity_of(findings: Findings) -> list[Method]:
-    """Return the indices by every method that the study asks for.
+    """Return the indices by each method of the study.
 
     Parameters
     ----------
@@ -74,8 +74,8 @@ def sensitivity_of(findings: Findings) -> list[Method]:
     list of Method
     """
     drawn: Drawn = defaultdict(list)
-    for of, picture in pictures(findings, "sensitivities"):
-        drawn[of.method, of.name].append(picture)
+    for picture in pictures(findings, "sensitivities"):
+        drawn[picture.of.method, picture.of.name].append(picture)
     return [_method(findings, name, drawn) for name in methods(findings.ds)]
 
 
@@ -84,9 +84,9 @@ def _method(findings: Findings, name: str, drawn: Drawn) -> Method:
         found = findings.sensitivities(name)
     except InputError as error:
         return Method(name, refused=str(error))
-    used = f"Of {found.rows_used} rows"
+    used = f"From {found.rows_used} rows"
     if found.groups_dropped:
-        used += f", {found.groups_dropped} groups dropped for lack of a value in some of their rows"
+        used += f"; {found.groups_dropped} groups with missing values dropped"
     subjects = (
         _subject(findings.ds, name, one, drawn[name, target])
         for target, one in found.targets.items()
