@@ -1,7 +1,7 @@
-# Everything runs from a fresh checkout with Python 3.11+, make and a package registry.
+# Everything runs from a fresh checkout with Python 3.11+, make and access to a package registry.
 PYTHON ?= python3
 BIN := .venv/bin
-# A stamp per set of packages: made again only when what it depends on has changed.
+# One stamp per set of packages, renewed only when what it depends on has changed.
 BASE := .venv/.installed
 TEST := .venv/.installed-test
 NOTEBOOK := .venv/.installed-notebook
@@ -19,7 +19,7 @@ run: $(BASE)
 	@echo
 	@echo "Results: results/beam-lifetime.nc and results/beam-sensitivity.nc, figures in folders"
 	@echo "         results/beam-lifetime and results/beam-sensitivity."
-	@echo "Next:    $(BIN)/uq report results/beam-lifetime.nc --open    all of it in your browser"
+	@echo "Next:    $(BIN)/uq report results/beam-lifetime.nc --open    everything in your browser"
 	@echo "         $(BIN)/uq init beam > studies/mine.toml             a study of your own to edit"
 	@echo "         make notebook                                      open JupyterLab"
 
@@ -32,7 +32,7 @@ test: $(TEST)
 slow: $(TEST)
 	@$(BIN)/python -m pytest -m slow
 
-# Kills, full disks, damaged files, done to real runs; a shorter selection is in "make test".
+# Kills, full disks and damaged files in real runs; "make test" has a shorter selection.
 faults: $(TEST)
 	@$(BIN)/python -m pytest tests/faults -m "slow or not slow"
 
@@ -45,12 +45,12 @@ figures: $(BASE)
 notebook: $(NOTEBOOK)
 	@$(BIN)/jupyter lab notebooks
 
-# Everything anew: Sphinx does not see when the declarations behind a table change.
+# Always from scratch: Sphinx does not notice changes of the declarations behind a table.
 docs: $(DOCS)
 	@$(BIN)/python -m sphinx -E -a -q -W --keep-going docs site
 	@echo "Documentation: site/index.html"
 
-# Every notebook again at full size, with its outputs: about ten minutes.
+# Run every notebook at full size and keep its outputs: about ten minutes.
 notebooks: $(TEST)
 	@$(BIN)/python notebooks/execute.py
 
@@ -64,7 +64,7 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.store
 	@$(BIN)/python -m benchmarks.large
 
-# How often each printed interval holds the truth: docs/coverage.md, in about an hour and a half.
+# Coverage of every reported interval: writes docs/coverage.md, in about an hour and a half.
 coverage: $(TEST)
 	@$(BIN)/python -m benchmarks.coverage
 
@@ -72,25 +72,25 @@ clean:
 	rm -rf .venv
 
 $(BASE): pyproject.toml constraints.txt
-	@echo "Making .venv and installing pinned packages (about two minutes, once) ..."
+	@echo "Creating .venv and installing pinned packages (about two minutes, once) ..."
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
-	  || { echo "Python 3.11 or newer is needed; try: make PYTHON=python3.11 $(MAKECMDGOALS)"; exit 1; }
+	  || { echo "Python 3.11 or newer is required; try: make PYTHON=python3.11 $(MAKECMDGOALS)"; exit 1; }
 	@$(PYTHON) -m venv .venv
 	@$(PIP) -e .
 	@touch $@
 
 $(TEST): $(BASE)
-	@echo "Adding the packages of the tests (some minutes, once) ..."
+	@echo "Installing the packages for the tests (a few minutes, once) ..."
 	@$(PIP) -e ".[test]"
 	@touch $@
 
 $(NOTEBOOK): $(BASE)
-	@echo "Adding the packages of the notebooks (some minutes, once) ..."
+	@echo "Installing the packages for the notebooks (a few minutes, once) ..."
 	@$(PIP) -e ".[notebook]"
 	@$(BIN)/python -m ipykernel install --prefix .venv --name vibrolife --display-name vibrolife >/dev/null
 	@touch $@
 
 $(DOCS): $(BASE)
-	@echo "Adding the packages of the documentation (some minutes, once) ..."
+	@echo "Installing the packages for the documentation (a few minutes, once) ..."
 	@$(PIP) -e ".[docs]"
 	@touch $@

@@ -1,9 +1,9 @@
 """The beam: effect of mesh and modes on work-rate and life, against 40 elements with all modes.
 
 Prints, for the paper's two cases, the error of the heavier site's work-rate and of the life to
-twice the gap, and what they cost: microseconds per forcing period and row, milliseconds per row
-for the modes, and for response and life together. Elements and modes are part of the model: this
-says how far apart models are, not how well one of them is solved. Everything on one core.
+twice the gap, and the cost: microseconds per forcing period and row, milliseconds per row for the
+modes, and for response and life together. Elements and modes are part of the model: this shows how
+much models differ, not how accurately one of them is solved. Everything on one core.
 """
 
 import numpy as np

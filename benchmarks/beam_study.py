@@ -1,11 +1,11 @@
 """Complete lifetime studies of the beam: run time and error, and those of the alternatives.
 
 For the paper's two cases: the wall time of the shipped lifetime study to a depth of one initial
-gap, by the command a user types, on two worker processes; the error of its lives, on rows solved
-again at the tightest settings, and how many of them lie beyond the errors stated; and the
-core-milliseconds of a row beside those of the paper's way, gaps that grow by increments with
+gap, by the command a user types, on two worker processes; the error of its lives, on rows computed
+again at the tightest settings, and how many of them are off by more than the stated errors; and the
+core-milliseconds of a row compared with the paper's method, gaps that grow in increments with
 settled work-rates at each, by the exact propagator and by Newmark's method, each at its cheapest
-setting that is as good.
+setting of equal accuracy.
 """
 
 import re
@@ -33,7 +33,7 @@ CASES = (
     ("beam-lifetime-561", 1000, {"accuracy": 0.04}, 0.02),
     ("beam-lifetime", 10_000, {"accuracy": 0.1, "steps_per_period": 64}, 0.01),
 )
-# Increments, tolerance of settled work, blocks of 64 periods where it never settles: cheap to dear.
+# Increments, tolerance of settled work, blocks of 64 periods if unsettled: by cost.
 WAYS = ((4, 1e-2, 8), (6, 1e-3, 16), (10, 1e-3, 32), (20, 1e-4, 64), (40, 1e-5, 128))
 NEWMARK_STEPS = (500, 500, 1000, 1000, 2000)
 
@@ -46,7 +46,7 @@ def text_of(name, rows, settings):
 
 
 def wall_time(study, folder):
-    """Return what the whole command takes [s]."""
+    """Return the run time of the complete command [s]."""
     command = [sys.executable, "-m", "uq", "run", study, "-o", folder / "out.nc"]
     began = time.perf_counter()
     subprocess.run([*command, "--workers", "2", "--quiet", "--fresh"], check=True)
@@ -83,7 +83,7 @@ def by_increments(rows, way, propagator, steps):
 
 
 def rival(name, rows, known, goal, own, propagator, every_steps):
-    """Print the cheapest way of a rival that is as good, and how many times dearer it is."""
+    """Print a rival's cheapest setting of equal accuracy, and its cost relative to ours."""
     by_increments(rows._replace(x=rows.x[:1]), WAYS[0], propagator, every_steps[0])  # compiles
     for way, steps in zip(WAYS, every_steps, strict=True):
         lives, seconds = by_increments(rows, way, propagator, steps)

@@ -17,7 +17,7 @@ class Rival(NamedTuple):
     run : callable
         ``run(rows, setting)`` returns the results of the first rows, row by row.
     settings : sequence of float
-        From cheap to dear.
+        From cheap to expensive.
     rows : int
         To be timed.
     """
@@ -44,7 +44,7 @@ def _seconds(function):
 
 
 def cheapest(settings, error, goal):
-    """Return the first setting, from cheap to dear, with an error below the goal, and the error."""
+    """Return the cheapest setting with an error below the goal, and the error."""
     for setting in settings:
         reached = error(setting)
         if reached <= goal:
@@ -67,7 +67,7 @@ def compare(rivals, error_of, known, goal, unit="", amount=1.0):
     unit : str
         Of the error, after a space.
     amount : float
-        What is done in a row, in the unit for which the time is told.
+        Work done in a row, in the unit to which times refer.
     """
     print(f"  largest error of up to {known} rows at most {goal:.0e}{unit}")
     chosen = {

@@ -88,7 +88,7 @@ class Stretch:
         return np.array(results)
 
     def by_taylor(self, batch):
-        """Return a function that runs with so many machines abreast."""
+        """Return a function that runs with so many machines side by side."""
 
         def run(rows, tolerance):
             if (batch, tolerance) not in self.made:

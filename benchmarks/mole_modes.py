@@ -1,7 +1,7 @@
 """The mole's modes as numbers, for tools that follow it from event to event.
 
-The equations have one form in all modes: a column of constants says which one holds, and how far
-from its end it is. The rules of friction are those of `models.mole.theory.friction`. Work of
+The equations have one form in all modes: a column of constants says which one applies, and how far
+its end is. The rules of friction are those of `models.mole.theory.friction`. Work of
 impacts and supply is counted in kilojoules and the voltage in hundreds of volts, so that no
 quantity is large.
 """

@@ -12,7 +12,7 @@ from models.mole.lanes.modes import mole_of
 
 
 class Taylor:
-    """Series to one tolerance, compiled for it and for so many machines abreast."""
+    """Series to one tolerance, compiled for it and for so many machines side by side."""
 
     def __init__(self, batch, tolerance):
         y = hy.make_vars(*(f"y_{i}" for i in range(modes.STATE)))

@@ -13,7 +13,9 @@ from typing import Any
 
 import typer
 from pydantic import BaseModel
+from pydantic_core import PydanticUndefined
 
+from uq.analysis.statistics.table import STATISTICS
 from uq.cli.app import app
 from uq.contract import Status
 from uq.designs.design import Design
@@ -245,7 +247,7 @@ def keys(name: str) -> str:
 
 
 def _default(found: Any) -> str:
-    if found is None or found == "" or found == () or found == {}:
+    if found is None or found is PydanticUndefined or found == "" or found == () or found == {}:
         return ""
     return f"`{value(found)}`"
 
@@ -318,9 +320,15 @@ def questions() -> str:
     plain = [f"`{name}`" for name, one in DESIGNS.items() if one.layout is PLAIN]
     dependent = [f"`{name}`" for name in for_dependent_inputs()]
     return table(("question", "method", "needs"), lines) + (
-        f"\n\nA plain sample is of design {', '.join(plain)}. {', '.join(dependent)} also take"
-        " dependent inputs, and imported rows that are not stated to be independent."
+        f"\n\nPlain samples come from the designs {', '.join(plain)}. {', '.join(dependent)} also"
+        " accept dependent inputs, and imported rows that are not stated to be independent."
     )
+
+
+def statistics() -> str:
+    """Tabulate what a summary may say of an output."""
+    lines = [(f"`{name}`", _first_line(make, "Yield")) for name, make in STATISTICS.items()]
+    return table(("statistics", ""), lines)
 
 
 def figures() -> str:

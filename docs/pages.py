@@ -1,4 +1,4 @@
-"""What a page says besides what is typed in it.
+"""The generated parts of the pages.
 
 A line ``{{ table argument }}`` in a page becomes what the function of that name in `generated`
 returns, and ``{{ text README }}`` a text of the repository's root: nothing is typed twice.

@@ -128,7 +128,7 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
     coverage : float
         Share of all values that must lie on the right side of a bound.
     confidence : float
-        Probability that it does.
+        Probability that it does; 0.95 and 0.95 give the 95/95 bounds.
 
     Returns
     -------

@@ -3,10 +3,12 @@
 import numpy as np
 from scipy import stats
 
-from benchmarks.coverage.lives import B_LIVES, FIT_ROWS, with_life
+from benchmarks.coverage.lives import FIT_ROWS, with_life
 from benchmarks.coverage.tally import Tally
-from uq.analysis.life_fit import fitted_laws
+from uq.analysis.life_fit import fits_of
+from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.lifetime import survival
+from uq.rows.elements import elements_of
 
 EARLY = 0.05
 """Share of lives that end by infant mortality."""
@@ -31,20 +33,20 @@ WRONG = {"gamma life, shape 2": stats.gamma(2.0), "life with 5 % infant mortalit
 
 
 def wrong_fits(repetitions):
-    """Count what a law that is not the right one makes of B-lives, where it is not refused."""
+    """Count the B-lives of a wrong law, where it is not rejected."""
     lines = []
     for name, law in WRONG.items():
         tally = Tally(f"{name}, {FIT_ROWS} independent rows", REASONS)
         rng = np.random.default_rng(1)
         for _ in range(repetitions):
             ds = with_life(law.rvs(FIT_ROWS, random_state=rng))
-            for family, fit in fitted_laws(ds, "life")["life"].items():
-                refused = "refused" in fit
-                tally.add(f"{family} refused", 1.0, 1.0, 2.0 if refused else 0.0)
-                if not refused:
+            for family, fit in fits_of(*elements_of(ds, ["life"]), independent=True).items():
+                tally.add(f"{family} refused", 1.0, 1.0, 2.0 if fit.refused else 0.0)
+                if not fit.refused:
                     for label, p in B_LIVES.items():
-                        marked = ", extrapolated" * fit[label]["extrapolated"]
-                        tally.entry(f"{label} of {family}{marked}", law.ppf(p), fit[label])
+                        marked = ", extrapolated" * (label in fit.extrapolated)
+                        found = fit.b_lives[label]
+                        tally.estimate(f"{label} of {family}{marked}", law.ppf(p), found)
         lines += tally.lines()
     return lines
 
@@ -53,7 +55,7 @@ WEIBULL = stats.weibull_min(2.0)
 
 
 def bands(repetitions):
-    """Count the bands that hold the whole curve, up to where they end."""
+    """Count the bands that contain the entire curve, up to where they end."""
     lines = []
     for never, censored in ((0.0, False), (0.6, False), (0.0, True), (0.6, True)):
         for rows in (100, 500):

@@ -125,10 +125,10 @@ def twin(repetitions):
     study = study_of("monte-carlo", 300, laws=UNIFORMS, analysis=analysis)
     tally = Tally("Ishigami, 300 independent rows and 30,000 of a cheap twin", REASONS)
     for ds in repeated(study, repetitions):
-        found = with_twin(ds, NAME)["outputs"]["ishigami"]
+        found = with_twin(ds, NAME).outputs["ishigami"]
         for hits, limit in limits.items():
-            entry = found[f"P(>{limit!r})"]
-            tally.entry(f"by the twin, {hits:g} hits expected", hits / 300, entry)
+            estimate = found[f"P(>{limit!r})"].estimate
+            tally.estimate(f"by the twin, {hits:g} hits expected", hits / 300, estimate)
     return tally.lines()
 
 

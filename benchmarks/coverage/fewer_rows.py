@@ -23,6 +23,7 @@ from benchmarks.coverage.problems import (
 )
 from benchmarks.coverage.tally import Tally
 from uq.analysis.twin import with_twin
+from uq.estimate import NOTHING
 from uq.exploring.design_points import design_points, drawn_around
 from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
 from uq.exploring.subset_simulation import subset_simulation
@@ -32,8 +33,6 @@ from uq.rows import stopping
 UNIFORMS = {
     name: {"distribution": "uniform", "lower": 0.0, "upper": 1.0} for name in ("x1", "x2", "x3")
 }
-
-NOT_GIVEN = dict.fromkeys(("value", "low", "high"))
 
 
 def twin(repetitions):
@@ -46,10 +45,12 @@ def twin(repetitions):
     study = study_of("monte-carlo", 300, laws=UNIFORMS, analysis=analysis)
     tally = Tally("Ishigami, 300 independent rows and 30,000 of a cheap twin", REASONS)
     for ds in repeated(study, repetitions):
-        found = with_twin(ds, NAME)["outputs"]["ishigami"]
+        found = with_twin(ds, NAME).outputs["ishigami"]
         # A sample in a thousand seems to have a tail too heavy for a mean.
-        tally.entry("mean by the twin", ISHIGAMI_MEAN, found.get("mean", NOT_GIVEN))
-        tally.entry("P(> 9.0) by the twin", 1 - ishigami_cdf(9.0), found["P(>9.0)"])
+        mean = found["mean"].estimate if "mean" in found else NOTHING
+        tally.estimate("mean by the twin", ISHIGAMI_MEAN, mean)
+        above = found["P(>9.0)"].estimate
+        tally.estimate("P(> 9.0) by the twin", 1 - ishigami_cdf(9.0), above)
     return tally.lines()
 
 

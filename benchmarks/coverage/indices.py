@@ -171,7 +171,7 @@ DELTA = {"x1": 0.256, "x2": 0.424, "x3": 0.207}
 
 
 def bootstraps(repetitions):
-    """Count what SALib prints beside indices that have no interval in our tables."""
+    """Count the intervals that SALib reports for indices without an interval in our tables."""
     rows = "Ishigami, 1024 rows; no interval of ours"
     tally = Tally(rows)
     for seed in range(repetitions):

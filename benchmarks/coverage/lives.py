@@ -10,11 +10,12 @@ from scipy import stats
 from benchmarks.coverage.problems import ENDS, LIFE, MIXED, computed, never_cdf, repeated, study_of
 from benchmarks.coverage.tally import Tally
 from uq.analysis.as_json import summary_json
-from uq.analysis.life_fit import fitted_laws
+from uq.analysis.life_fit import fits_of
+from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.lifetime import survival
 from uq.analysis.summary import summarise
+from uq.rows.elements import elements_of
 
-B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
 TIMES = (0.3, 0.8)
 
 
@@ -74,7 +75,7 @@ LEAVING = {"distribution": "exponential", "mean": 1.0}
 
 
 def mixed(design, samples, repetitions):
-    """Count what is said of lives of which most never end and the others may be censored.
+    """Count the statistics of lives most of which never end and the others may be censored.
 
     Parameters
     ----------
@@ -162,14 +163,14 @@ def fits(law, censored, repetitions):
     )
     for ds in repeated(study, repetitions):
         ds = _cut(ds, truth.ppf(0.7)) if censored else ds
-        fit = fitted_laws(ds, "life")["life"][law]
-        tally.add("not refused, where the law is true", 1.0, 1.0, 2.0 - ("refused" in fit) * 2)
-        if "refused" in fit:
+        fit = fits_of(*elements_of(ds, ["life"]), independent=True)[law]
+        tally.add("not refused, where the law is true", 1.0, 1.0, 2.0 - bool(fit.refused) * 2)
+        if fit.refused:
             continue
-        for name, found in fit["parameters"].items():
-            tally.entry(name, parameters[name], found)
+        for name, found in fit.parameters.items():
+            tally.estimate(name, parameters[name], found)
         for name, p in B_LIVES.items():
-            tally.entry(name, truth.ppf(p), fit[name])
+            tally.estimate(name, truth.ppf(p), fit.b_lives[name])
         if not censored:
             _asymptotic(tally, law, ds["life"].values, parameters)
     return tally.lines()

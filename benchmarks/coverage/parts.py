@@ -29,7 +29,7 @@ class Part(NamedTuple):
     count : callable
         ``count(repetitions)`` -> lines.
     repetitions : int
-        Fewer where others are dear.
+        Fewer where the other tools are expensive.
     """
 
     count: Callable[[int], list[Line]]

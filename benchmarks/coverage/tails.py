@@ -71,7 +71,7 @@ def _count(tally, what, truth, interval, refused):
 
 
 def _held(truth, interval, excused):
-    """Return an interval that holds 1 if the given one holds the truth or is excused."""
+    """Return an interval that contains 1 if the given one contains the truth or is excused."""
     held = excused or interval.low <= truth <= interval.high
     return 1.0, 2.0 if held else 0.0
 

@@ -81,6 +81,10 @@ class Tally:
         """Count the interval of an entry with ``low`` and ``high``."""
         self.add(what, truth, entry["low"], entry["high"], by)
 
+    def estimate(self, what, truth, estimate, by=OURS):
+        """Count the interval of an `uq.estimate.Estimate`."""
+        self.add(what, truth, estimate.low, estimate.high, by)
+
     def lines(self):
         """Return what was counted."""
         return [self._line(what, by, held) for (what, by), held in self._held.items()]

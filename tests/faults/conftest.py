@@ -12,7 +12,6 @@ import command
 import pytest
 
 from uq.store.folder import history
-from uq.store.records import RowsRecord
 
 PATIENCE = 180.0
 """How long a busy machine may take for what should take a moment [s]."""
@@ -22,7 +21,7 @@ OUTCOMES = {
     "SIGKILL of a run that has kept no row": "resumes, bit-identical",
     "SIGKILL of a run with workers": "no process is left; resumes, bit-identical",
     "SIGKILL during the merge": "resumes, bit-identical",
-    "SIGKILL of a run that stops when it knows enough": "stops at the same size, bit-identical",
+    "SIGKILL of a run that stops early": "stops at the same size, bit-identical",
     "[design] until edited between runs": "resumes up to an interim size, same rows",
     "SIGKILL of an extension": "the old result is kept; resumes, bit-identical",
     "Ctrl-C": "explains how to resume; bit-identical",
@@ -184,7 +183,8 @@ class Kept(NamedTuple):
 
 def kept():
     """Return how many chunk files and rows the journal names."""
-    records = [record for record in history(ROWS) if isinstance(record, RowsRecord)]
+    found = history(ROWS)
+    records = found.chunks if found else []
     return Kept(len(records), sum(record.rows for record in records))
 
 

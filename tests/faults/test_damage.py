@@ -101,7 +101,7 @@ def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call,
     assert code == 1
     assert said.count("\n") == 1
     assert said.startswith(f"{ROWS}: could not be written: File too large; ")
-    assert said.endswith(" of 1500 rows are kept, and the same command goes on from there\n")
+    assert said.endswith(" of 1500 rows are kept, and the same command resumes the run\n")
     assert not OUT.exists()
     assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
     injected("file-size limit", 2)
@@ -110,7 +110,7 @@ def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call,
     assert code == 1
     assert said.count("\n") == 1
     assert said.startswith(f"{OUT}: could not be written: ")  # in the merge this time
-    assert said.endswith("; the rows are kept, and the same command goes on from there\n")
+    assert said.endswith("; the rows are kept, and the same command resumes the run\n")
     assert not OUT.exists()
     assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
     code, said = call("run", study, *MODEL[:-1])
@@ -148,7 +148,7 @@ def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call
     assert code == 1
     assert said.count("\n") == 1
     assert said.startswith(f"{rows}: could not be written: No space left on device; ")
-    assert said.endswith(" of 1500 rows are kept, and the same command goes on from there\n")
+    assert said.endswith(" of 1500 rows are kept, and the same command resumes the run\n")
     assert not out.exists()
     assert {path.suffix for path in rows.iterdir()} == {"", ".rows"}
     filler.unlink()

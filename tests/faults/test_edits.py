@@ -100,8 +100,8 @@ def test_rows_of_an_edited_model_are_mixed_on_request_alone(
     model.write_text(model.read_text() + "# edited\n")
     injected("code of the model edited between runs", 2)
     refused = (
-        f"{OUT}: holds rows that other code of model 'patient' computed, whose version was left as "
-        "it was; start anew with uq run --fresh, or go on with --mixed\n"
+        f"{OUT}: holds rows that other code of model 'patient' computed, although its version is "
+        "the same; start anew with uq run --fresh, or go on with --mixed\n"
     )
     before = {path.name for path in ROWS.iterdir()} - {"lock"}
     assert call("run", study, *options) == (2, refused)

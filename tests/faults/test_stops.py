@@ -83,7 +83,7 @@ def test_kills_of_a_run_that_stops_when_it_knows_enough(study, under_way, call, 
     assert call("run", study, *MODEL, "-o", "undisturbed.nc") == (0, "")
     for _ in range(3):
         under_way(study).kill()
-        injected("SIGKILL of a run that stops when it knows enough")
+        injected("SIGKILL of a run that stops early")
     assert call("run", study, *MODEL) == (0, "")
     assert 47 < uq.open_result(OUT).attrs["samples"] < 1500
     assert OUT.read_bytes() == (OUT.parents[1] / "undisturbed.nc").read_bytes()

@@ -9,7 +9,6 @@ from scipy import stats
 
 import uq as api
 from uq import order_statistics
-from uq.analysis.life_fit import fitted_laws
 from uq.analysis.overview import summary
 from uq.analysis.summary import summarise
 from uq.analysis.widths import expected_widths
@@ -79,14 +78,10 @@ def found(ds):
 
 
 def test_a_fitted_life_beyond_the_rows_is_called_extrapolated():
-    fits = fitted_laws(lives(60), "life")["life"]
-    for law in ("weibull", "lognormal"):
-        assert "refused" not in fits[law]
-        assert fits[law]["B1"]["extrapolated"] is True
-        assert not fits[law]["B10"]["extrapolated"]
-        assert "no proof" in fits[law]["assumes"]
-    more = fitted_laws(lives(120), "life")["life"]["weibull"]
-    assert more["B1"]["extrapolated"] is False
+    fits = api.life_fits(lives(60), "life")
+    assert (fits["refused"] == "").all() and fits["assumes"].str.contains("no proof").all()
+    assert fits["B1_extrapolated"].all() and not fits["B10_extrapolated"].any()
+    assert not api.life_fits(lives(120), "life").loc[("life", "weibull"), "B1_extrapolated"]
 
 
 def test_laws_stand_side_by_side(uq, folder):

@@ -113,7 +113,7 @@ def test_lives_fits_and_regimes_are_shown(uq, folder):
     ds = with_output(linear(samples=300), "life", life, "lifetime")
     ds.to_netcdf("life.nc")
     shown = uq("summary", "life.nc", "--fits").out
-    assert "B10" in shown and "lognormal: does not fit" in shown and "variance between" not in shown
+    assert "B10" in shown and "lognormal: rejected" in shown and "variance between" not in shown
     assert (
         "fits" in strict_json(uq("summary", "life.nc", "--fits", "--json").out)["outputs"]["life"]
     )

@@ -13,9 +13,11 @@ from computed import UNIFORM, asking, computed, study_of, summarised, with_outpu
 from scipy import stats
 from scipy.optimize import brentq
 
-from uq.analysis.life_fit import fitted_laws
+from uq.analysis.life_fit import fits_of
+from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.lifetime import survival
 from uq.analysis.regime_split import between_share
+from uq.rows.elements import elements_of
 
 REPETITIONS = 200
 
@@ -291,15 +293,15 @@ def test_fitted_laws(horizon):
     for ds in repeat("exponential-wear", ("monte-carlo", 60, 1), WEAR):
         life = ds["life"].values
         ds = with_output(ds, "seen", np.minimum(life, horizon), "lifetime", life > horizon)
-        fit = fitted_laws(ds, "seen")["seen"]["lognormal"]
-        refused += "refused" in fit
-        if "refused" in fit:
+        fit = fits_of(*elements_of(ds, ["seen"]), independent=True)["lognormal"]
+        refused += bool(fit.refused)
+        if fit.refused:
             continue
         truth = {"median": LIFE.median(), "sigma": np.hypot(SIGMA, SPREAD)}
-        for name, found in fit["parameters"].items():
-            tally.add(name, truth[name], found["low"], found["high"])
-        for name, p in {"B1": 0.01, "B10": 0.1, "B50": 0.5}.items():
-            tally.add(name, LIFE.ppf(p), fit[name]["low"], fit[name]["high"])
+        for name, found in fit.parameters.items():
+            tally.add(name, truth[name], found.low, found.high)
+        for name, p in B_LIVES.items():
+            tally.add(name, LIFE.ppf(p), fit.b_lives[name].low, fit.b_lives[name].high)
     assert stats.binomtest(refused, REPETITIONS, 0.05).pvalue > 1e-3
     tally.check(conservative=("median", "sigma", "B1", "B10", "B50"))
 

@@ -98,7 +98,7 @@ def check_ended(process, sentence):
     *before, last = err.splitlines()
     assert before in ([], [COMPILING])
     assert last.startswith(sentence)
-    assert Path("results").exists() == err.endswith("; the same command goes on from there\n")
+    assert Path("results").exists() == err.endswith("; the same command resumes the run\n")
 
 
 @pytest.mark.parametrize("send", [to_process, to_group])

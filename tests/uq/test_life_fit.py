@@ -6,7 +6,7 @@ from scipy import stats
 
 import uq
 from uq.analysis import life_quantiles
-from uq.analysis.life_fit import fitted_laws
+from uq.analysis.as_json import summary_json
 from uq.analysis.location_scale import FAMILIES, anderson_darling, fit
 from uq.analysis.summary import summarise
 from uq.errors import InputError
@@ -19,6 +19,10 @@ LOGNORMAL = stats.lognorm(0.6, scale=2e5)
 def lives(values, censored=None, method="monte-carlo", **analysis):
     ds = with_output(linear(method, samples=len(values)), "life", values, "lifetime", censored)
     return asking(ds, outputs=["life"], **analysis)
+
+
+def fitted(ds, law):
+    return uq.life_fits(ds, "life").loc[("life", law)]
 
 
 def sample(law, n=400, seed=1):
@@ -42,9 +46,9 @@ def test_parameters_are_those_of_openturns():
     factory = ot.WeibullMinFactory()
     factory.setKnownParameter([0.0], [2])
     found = factory.build(ot.Sample(life[:, None])).getParameter()
-    parameters = fitted_laws(lives(life), "life")["life"]["weibull"]["parameters"]
-    assert parameters["scale"]["value"] == pytest.approx(found[0], rel=1e-3)
-    assert parameters["shape"]["value"] == pytest.approx(found[1], rel=1e-3)
+    law = fitted(lives(life), "weibull")
+    assert law["scale"] == pytest.approx(found[0], rel=1e-3)
+    assert law["shape"] == pytest.approx(found[1], rel=1e-3)
 
 
 def test_distance_is_that_of_anderson_and_darling():
@@ -60,20 +64,21 @@ def test_distance_is_that_of_anderson_and_darling():
     [(WEIBULL, "weibull", "lognormal"), (LOGNORMAL, "lognormal", "weibull")],
 )
 def test_the_right_law_fits_and_the_wrong_one_is_refused(law, right, wrong):
-    found = fitted_laws(lives(sample(law)), "life")["life"]
-    assert found[right]["p_value"] > 0.05 > found[wrong]["p_value"]
-    assert "does not fit" in found[wrong]["refused"] and "parameters" not in found[wrong]
+    found = uq.life_fits(lives(sample(law)), "life").loc["life"]
+    good, bad = found.loc[right], found.loc[wrong]
+    assert good["p_value"] > 0.05 > bad["p_value"]
+    assert "rejected" in bad["refused"] and bad[["B10", "shape", "median"]].isna().all()
     for name, p in life_quantiles.B_LIVES.items():
-        b_life = found[right][name]
-        assert b_life["low"] < law.ppf(p) < b_life["high"]
-        assert b_life["value"] == pytest.approx(law.ppf(p), rel=0.25)
-    for index in found[right]["parameters"].values():
-        assert index["low"] < index["value"] < index["high"]
+        assert good[f"{name}_low"] < law.ppf(p) < good[f"{name}_high"]
+        assert good[name] == pytest.approx(law.ppf(p), rel=0.25)
+    for name in {"weibull": ("shape", "scale"), "lognormal": ("median", "sigma")}[right]:
+        assert good[f"{name}_low"] < good[name] < good[f"{name}_high"]
 
 
-def test_fits_are_a_table():
+def test_fits_are_a_table_and_in_json():
     life = lives(sample(LOGNORMAL))
-    table, entries = uq.life_fits(life, "life"), fitted_laws(life, "life")["life"]
+    table = uq.life_fits(life, "life")
+    entries = summary_json(summarise(life, fits=True))["outputs"]["life"]["fits"]
     assert table.index.to_list() == [("life", "weibull"), ("life", "lognormal")]
     good, bad = table.loc[("life", "lognormal")], table.loc[("life", "weibull")]
     assert good["refused"] == "" and bad["refused"] == entries["weibull"]["refused"]
@@ -87,10 +92,10 @@ def test_fits_are_a_table():
 
 def test_few_rows_have_the_exact_interval_of_a_lognormal_median():
     life = sample(LOGNORMAL, 20, seed=2)
-    median = fitted_laws(lives(life), "life")["life"]["lognormal"]["parameters"]["median"]
+    law = fitted(lives(life), "lognormal")
     logarithms = np.log(life)
     exact = stats.ttest_1samp(logarithms, 0).confidence_interval()
-    found = np.log([median[end] for end in ("low", "high")])
+    found = np.log(law[["median_low", "median_high"]].to_numpy(float))
     # The normal law's interval would be shorter by 6 %.
     assert found - logarithms.mean() == pytest.approx(exact - logarithms.mean(), rel=0.02)
 
@@ -105,10 +110,10 @@ def test_what_cannot_be_fitted_is_refused():
         (good, np.arange(400) >= 19, "only 19 rows ended"),
         (np.full(400, 5.0), None, "share fewer than 20 values"),
     ):
-        found = fitted_laws(lives(values, censored), "life")["life"]
-        assert all(sentence in one["refused"] for one in found.values())
-    for one in fitted_laws(lives(good, method="halton"), "life")["life"].values():
-        assert "independent rows" in one["refused"]
+        found = uq.life_fits(lives(values, censored), "life")
+        assert found["refused"].str.contains(sentence).all()
+    found = uq.life_fits(lives(good, method="halton"), "life")
+    assert found["refused"].str.contains("independent rows").all()
     with pytest.raises(InputError, match="not a lifetime"):
         uq.life_fits(linear(), "y")
 

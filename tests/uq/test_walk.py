@@ -20,6 +20,7 @@ from computed import (
 import uq
 from uq.analysis.convergence import enough, running_estimates
 from uq.analysis.twin import with_twin
+from uq.cli.estimates import twin_json
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.exploring.rare_events import METHODS as RARE
@@ -225,7 +226,7 @@ def test_twin(damage):
         ds = ds.isel(sample=slice(None, 193))
     elif damage == "constant":
         ds["y"][:] = 0.1
-    found = strict(with_twin(ds, PAIRED))["outputs"]
+    found = strict(twin_json(with_twin(ds, PAIRED)))["outputs"]
     if damage == "all failed":
         assert found == {}
         return

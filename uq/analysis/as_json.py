@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable
 from itertools import groupby
+from math import isfinite
 from typing import Any
 
 from uq import json_form
 from uq.analysis.compared import Compared, ComparedOutput, Comparison, OnlyChange, Side
+from uq.analysis.life_fit import Fit
 from uq.analysis.statistics.statistic import JSON
 from uq.analysis.statistics.table import EMPTY, JSON_ORDER
 from uq.analysis.summary import Described, Summary, regime_json
@@ -49,7 +51,25 @@ def _described(one: Described) -> dict[str, Any]:
         for (parent, _), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.write)):
             members = list(group)
             _put(found, parent, members[0].kind.write(members))
-    return found | ({"fits": one.fits} if one.fits else {})
+    fits = {law: _fit(fit) for law, fit in one.fits.items()}
+    return found | ({"fits": fits} if fits else {})
+
+
+def _fit(fit: Fit) -> dict[str, Any]:
+    found: dict[str, Any] = {"rows": fit.rows}
+    if isfinite(fit.p_value):
+        found["p_value"] = fit.p_value
+    if fit.refused:
+        return found | {"refused": fit.refused}
+    parameters = {name: json_form.numbers(one) for name, one in fit.parameters.items()}
+    return (
+        found
+        | {"parameters": parameters, "assumes": fit.assumes}
+        | {
+            name: json_form.numbers(one) | {"extrapolated": name in fit.extrapolated}
+            for name, one in fit.b_lives.items()
+        }
+    )
 
 
 def _put(found: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> None:

@@ -16,6 +16,8 @@ from uq.indices.targets import split_name
 from uq.methods.registry import METHODS, piloted_by
 from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
 
+COLUMNS = ["output", "estimate", "samples", "value", "low", "high", "kind", "input"]
+
 _FEWEST = 16  # samples
 
 
@@ -34,8 +36,8 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     pandas.DataFrame
         Columns ``output`` (its element), ``estimate`` (``mean``, ``quantile 0.5``, ``P(>t)``,
         ``P(<t)``, and ``S1 x``, ``ST x`` for a crossed design), ``samples``, ``value``, ``low``,
-        ``high``. Sizes double up to the whole result. Each interval is for its own number of
-        samples: all of them together hold the truth less often than 95 %.
+        ``high``; of an index also its ``kind`` and ``input``, elsewhere "". Sizes double up to the
+        whole result. The intervals are pointwise.
 
     Raises
     ------
@@ -52,19 +54,18 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     names = None if output is None else {element.name for element in named_elements(ds, output)}
     targets = _targets(ds)
     lines = [
-        (name, label, samples, *estimate)
+        (name, label, samples, *numbers, *index)
         for samples in _sizes(ds)
-        for name, label, estimate in _estimates(
+        for name, label, numbers, *index in _estimates(
             ds.isel(sample=ds["group"].values < samples), targets
         )
         if names is None or split_name(name)[1] in names
     ]
-    columns = ["output", "estimate", "samples", "value", "low", "high"]
-    return pd.DataFrame(lines, columns=columns)
+    return pd.DataFrame(lines, columns=COLUMNS)
 
 
 def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
-    """Hold the error of sampling against the errors of the rows themselves.
+    """Compare the error of sampling with the errors of the rows themselves.
 
     Parameters
     ----------
@@ -79,8 +80,8 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
         Index: element of an output. ``estimate``, its mean or, where rows never end or are
         censored or the tail is heavy, its median; ``sampling``, the half-width of its interval;
         ``own``, the mean magnitude of ``<output>_error``, the error of solver and time averages
-        that the model gives for each row (NaN where it gives none): what the estimate would be off
-        by if they all lay on one side; ``warning``, not empty where `own` is the larger: then more
+        that the model gives for each row (NaN where it gives none): the error of the estimate if
+        all of them had the same sign; ``warning``, not empty where `own` is the larger: then more
         rows do not help.
     """
     found = summarise(ds).outputs
@@ -94,15 +95,11 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
         known = one is not None and one.estimate.has_interval
         sampling = (one.estimate.high - one.estimate.low) / 2 if one and known else np.nan
         own = _own_error(ds, element)
-        lines[element.name] = {
-            "estimate": label,
-            "sampling": sampling,
-            "own": own,
-            "warning": _warning(element, sampling, own),
-        }
+        lines[element.name] = (label, sampling, own, _warning(element, sampling, own))
     columns = ["estimate", "sampling", "own", "warning"]
-    index = pd.Index(list(lines), name="output")
-    return pd.DataFrame(list(lines.values()), index=index, columns=columns)
+    return pd.DataFrame(
+        list(lines.values()), index=pd.Index(list(lines), name="output"), columns=columns
+    )
 
 
 def _warning(element: Element, sampling: float, own: float) -> str:
@@ -134,8 +131,8 @@ def _sizes(ds: xr.Dataset) -> list[int]:
     if not (DESIGNS[method].append_only or are_independent(ds)):
         able = " or ".join(f"'{name}'" for name, design in DESIGNS.items() if design.append_only)
         raise InputError(
-            f"the first rows of a '{method}' design are no such design, so nothing can be said of"
-            f" fewer samples; the designs that grow are {able}"
+            f"the first rows of a '{method}' design are not a design of that kind, so there are no"
+            f" estimates from fewer samples; the designs that can be extended are {able}"
         )
     sizes = [size]
     while (size := -(-size // 2)) >= _FEWEST:
@@ -143,11 +140,8 @@ def _sizes(ds: xr.Dataset) -> list[int]:
     return sizes[::-1]
 
 
-Numbers = tuple[float, float, float]
-
-
 def _targets(ds: xr.Dataset) -> list[str]:
-    """Return what all rows have indices of: whether a life has a logarithm may change with rows."""
+    """Return the targets of all rows: of fewer rows a life may have a logarithm, of all none."""
     method = _method(ds)
     return list(sensitivities(ds, method).targets) if method else []
 
@@ -159,13 +153,17 @@ def _method(ds: xr.Dataset) -> str | None:
     return name if name and groups >= METHODS[name].least else None
 
 
-def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[tuple[str, str, Numbers]]:
+Line = tuple[str, str, tuple[float, float, float], str, str]
+
+
+def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[Line]:
+    """Yield output, label, value with interval, and the kind and input of an index."""
     for name, output in summarise(ds).outputs.items():
         for one in output.statistics:
             if one.is_read_by(RUNNING):
-                yield name, one.label, one.estimate.finite.numbers
+                yield name, one.label, one.estimate.finite.numbers, "", ""
     if method := _method(ds):
         for name, found in sensitivities(ds, method, targets).targets.items():
             for kind, values in found.kinds().items():
-                for parameter, index in values.items():
-                    yield name, f"{kind.key} {parameter}", index.numbers
+                for label, index in values.items():
+                    yield name, f"{kind.key} {label}", index.numbers, kind.key, label

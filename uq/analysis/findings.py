@@ -5,13 +5,11 @@ from functools import cached_property
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.convergence import running_estimates
+from uq.analysis.convergence import COLUMNS, running_estimates
 from uq.analysis.summary import Summary, summarise
 from uq.errors import InputError
 from uq.indices.sensitivities import Sensitivities, sensitivities
 from uq.rows.elements import elements_of, independent_rows, output_names
-
-_COLUMNS = ["output", "estimate", "samples", "value", "low", "high"]
 
 
 class Findings:
@@ -59,7 +57,7 @@ class Findings:
         try:
             return running_estimates(self.ds), ""
         except InputError as refused:
-            return pd.DataFrame(columns=_COLUMNS), str(refused)
+            return pd.DataFrame(columns=COLUMNS), str(refused)
 
     def sensitivities(self, method: str) -> Sensitivities:
         """Return what `uq.indices.sensitivities.sensitivities` finds by a method.

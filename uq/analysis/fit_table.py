@@ -1,18 +1,20 @@
-"""Laws fitted to a lifetime, as a table to look at and to compute with."""
+"""Laws fitted to a lifetime as a table."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.life_fit import fitted_laws
+from uq.analysis.life_fit import Fit, fits_of
 from uq.analysis.life_quantiles import B_LIVES
+from uq.rows.elements import independent_rows, lifetimes, replicates_of
 
 _PARAMETERS = ("shape", "scale", "median", "sigma")
+_FACTS = ("rows", "p_value", "refused", "assumes")
+_ENDS = ("", "_low", "_high")
 _COLUMNS = [
-    *("rows", "p_value", "refused", "assumes"),
-    *(f"{name}{end}" for name in (*_PARAMETERS, *B_LIVES) for end in ("", "_low", "_high")),
+    *_FACTS,
+    *(f"{name}{end}" for name in (*_PARAMETERS, *B_LIVES) for end in _ENDS),
     *(f"{name}_extrapolated" for name in B_LIVES),
 ]
 
@@ -59,23 +61,25 @@ def life_fits(ds: xr.Dataset, output: str) -> pd.DataFrame:
     >>> laws = uq.life_fits(uq.run("studies/exponential-wear.toml"), "life").loc["life"]
     >>> laws.loc["lognormal", "sigma"].round(1).item()
     0.5
-    >>> laws.loc["weibull", "refused"].startswith("does not fit")
+    >>> laws.loc["weibull", "refused"].startswith("rejected")
     True
     """
-    found = fitted_laws(ds, output)
-    lines = {(name, law): _line(one) for name, laws in found.items() for law, one in laws.items()}
+    rows = independent_rows(ds)
+    independent = replicates_of(rows) is None
+    lines = {
+        (element.name, law): _line(fit)
+        for element in lifetimes(rows, output)
+        for law, fit in fits_of(element, independent).items()
+    }
     index = pd.MultiIndex.from_tuples(list(lines), names=["output", "law"])
     return pd.DataFrame(list(lines.values()), index=index, columns=_COLUMNS)
 
 
-def _line(entry: Mapping[str, Any]) -> dict[str, Any]:
-    line = {
-        "rows": entry["rows"],
-        "p_value": entry.get("p_value", float("nan")),
-        "refused": entry.get("refused", ""),
-        "assumes": entry.get("assumes", ""),
+def _line(fit: Fit) -> dict[str, Any]:
+    numbers = {
+        f"{name}{end}": number
+        for name, one in {**fit.parameters, **fit.b_lives}.items()
+        for end, number in zip(_ENDS, one.numbers, strict=True)
     }
-    lives = {name: entry[name] for name in B_LIVES if name in entry}
-    for name, one in (entry.get("parameters", {}) | lives).items():
-        line |= {name if key == "value" else f"{name}_{key}": number for key, number in one.items()}
-    return line
+    extrapolated = {f"{name}_extrapolated": name in fit.extrapolated for name in fit.b_lives}
+    return {name: getattr(fit, name) for name in _FACTS} | numbers | extrapolated

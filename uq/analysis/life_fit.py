@@ -1,32 +1,34 @@
 """Weibull and lognormal laws fitted to lifetimes, and refused where they do not fit."""
 
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any, NamedTuple
+from math import nan
+from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.location_scale import FAMILIES, Family, anderson_darling, fit
+from uq.estimate import Estimate
 from uq.intervals import CONFIDENCE
 from uq.order_statistics import is_within
-from uq.rows.elements import Element, Floats, Mask, independent_rows, lifetimes, replicates_of
+from uq.rows.elements import Element, Floats, Mask
 
 MIN_ENDED = 20
-"""Fewer ended lives than this fit every law."""
+"""With fewer ended lives than this every law fits."""
 
 MAX_ROWS = 2000
-"""More rows would refuse every law for differences that no one cares about."""
+"""More rows would reject every law for negligible differences."""
 
 REFITS = 4999
-"""Samples drawn from the fitted law, and fitted again; of many rows fewer, down to a fifth.
+"""Samples drawn from the fitted law and refitted; for large samples fewer, down to a fifth.
 
-With so many an interval of 95 % covers 95 %, give or take 0.3 % for the luck of the draw; with a
-fifth of them, 0.7 %.
+The coverage of an interval of 95 % is then known to 0.3 %; with a fifth of them, to 0.7 %.
 """
 
 MOST_DRAWN = 400 * REFITS
-"""Lives drawn for them all."""
+"""Lives drawn for all of them together, at most."""
 
 LEVEL = 0.05
 
@@ -36,33 +38,46 @@ INDEPENDENT_ONLY = (
 )
 
 ASSUMES = (
-    "that lives follow this law: that a test of {rows} rows does not refuse it is no proof, least"
-    " of all where no row lies"
+    "that lives follow this law: a test of {rows} rows that does not reject it is no proof, least"
+    " of all beyond the range of the rows"
 )
 """What every number of an accepted law rests on."""
 
 
-def fitted_laws(ds: xr.Dataset, output: str) -> dict[str, dict[str, Any]]:
-    """Fit every law to a lifetime; see `uq.life_fits`.
+@dataclass(frozen=True)
+class Fit:
+    """A law fitted to a lifetime, or the reason why it does not apply.
 
-    Returns
-    -------
-    dict
-        Name of element -> ``weibull`` and ``lognormal`` -> ``p_value`` of the Anderson-Darling
-        test, its law from refits; where it is above `LEVEL`, ``parameters`` (shape and scale [s];
-        median [s] and sigma, named as in study files) and ``B1``, ``B10``, ``B50`` [s], each with
-        ``value``, ``low``, ``high``, and ``extrapolated``: whether it is earlier than the rows
-        reach, 1/(n + 1); ``assumes``, a sentence; else ``refused``, a sentence. ``rows``: how many
-        were used.
+    Attributes
+    ----------
+    rows : int
+        How many were used.
+    p_value : float
+        Of the Anderson-Darling test, its law from refits; NaN where there is no fit.
+    refused : str
+        Why the law does not apply, or ""; then there is nothing below.
+    parameters : dict of str to Estimate
+        Shape and scale [s], or median [s] and sigma, named as in study files.
+    b_lives : dict of str to Estimate
+        ``B1``, ``B10``, ``B50`` [s].
+    extrapolated : frozenset of str
+        Those earlier than the rows reach, 1/(n + 1).
+    assumes : str
+        What all of these rest on.
     """
-    rows = independent_rows(ds)
-    independent = replicates_of(rows) is None
-    return {one.name: fits_of(one, independent) for one in lifetimes(rows, output)}
+
+    rows: int
+    p_value: float = nan
+    refused: str = ""
+    parameters: Mapping[str, Estimate] = field(default_factory=dict)
+    b_lives: Mapping[str, Estimate] = field(default_factory=dict)
+    extrapolated: frozenset[str] = frozenset()
+    assumes: str = ""
 
 
-def fits_of(element: Element, independent: bool) -> dict[str, Any]:
-    """Fit every law to one element of a lifetime; see `fitted_laws`."""
-    return {law: _one(law, element, independent) for law in FAMILIES}
+def fits_of(element: Element, independent: bool) -> dict[str, Fit]:
+    """Fit every law to one element of a lifetime; name of the law -> `Fit`."""
+    return {law: _fit(law, element, independent) for law in FAMILIES}
 
 
 class _Sample(NamedTuple):
@@ -72,49 +87,48 @@ class _Sample(NamedTuple):
     ended: Mask
 
 
-def _one(law: str, element: Element, independent: bool) -> dict[str, Any]:
+def _fit(law: str, element: Element, independent: bool) -> Fit:
     life = element.at_least[:MAX_ROWS]
-    ended = ~element.censored[element.present][:MAX_ROWS]
-    entry: dict[str, Any] = {"rows": len(life)}
+    ended, n = ~element.censored[element.present][:MAX_ROWS], len(life)
     if problem := _problem(life, ended, independent):
-        return entry | {"refused": problem}
+        return Fit(n, refused=problem)
     family = FAMILIES[law]
     seen = _sorted(np.log(life)[None], ended[None])
     location, scale = (value[0] for value in fit(family, *seen))
     locations, scales, distances = _refits(law, location, scale, seen)
     kept = np.isfinite(locations)
     if not np.isfinite(scale) or kept.mean() < CONFIDENCE:
-        return entry | {"refused": "the likelihood has no maximum that can be found"}
+        return Fit(n, refused="the likelihood has no maximum that can be found")
     distances = distances[kept]
     distance = _distance(family, location[None], scale[None], seen)
-    entry["p_value"] = float((1 + (distances >= distance).sum()) / (1 + len(distances)))
-    if entry["p_value"] < LEVEL:
-        return entry | {
-            "refused": f"does not fit: lives of this law lie as far from it in only"
-            f" {entry['p_value']:.1%} of samples"
-        }
+    p_value = float((1 + (distances >= distance).sum()) / (1 + len(distances)))
+    if p_value < LEVEL:
+        return Fit(n, p_value, f"rejected, p = {p_value:.2g}")
     locations, scales = locations[kept], scales[kept]
 
-    def at(w: float) -> dict[str, Any]:
+    def at(w: float) -> Estimate:
         pivot = (locations + w * scales - location - w * scale) / scales
         value = location + w * scale
-        return _interval(value, value - scale * pivot)
+        return _exponential(value, value - scale * pivot)
 
-    spread = _interval(np.log(scale), np.log(scale) - np.log(scales / scale))
+    spread = _exponential(np.log(scale), np.log(scale) - np.log(scales / scale))
     if law == "weibull":
-        shape = {"value": 1 / spread["value"], "low": 1 / spread["high"], "high": 1 / spread["low"]}
-        entry["parameters"] = {"shape": shape, "scale": at(0.0)}
+        shape = Estimate(1 / spread.value, 1 / spread.high, 1 / spread.low)
+        parameters = {"shape": shape, "scale": at(0.0)}
     else:
-        entry["parameters"] = {"median": at(0.0), "sigma": spread}
-    entry["assumes"] = ASSUMES.format(rows=len(life))
-    return entry | {
-        name: at(family.standard.ppf(p)) | {"extrapolated": not is_within(p, len(life))}
-        for name, p in B_LIVES.items()
-    }
+        parameters = {"median": at(0.0), "sigma": spread}
+    return Fit(
+        n,
+        p_value,
+        parameters=parameters,
+        b_lives={name: at(family.standard.ppf(p)) for name, p in B_LIVES.items()},
+        extrapolated=frozenset(name for name, p in B_LIVES.items() if not is_within(p, n)),
+        assumes=ASSUMES.format(rows=n),
+    )
 
 
 def _problem(life: Floats, ended: Mask, independent: bool) -> str:
-    """Say why no law can be fitted, or return ""."""
+    """Return why no law can be fitted, or ""."""
     if not independent:
         return INDEPENDENT_ONLY
     never = int((np.isposinf(life) & ended).sum())
@@ -130,7 +144,7 @@ def _problem(life: Floats, ended: Mask, independent: bool) -> str:
 
 
 def _sorted(x: Floats, ended: Mask) -> _Sample:
-    order = np.lexsort((~ended, x), axis=1)  # of rows at one time, those that end come first
+    order = np.lexsort((~ended, x), axis=1)  # of rows at one time those that end come first
     return _Sample(np.take_along_axis(x, order, axis=1), np.take_along_axis(ended, order, axis=1))
 
 
@@ -158,7 +172,7 @@ def _refits(
 def _complete_refits(law: str, n: int) -> tuple[Floats, Floats, Floats]:
     """Return location, scale and distance of complete samples of n rows from the standard law.
 
-    Those from any other location and scale are these, moved and scaled; distances stay.
+    For any other location and scale these are shifted and scaled; the distances are the same.
     """
     family = FAMILIES[law]
     u = np.random.default_rng(0).random((_refits_of(n), n))
@@ -177,8 +191,8 @@ def _distance(family: Family, location: Floats, scale: Floats, sample: _Sample) 
     return anderson_darling(family.standard.cdf(w), sample.ended)
 
 
-def _interval(value: float, draws: Floats) -> dict[str, float]:
+def _exponential(value: float, draws: Floats) -> Estimate:
     """Return the exponentials of a value and of the ends of its interval."""
     low, high = np.quantile(draws, [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
-    logarithms = {"value": value, "low": low, "high": high}
-    return {name: float(np.exp(logarithm)) for name, logarithm in logarithms.items()}
+    value, low, high = (float(np.exp(logarithm)) for logarithm in (value, low, high))
+    return Estimate(value, low, high)

@@ -48,11 +48,9 @@ def life_quantiles(
     if open_ones:
         time = _times(element)
         seen = curve(element, time, replicate)
-        first_end = _first(seen["survival"] < 1, time)
+        first_end = _first(seen.survival < 1, time)
         for name in open_ones:
-            value, low, high = (
-                _first(seen[end] <= 1 - asked[name], time) for end in ("survival", "low", "high")
-            )
+            value, low, high = (_first(one <= 1 - asked[name], time) for one in seen)
             if low == first_end:  # earlier times carry no information
                 low = np.nan
             if np.isfinite(value):
@@ -84,7 +82,7 @@ def ended_by(element: Element, time: float, replicate: Replicates) -> tuple[Esti
             return Estimate(1.0)
         if time > times[-1]:
             return NOTHING
-        value, low, high = (float(seen[end][place]) for end in ("survival", "low", "high"))
+        value, low, high = (float(one[place]) for one in seen)
         return Estimate(value, low, high)
 
     above = share(int(np.searchsorted(times, time, side="right")) - 1)

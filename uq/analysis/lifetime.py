@@ -1,6 +1,6 @@
 """Lifetimes: the share of rows that outlives each time."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -58,27 +58,20 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     """
     rows = independent_rows(ds)
     chosen = lifetimes(rows, output)
-    time = np.unique(np.concatenate([_finite(element.values) for element in chosen]))
+    time = np.unique(np.concatenate([e.values[np.isfinite(e.values)] for e in chosen]))
     replicate = replicates_of(rows)
-    curves = [curve(element, time, replicate) for element in chosen]
-    for found, element in zip(curves, chosen, strict=True):
-        whole_band = band(element, time) if replicate is None else _no_band(time)
-        found["band_low"], found["band_high"] = whole_band
-    meanings = dict(_VARIABLES)
-    if any(element.failed.any() for element in chosen):
-        meanings |= _WITH_FAILED
-        for one, element in zip(curves, chosen, strict=True):
-            one |= _failed_band(element, time, replicate, one)
+    lost = any(element.failed.any() for element in chosen)
+    found = [_variables(element, time, replicate, lost) for element in chosen]
 
     whole = rows[chosen[0].output]
     places = {dim: whole[dim] for dim in whole.dims if dim != "sample"}
     dims = tuple(places) if output == whole.name else ()
     shape = tuple(whole.sizes[dim] for dim in dims)
     data = {}
-    for name, meaning in meanings.items():
-        values = np.stack([one[name] for one in curves])
+    for name in found[0]:
+        values = np.stack([one[name] for one in found])
         along = ("time",) if values.ndim > 1 else ()
-        attrs = {"long_name": meaning, "units": "1"}
+        attrs = {"long_name": _MEANINGS[name], "units": "1"}
         data[name] = ((*dims, *along), values.reshape(shape + values.shape[1:]), attrs)
     coords = places if dims else chosen[0].place
     axis = ("time", time, {"long_name": "time", "units": "s"})
@@ -93,7 +86,7 @@ BAND = (
 )
 NO_BAND = "none: a band for a whole curve takes independent rows"
 
-_VARIABLES = {
+_MEANINGS = {
     "survival": "probability of a longer life",
     "low": "lower end of the pointwise 95 % interval",
     "high": "upper end of the pointwise 95 % interval",
@@ -104,51 +97,56 @@ _VARIABLES = {
     "censored": "number of rows of which only a lower bound is known",
     "undefined": "number of rows whose lifetime has no meaning",
     "failed": "number of rows that failed",
-}
-
-
-_WITH_FAILED = {
     "failed_low": "lower end of the pointwise 95 % interval if the failed rows had ended at once",
     "failed_high": "upper end of the pointwise 95 % interval if the failed rows never ended",
 }
 
 
-def _failed_band(
-    element: Element, time: Floats, replicate: Replicates, plain: dict[str, Any]
-) -> dict[str, Floats]:
-    """Return the band with the failed rows at worst and at best; NaN where nothing can be said."""
-    ends = {}
-    for end, life in (("low", 0.0), ("high", np.inf)):
-        found = curve(with_failed_at(element, life), time, replicate)
-        alone = np.isnan(found["low"]).all() and np.isnan(found["high"]).all()
-        ends[f"failed_{end}"] = outer(end, found["survival" if alone else end], plain[end])
-    return ends
+class Curve(NamedTuple):
+    """The share that outlives each time, and its pointwise 95 % interval; shapes (k,)."""
+
+    survival: Floats
+    low: Floats
+    high: Floats
 
 
-def curve(element: Element, time: Floats, replicate: Replicates) -> dict[str, Any]:
-    """Return every variable of `survival` for one element, at times [s] that ascend."""
+def _variables(
+    element: Element, time: Floats, replicate: Replicates, with_failed: bool
+) -> dict[str, Any]:
+    """Return every variable of `survival` for one element, named and ordered as there."""
+    plain = curve(element, time, replicate)
+    band_low, band_high = band(element, time) if replicate is None else _no_band(time)
+    rows = int(element.present.sum())
+    found = plain._asdict() | {"band_low": band_low, "band_high": band_high}
+    found |= {"never": element.never.sum() / rows if rows else np.nan, "rows": rows}
+    found |= {name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")}
+    if with_failed:
+        for end, life in (("low", 0.0), ("high", np.inf)):
+            other = curve(with_failed_at(element, life), time, replicate)
+            alone = np.isnan(other.low).all() and np.isnan(other.high).all()
+            bound = other.survival if alone else getattr(other, end)
+            found[f"failed_{end}"] = outer(end, bound, getattr(plain, end))
+    return found
+
+
+def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
+    """Return the estimate of `survival` for one element, at times [s] that ascend."""
     values, censored = element.at_least, element.censored[element.present]
-    counts = {name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")}
-    counts["rows"] = len(values)
     if len(values) == 0:
-        unknown = np.full(len(time), np.nan)
-        return counts | {"never": np.nan} | dict.fromkeys(("survival", "low", "high"), unknown)
+        return Curve(*np.full((3, len(time)), np.nan))
     known_at_once = element.declared.never_known_at_once
     found = outliving(values, censored, time, known_at_once)
     if replicate is None:
-        interval = _greenwood(found)
-    else:
-        of = replicate[element.present]
-        estimates = [
-            outliving(values[of == r], censored[of == r], time, known_at_once).share
-            for r in np.unique(of)
-        ]
-        seen = len(values) - np.searchsorted(np.sort(values[censored]), time, side="right")
-        rows = np.where((found.share > 0) & (found.share < 1), seen, np.nan)
-        interval = scattered_share_interval(found.share, np.array(estimates), rows=rows)
-    never = element.never.sum() / len(values)
-    low, high = interval
-    return counts | {"never": never, "survival": found.share, "low": low, "high": high}
+        return Curve(found.share, *_greenwood(found))
+    of = replicate[element.present]
+    estimates = [
+        outliving(values[of == r], censored[of == r], time, known_at_once).share
+        for r in np.unique(of)
+    ]
+    seen = len(values) - np.searchsorted(np.sort(values[censored]), time, side="right")
+    rows = np.where((found.share > 0) & (found.share < 1), seen, np.nan)
+    interval = scattered_share_interval(found.share, np.array(estimates), rows=rows)
+    return Curve(found.share, *interval)
 
 
 def band(element: Element, time: Floats) -> Ends:
@@ -196,7 +194,3 @@ def _greenwood(estimate: Outliving) -> Ends:
 
 def _no_band(time: Floats) -> Ends:
     return np.full(len(time), np.nan), np.full(len(time), np.nan)
-
-
-def _finite(values: Floats) -> Floats:
-    return values[np.isfinite(values)]

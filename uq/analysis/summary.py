@@ -9,7 +9,7 @@ import xarray as xr
 
 from uq import json_form
 from uq.analysis.failed_rows import failed_share_bounds
-from uq.analysis.life_fit import fits_of
+from uq.analysis.life_fit import Fit, fits_of
 from uq.analysis.statistics.statistic import Context, Kind, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.statistics.thresholds import share_of
@@ -72,13 +72,13 @@ class Described:
     units : str
     parts : dict of str to tuple of Statistic
         Name in `uq.analysis.statistics.table.STATISTICS` -> its statistics, in that order.
-    fits : dict, optional
-        As `uq.life_fits` returns them.
+    fits : dict of str to Fit, optional
+        Law -> what became of it.
     """
 
     units: str
     parts: Mapping[str, tuple[Statistic, ...]]
-    fits: Mapping[str, Any] = field(default_factory=dict)
+    fits: Mapping[str, Fit] = field(default_factory=dict)
 
     @property
     def statistics(self) -> tuple[Statistic, ...]:

@@ -4,17 +4,15 @@ The twin is an output that the model can compute alone, or the same outputs unde
 a row cheap, such as fewer modes.
 """
 
-from collections.abc import Iterator
-from dataclasses import asdict, replace
-from typing import Any
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq import json_form
-from uq.analysis.control_variate import FEWEST, Controlled, controlled_mean, controlled_share
+from uq.analysis.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.statistics.thresholds import event
 from uq.errors import InputError
@@ -43,6 +41,51 @@ _BLOCK = 65_536
 Floats = NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class Sharpened:
+    """An estimate that a twin sharpens.
+
+    Attributes
+    ----------
+    estimate : Estimate
+        By control variates.
+    plain : Estimate
+        From the rows of the result alone.
+    reduction : float
+        Variance of the plain estimate over that of the other.
+    failed : Estimate, optional
+        Ends of the plain interval with the failed rows at best and at worst, where rows failed.
+    note : str
+        Where few rows are hits, or misses: what that means for the estimate.
+    """
+
+    estimate: Estimate
+    plain: Estimate
+    reduction: float
+    failed: Estimate | None = None
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class TwoFidelities:
+    """What `two_fidelities` finds.
+
+    Attributes
+    ----------
+    twin : str
+    rows, cheap_rows : int
+        Of the result, and of the twin alone.
+    outputs : dict of str to dict
+        Element -> estimate (``mean``, ``P(>t)``, ``P(<t)``) -> `Sharpened`. An element whose tail
+        has no variance has no mean here.
+    """
+
+    twin: str
+    rows: int
+    cheap_rows: int
+    outputs: Mapping[str, Mapping[str, Sharpened]]
+
+
 def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
     """Estimate means and probabilities with the help of a cheap twin of the same model.
 
@@ -66,37 +109,21 @@ def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
     InputError
         When the study names no twin.
     """
-    found = with_twin(ds, model)["outputs"]
     lines = {
-        (name, label): {
-            **{end: entry[end] for end in ("value", "low", "high")},
-            **{_column(end): entry["plain"][end] for end in ("value", "low", "high")},
-            "reduction": entry["reduction"],
-        }
-        for name, estimates in found.items()
-        for label, entry in estimates.items()
+        (name, label): (*one.estimate.numbers, *one.plain.numbers, one.reduction)
+        for name, estimates in with_twin(ds, model).outputs.items()
+        for label, one in estimates.items()
     }
     index = pd.MultiIndex.from_tuples(list(lines), names=["output", "estimate"])
-    return pd.DataFrame(list(lines.values()), index=index)
+    columns = ["value", "low", "high", "plain", "plain_low", "plain_high", "reduction"]
+    return pd.DataFrame(list(lines.values()), index=index, columns=columns)
 
 
-def _column(end: str) -> str:
-    return "plain" if end == "value" else f"plain_{end}"
-
-
-def with_twin(ds: xr.Dataset, model: str | None = None) -> dict[str, Any]:
-    """Return what `two_fidelities` finds as plain data, ready for JSON.
-
-    Returns
-    -------
-    dict
-        ``twin``, ``rows``, ``cheap_rows``, and ``outputs``: element -> estimate -> ``value``,
-        ``low``, ``high``, ``plain`` (the same three), ``reduction``, ``note`` where few rows
-        tell, and where rows failed ``failed_low`` and ``failed_high``, of the plain rows. An
-        element whose tail has no variance has no mean here.
-    """
+def with_twin(ds: xr.Dataset, model: str | None = None) -> TwoFidelities:
+    """Return what `two_fidelities` makes a table of."""
     study = study_from_text(ds.attrs["study"], "study of this result", model)
-    if not study.analysis.twin:
+    twin = study.analysis.twin
+    if not twin:
         cheap = ", ".join(study.model.cheap) or "none"
         raise InputError(
             "the study names no twin: [analysis] twin = NAME of an output that model"
@@ -104,9 +131,7 @@ def with_twin(ds: xr.Dataset, model: str | None = None) -> dict[str, Any]:
             " its rows cheap"
         )
     study = study.with_samples(int(ds.attrs["samples"]))
-    here = _twin_of(study, _inputs(ds, study), _seeds(ds, study))
-    many = _many(study, ds.sizes["sample"])
-    twin = study.analysis.twin
+    here, many = _here(study, ds), _many(study, ds.sizes["sample"])
     outputs = [name for name in shown_outputs(ds, study.analysis) if name != twin]
     found = {}
     for element in elements_of(ds, outputs):
@@ -114,54 +139,52 @@ def with_twin(ds: xr.Dataset, model: str | None = None) -> dict[str, Any]:
             same = control.name == element.name
             if same or (control.output == twin and control.place.items() <= element.place.items()):
                 found[element.name] = dict(_estimates(element, control, others, study))
-    return {
-        "twin": twin if isinstance(twin, str) else toml(twin),
-        "rows": ds.sizes["sample"],
-        "cheap_rows": len(many[0].values),
-        "outputs": {name: entry for name, entry in found.items() if entry},
-    }
+    return TwoFidelities(
+        twin if isinstance(twin, str) else toml(twin),
+        ds.sizes["sample"],
+        len(many[0].values),
+        {name: estimates for name, estimates in found.items() if estimates},
+    )
 
 
 def _estimates(
     element: Element, control: Element, many: Element, study: Study
-) -> Iterator[tuple[str, dict[str, Any]]]:
-    present = element.present
+) -> Iterator[tuple[str, Sharpened]]:
+    present, kept = element.present, ~element.failed
     if present.any() and not (element.never | element.censored).any():
-        alone = moments(element.values[present])
-        if not alone.mean.reason:
+        alone = moments(element.values[present]).mean
+        if not alone.reason:
             found = controlled_mean(element.values, present, *map(_filled, (control, many)))
-            yield "mean", _entry(found, alone.mean)
+            yield "mean", Sharpened(found.estimate, alone, found.reduction)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         sides = event(element, threshold)
-        kept = ~element.failed
         if sides is None or not kept.any():
             continue
         for sign, hits in zip("><", sides, strict=True):
             found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
-            plain = Estimate(float(hits[kept].mean()), *share_interval(hits[kept]))
-            lost = json_form.failed(failed_share_bounds(hits, element.failed, None))
-            few = few_hits(int(hits[kept].sum()), int(kept.sum()))
-            yield f"P({sign}{threshold!r})", _entry(found, plain) | lost | few
+            yield (
+                f"P({sign}{threshold!r})",
+                Sharpened(
+                    found.estimate,
+                    Estimate(float(hits[kept].mean()), *share_interval(hits[kept])),
+                    found.reduction,
+                    failed_share_bounds(hits, element.failed, None),
+                    _note_on_few(int(hits[kept].sum()), int(kept.sum())),
+                ),
+            )
 
 
-def few_hits(hits: int, rows: int) -> dict[str, str]:
-    """Return a ``note`` on a probability that few rows tell, or nothing."""
-    if min(hits, rows - hits) >= FEW:
-        return {}
-    seen = f"{hits} of {rows} rows" if hits <= rows - hits else f"all but {rows - hits} rows"
-    if min(hits, rows - hits) < FEWEST:
+def _note_on_few(hits: int, rows: int) -> str:
+    """Return a note where few rows are hits, or misses."""
+    rarer = min(hits, rows - hits)
+    if rarer >= FEW:
+        return ""
+    if rarer < FEWEST:
         told = f"the twin is not used below {FEWEST}; these are the plain rows"
     else:
         told = f"below {FEW} the interval is exact, and conservative"
-    return {"note": f"{seen} lie there: {told}"}
-
-
-def _entry(found: Controlled, plain: Estimate) -> dict[str, Any]:
-    return {
-        **json_form.numbers(found.estimate),
-        "plain": json_form.numbers(plain),
-        "reduction": found.reduction,
-    }
+    seen = f"{hits} of {rows} rows" if hits == rarer else f"all but {rarer} rows"
+    return f"{seen} lie there: {told}"
 
 
 def _filled(control: Element) -> Floats:
@@ -170,14 +193,12 @@ def _filled(control: Element) -> Floats:
     return np.stack([np.where(finite, control.values, 0.0), ~finite], axis=1)
 
 
-def _inputs(ds: xr.Dataset, study: Study) -> Floats:
-    names = study.model.parameter_names
-    return np.stack([np.broadcast_to(ds[name].values, ds.sizes["sample"]) for name in names], 1)
-
-
-def _seeds(ds: xr.Dataset, study: Study) -> NDArray[np.uint64]:
+def _here(study: Study, ds: xr.Dataset) -> list[Element]:
+    """Return the twin of the rows of a result."""
+    n = ds.sizes["sample"]
+    x = [np.broadcast_to(ds[name].values, n) for name in study.model.parameter_names]
     keys = (ds[name].values.astype(np.int64) for name in ("replicate", "group", "block"))
-    return row_seeds(study.design.seed, *keys)
+    return _twin_of(study, np.stack(x, 1), row_seeds(study.design.seed, *keys))
 
 
 def _many(study: Study, start: int) -> list[Element]:
@@ -208,8 +229,8 @@ def _twin_of(study: Study, x: Floats, seed: NDArray[np.uint64]) -> list[Element]
 
 
 def _joined(pieces: tuple[Element, ...]) -> Element:
-    arrays: dict[str, Any] = {
-        name: np.concatenate([getattr(piece, name) for piece in pieces])
+    values, censored, failed = (
+        np.concatenate([getattr(piece, name) for piece in pieces])
         for name in ("values", "censored", "failed")
-    }
-    return replace(pieces[0], **arrays)
+    )
+    return replace(pieces[0], values=values, censored=censored, failed=failed)

@@ -8,7 +8,7 @@ from functools import cache
 from math import isinf
 
 from uq.interrupts import undone
-from uq.running.progress import Progress, Report
+from uq.running.options import Progress, Report
 from uq.wording import duration, number
 
 _PLAIN_SECONDS = 10.0

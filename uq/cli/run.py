@@ -19,8 +19,7 @@ from uq.literals import plain_line
 from uq.rows import results
 from uq.running import runner
 from uq.running.existing import finished, made_elsewhere, output_path
-from uq.running.options import RunOptions
-from uq.running.progress import Progress
+from uq.running.options import Progress, RunOptions
 from uq.store import folder_of
 from uq.study.definition import Study, load_study
 
@@ -59,7 +58,7 @@ def carried_out(
             if so_far.done:
                 say_when_interrupted(
                     f"interrupted after {so_far.done} of {so_far.total} rows, kept in "
-                    f"{folder_of(target)}; the same command goes on from there"
+                    f"{folder_of(target)}; the same command resumes the run"
                 )
             show(so_far)
 

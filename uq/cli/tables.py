@@ -1,9 +1,11 @@
 """The summary of a result, as tables of 80 columns."""
 
 from collections.abc import Iterator, Mapping
+from itertools import chain
 
 import xarray as xr
 
+from uq.analysis.life_fit import Fit
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.statistics.statistic import TERMINAL, Statistic
 from uq.analysis.summary import Described, Summary
@@ -11,7 +13,6 @@ from uq.cli.printing import console, grid, heading, paragraph
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
 from uq.wording import (
-    Entry,
     duration,
     estimated,
     failed_interval,
@@ -98,39 +99,28 @@ def _reason(one: Statistic) -> Iterator[Line]:
         yield "", one.estimate.reason, "", ""
 
 
-def _show_fits(fits: Mapping[str, Entry]) -> None:
-    """Print the laws that fit side by side, with the lives they give, and why others do not."""
+def _show_fits(fits: Mapping[str, Fit]) -> None:
+    """Print the laws that fit side by side, with their B-lives, and why the others do not."""
     for law, fit in fits.items():
-        if refusal := fit.get("refused"):
-            paragraph(f"{law}: {refusal}", indent=2)
-    accepted = {law: fit for law, fit in fits.items() if "refused" not in fit}
+        if fit.refused:
+            paragraph(f"{law}: {fit.refused}", indent=2)
+    accepted = {law: fit for law, fit in fits.items() if not fit.refused}
     if not accepted:
         return
-    names = dict.fromkeys(name for fit in accepted.values() for name in fit["parameters"])
-    lines = [("p of the test", *(cell for fit in accepted.values() for cell in _p_value(fit)))]
-    lines += [(name, *_side_by_side(accepted, name)) for name in names]
-    for name in B_LIVES:
-        extrapolated = any(fit[name]["extrapolated"] for fit in accepted.values())
-        label = f"{name}, extrapolated" if extrapolated else name
-        lines.append((label, *_side_by_side(accepted, name)))
+    lines = [("p of the test", *chain(*((f"{fit.p_value:.2g}", "") for fit in accepted.values())))]
+    laws = [{**fit.parameters, **fit.b_lives} for fit in accepted.values()]
+    parameters = dict.fromkeys(chain(*(fit.parameters for fit in accepted.values())))
+    for name in (*parameters, *B_LIVES):
+        extrapolated = any(name in fit.extrapolated for fit in accepted.values())
+        cells = chain(*(_cells(law.get(name)) for law in laws))
+        lines.append((f"{name}, extrapolated" if extrapolated else name, *cells))
     grid(lines, header=("", *(cell for law in accepted for cell in (law, "95 % interval"))))
-    assumed = next(iter(accepted.values()))["assumes"]
+    assumed = next(iter(accepted.values())).assumes
     paragraph(f"The numbers of a fitted law assume {assumed}.", indent=2)
 
 
-def _p_value(fit: Entry) -> tuple[str, str]:
-    return f"{fit['p_value']:.2g}", ""
-
-
-def _side_by_side(fits: Mapping[str, Entry], name: str) -> Iterator[str]:
-    """Yield value and interval of one number of each law; nothing of a law without it."""
-    for fit in fits.values():
-        one = (fit["parameters"] | fit).get(name)
-        yield from ("", "") if one is None else (number(one["value"]), interval(_estimate(one)))
-
-
-def _estimate(one: Entry) -> Estimate:
-    return Estimate(one["value"], one["low"], one["high"])
+def _cells(one: Estimate | None) -> tuple[str, str]:
+    return ("", "") if one is None else (number(one.value), interval(one))
 
 
 def _example(ds: xr.Dataset, status: str) -> str:

@@ -77,8 +77,8 @@ def verify(path: Path, model: str | None) -> int:
     console.print(f"checksum  {words[holds]}")
     ds = results.open_result(path)
     others = verification.other_versions(ds, model)
-    for other in others:
-        console.print(f"{other.name}  {other.made} made it, {other.here} is here")
+    for name, (made, here) in others.items():
+        console.print(f"{name}  {made} made it, {here} is here")
     if not others:
         console.print("versions  the same as here")
     with compilation(progress.say_compiling):

@@ -13,6 +13,7 @@ from uq.drawing.figure import COLOURS, LINES, in_words, sentence, styled
 from uq.drawing.index_plot import subject
 from uq.drawing.panel import column, figure_of, heading, legend
 from uq.errors import InputError
+from uq.methods.indices import ST
 from uq.rows.elements import independent_rows, named_elements
 
 
@@ -108,12 +109,12 @@ def index_convergence(
     if own.empty:
         raise InputError(f"{output}: no total indices of fewer rows are known")
     last = own[own["samples"] == own["samples"].max()].sort_values("value", ascending=False)
-    leading = last["estimate"].tolist()[: len(COLOURS)]
+    leading = last["input"].tolist()[: len(COLOURS)]
     (panel,) = column(axes, 2.1, entries=len(leading))
-    for i, estimate in enumerate(leading):
-        name = sentence(in_words(ds[estimate.removeprefix("ST ")]), width=60)
+    for i, name in enumerate(leading):
+        words = sentence(in_words(ds[name]), width=60)
         colour, line = COLOURS[i], LINES[i % len(LINES)]
-        _curve(panel, own[own["estimate"] == estimate], 1.0, colour, line, name)
+        _curve(panel, own[own["input"] == name], 1.0, colour, line, words)
     panel.set_ylabel("Total index (ST) [1]")
     # Wide intervals of the first few rows must not squeeze the rest.
     low, high = panel.get_ylim()
@@ -125,7 +126,7 @@ def index_convergence(
 
 def total_indices(running: pd.DataFrame) -> pd.DataFrame:
     """Return the lines of `uq.running_estimates` that are total indices."""
-    return running[running["estimate"].str.startswith("ST ")].dropna(subset="value")
+    return running[running["kind"] == ST.key].dropna(subset="value")
 
 
 def _curve(

@@ -1,9 +1,9 @@
-"""Which rows settled on the same attractor, told from their outputs alone.
+"""Which rows settled on the same attractor, judged by their outputs alone.
 
-Sorted by one output, the rows of two attractors are kept apart by a gap. Wherever there is one, in
-any output, the rows part, and the parts are looked at again until nothing parts any more. So rows
-that differ no more than their neighbours do stay together, however many there are in between: a
-branch of responses that changes with a parameter is one attractor.
+Sorted by one output, rows of two attractors are separated by a gap. Rows are split at every gap of
+every output, and the parts again until no gap is left. So rows that differ no more than neighbours
+do stay together, however many lie in between: a branch of responses that changes with a parameter
+is one attractor.
 """
 
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 STANDARD_ERRORS = 4.0
-"""Of the difference between two values: so much is no gap."""
+"""Of the difference between two values: a smaller difference is no gap."""
 
 
 class Compared(NamedTuple):
@@ -35,7 +35,7 @@ class Compared(NamedTuple):
 
 
 def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
-    """Give the attractors of some rows numbers, the most frequent first.
+    """Return the number of the attractor of each row, the most frequent first.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
     Returns
     -------
     ndarray of int32, shape (rows,)
-        Of equally frequent ones the one that comes first has the lower number.
+        Of equally frequent attractors, the first to occur has the lower number.
     """
     labels, count = np.zeros(rows, np.int64), 0
     while count < (count := len(np.unique(labels))):
@@ -60,7 +60,7 @@ def attractors(compared: Sequence[Compared], rows: int) -> NDArray[np.int32]:
 
 
 def _parted(labels: NDArray[np.int64], one: Compared) -> NDArray[np.int64]:
-    """Part each group of rows at the gaps of one output."""
+    """Split each group of rows at the gaps of one output."""
     size = np.abs(one.values[np.isfinite(one.values)]).max(initial=0.0)
     order = np.lexsort((one.values, labels))
     values, errors, groups = one.values[order], one.errors[order], labels[order]

@@ -1,4 +1,4 @@
-"""Basins of attraction of any model, computed as a study is."""
+"""Basins of attraction of any model, computed like a study."""
 
 import hashlib
 import json
@@ -36,7 +36,7 @@ def basins(
     workers: int | None = None,
     scheduler: str | None = None,
 ) -> xr.Dataset:
-    """Run a model on a grid of its parameters, and tell on which attractor each point settles.
+    """Run a model on a grid of its parameters, and find the attractor on which each point settles.
 
     Parameters
     ----------
@@ -47,18 +47,17 @@ def basins(
         Parameter -> (first value, last value, number of values), evenly spaced, in the parameter's
         unit.
     fixed : dict of str to float, optional
-        Other parameters that are not to have their nominal values.
+        Other parameters with values that are not nominal.
     settings : dict, optional
         Numerical settings by name.
     by : sequence of str, optional
-        Outputs that tell attractors apart, beside those that are categories; by default all but
-        the errors of others. Extremes of a chaotic response scatter: name its means instead.
+        Outputs that distinguish attractors, in addition to categories; by default all but the
+        errors of others. Extremes of a chaotic response scatter: use its means instead.
     tolerance : float
-        Values of an output are alike if they differ by no more than this share of its largest
-        magnitude on the grid, or by no more than four standard errors beyond that if the model
-        gives them, as ``<output>_error``.
+        Values of an output are alike if they differ by at most this share of its largest magnitude
+        on the grid, plus four standard errors if the model has them, as ``<output>_error``.
     output : str or Path, optional
-        NetCDF file to write; if it holds these very basins, they are read and not computed.
+        NetCDF file to write; if it contains these same basins, they are read instead.
     workers, scheduler
         As in `uq.run`.
 
@@ -66,18 +65,18 @@ def basins(
     -------
     xarray.Dataset
         Outputs, ``status`` and ``attractor`` on the grid, whose dimensions are the parameters.
-        Attractors are numbered from the most frequent, 0; -1 is a row that failed. Two rows share
-        one if their categories are equal and, output by output, rows whose values are alike lead
-        from one to the other. Along ``basin`` stands what is known of each attractor: its ``share``
-        of all rows, and the values of its first row as ``representative_<name>``. For a table, use
+        Attractors are numbered from the most frequent, 0; -1 marks a failed row. Two rows share an
+        attractor if their categories are equal and, for each output, a chain of rows with like
+        values connects them. Dimension ``basin`` has the ``share`` of rows of each attractor, and
+        the values of its first row as ``representative_<name>``. For a table, use
         ``ds.drop_dims(list(axes)).to_dataframe()``.
 
     Raises
     ------
     InputError
-        When a name is unknown, a value not admissible, or `output` holds something else.
+        When a name is unknown, a value is not admissible, or `output` contains something else.
     RunError
-        When no result can be had: workers that die, a disk that is full.
+        When there is no result: workers die, a disk is full.
     """
     grid = grid_of(model, axes, fixed or {}, settings or {})
     compared = _compared_outputs(grid.model, by)
@@ -94,15 +93,15 @@ def basins(
     workload = Workload(
         grid.model, grid.reference, grid.settings, grid.rows, 1, block=grid.block, finish=finish
     )
-    path = None if output is None else Path(output)
-    if path is not None:
-        if path.is_file():
-            return _found(path, identity)
-        store.check_target(path, store.row_bytes(workload) * workload.total)
     options = RunOptions(workers if grid.reference else 0, scheduler)
+    if output is None:
+        return runner.carry_out(workload, options)
+    path = Path(output)
+    if path.is_file():
+        return _found(path, identity)
+    store.check_target(path, store.row_bytes(workload) * workload.total)
     ds = runner.carry_out(workload, options)
-    if path is not None:
-        store.write(ds, path)
+    store.write(ds, path)
     return ds
 
 
@@ -136,7 +135,7 @@ def _finish(
     status: NDArray[np.int8],
     failures: Mapping[str, str],
 ) -> xr.Dataset:
-    """Tell the attractors apart, and fold the rows into a grid."""
+    """Find the attractors, and arrange the rows as a grid."""
     model = grid.model
     values = {
         name: rows.x[:, i] if name in grid.axes else grid.constants[name]
@@ -145,9 +144,8 @@ def _finish(
     flat = results.build_rows(model, grid.settings, values, columns, status, failures)
     known = np.flatnonzero(~results.failed(flat))
     labels = np.full(grid.rows, -1, np.int32)
-    labels[known] = attractors(
-        list(_numbers(flat.isel(sample=known), compared, tolerance)), len(known)
-    )
+    numbers = list(_numbers(flat.isel(sample=known), compared, tolerance))
+    labels[known] = attractors(numbers, len(known))
     about = {
         "long_name": "attractor, -1 where the row failed",
         "compared": " ".join(compared),
@@ -156,17 +154,15 @@ def _finish(
     }
     flat["attractor"] = ("sample", labels, about)
     ds = _folded(flat, grid).merge(_table(flat.isel(sample=known), grid))
-    ds.attrs = flat.attrs | {
-        "title": f"Basins of attraction of model '{model.name}'",
-        "basins_identity": identity,
-    }
+    title = f"Basins of attraction of model '{model.name}'"
+    ds.attrs = flat.attrs | {"title": title, "basins_identity": identity}
     for variable in ds.variables.values():
         variable.encoding["_FillValue"] = None
     return ds
 
 
 def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterator[Compared]:
-    """Yield what is compared, element by element."""
+    """Yield the numbers to be compared, element by element."""
     declared = outputs_of(flat)
     for name in names:
         values = flat[name].astype(float)
@@ -180,27 +176,25 @@ def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterat
 
 
 def _folded(flat: xr.Dataset, grid: Grid) -> xr.Dataset:
-    """Give the rows one dimension for each axis."""
+    """Replace the dimension of rows by one dimension per axis."""
     axes, variables = tuple(grid.axes), {}
     for name, rows in flat.data_vars.items():
+        variables[name] = rows.variable
         if "sample" in rows.dims:
             data = rows.values.reshape(*grid.shape, *rows.shape[1:])
             variables[name] = xr.Variable((*axes, *rows.dims[1:]), data, rows.attrs)
-        else:
-            variables[name] = rows.variable
     variables |= {name: xr.Variable(name, grid.values(name), flat[name].attrs) for name in axes}
     return xr.Dataset(variables, flat.coords)
 
 
 def _table(flat: xr.Dataset, grid: Grid) -> xr.Dataset:
-    """Return what is known of each attractor, given the rows that did not fail."""
+    """Return the table of attractors, given the rows that did not fail."""
     _, first, count = np.unique(flat["attractor"], return_index=True, return_counts=True)
     some = flat[[*grid.axes, *grid.model.outputs]].isel(sample=first)
     for name, output in grid.model.outputs.items():
         if output.is_category:
             words = np.array(["none", *output.categories])[some[name].values + 1]
-            about = {"long_name": output.meaning}
-            some[name] = some[name].dims, words, about
+            some[name] = some[name].dims, words, {"long_name": output.meaning}
     table = some.rename({"sample": "basin"} | {name: f"representative_{name}" for name in some})
     table["share"] = ("basin", count / grid.rows, {"units": "1", "long_name": "share of all rows"})
     return table.assign_coords(basin=("basin", np.arange(len(first)), {"long_name": "attractor"}))

@@ -1,23 +1,21 @@
 """First-order reliability: design points by OpenTURNS, and importance sampling around them."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from uq.errors import InputError
-
-Floats = NDArray[np.float64]
-LimitState = Callable[[Floats], Floats]
+from uq.exploring.subset_simulation import Floats, LimitState
+from uq.interrupts import undone
 
 _STARTS = 8
 _ITERATIONS = 100
 _CALLS = 250  # of the model, in one search
-_SAME_WAY = 0.7  # cosine between a start and a point found: the search would find it again
-_APART = 0.5  # standard deviations between design points that are two
+_SAME_WAY = 0.7  # cosine between a start and a point found: a search would find it again
+_APART = 0.5  # standard deviations between distinct design points
 
 
 def design_points(margin: LimitState, u: Floats, margins: Floats) -> Floats:
@@ -28,16 +26,15 @@ def design_points(margin: LimitState, u: Floats, margins: Floats) -> Floats:
     margin : callable
         Points (n, d) -> how far beyond the limit, (n,); not finite where a row has no value.
     u : ndarray, shape (n, d)
-        Points looked at already.
+        Points already computed.
     margins : ndarray, shape (n,)
-        Their margins. Up to eight searches [1]_ start from the largest that lie in directions of
-        their own: from the origin alone a search fails on symmetric limits, or finds one point of
-        several.
+        Their margins. Up to eight searches [1]_ start from the largest in distinct directions: from
+        the origin alone a search fails on symmetric limits, or finds one of several points.
 
     Returns
     -------
     ndarray, shape (k, d)
-        The nearest first; none where no search ends on the limit.
+        The nearest first; none if no search ends on the limit.
 
     Raises
     ------
@@ -50,9 +47,14 @@ def design_points(margin: LimitState, u: Floats, margins: Floats) -> Floats:
        time-variant reliability problems", Reliability and Optimization of Structural Systems '90,
        1-12 (1991).
     """
-    ot = _openturns()
+    try:
+        import openturns as ot
+    except ImportError:
+        raise InputError(
+            "method 'importance' needs OpenTURNS: pip install 'vibrolife[reliability]', or use"
+            " method 'subset'"
+        ) from None
     refused: list[Exception] = []
-
     calls = 0
 
     def sample(points: Any) -> Floats:
@@ -62,7 +64,7 @@ def design_points(margin: LimitState, u: Floats, margins: Floats) -> Floats:
             raise ValueError("too long a search")
         try:
             there = margin(np.array(points))
-        except Exception as error:  # OpenTURNS would make a text of it
+        except Exception as error:  # OpenTURNS would turn it into text
             refused.append(error)
             raise
         if not np.isfinite(there).all():
@@ -73,7 +75,8 @@ def design_points(margin: LimitState, u: Floats, margins: Floats) -> Floats:
     limit = ot.CompositeRandomVector(function, ot.RandomVector(ot.Normal(u.shape[1])))
     event = ot.ThresholdEvent(limit, ot.Greater(), 0.0)
     found: list[Floats] = []
-    with _quiet(ot):
+    with undone(partial(ot.Log.Show, ot.Log.Flags())):
+        ot.Log.Show(ot.Log.NONE)  # a failed search is reported in our own words
         searches = 0
         for start in np.argsort(-margins, kind="stable")[: max(_STARTS, len(u) // 10)]:
             if searches == _STARTS:
@@ -102,7 +105,7 @@ def design_points(margin: LimitState, u: Floats, margins: Floats) -> Floats:
 
 
 def drawn_around(points: Floats, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Draw from normal laws around design points, and weigh back to the one around the origin.
+    """Draw from normal laws around design points, with weights for the standard normal law.
 
     Parameters
     ----------
@@ -115,7 +118,7 @@ def drawn_around(points: Floats, count: int, rng: np.random.Generator) -> tuple[
     -------
     u : ndarray, shape (count, d)
     weight : ndarray, shape (count,)
-        Mean of weight times event: the event's probability.
+        The mean of weight times event estimates the probability of the event.
     """
     centre = points[rng.integers(len(points), size=count)]
     u = centre + rng.standard_normal(centre.shape)
@@ -126,25 +129,3 @@ def drawn_around(points: Floats, count: int, rng: np.random.Generator) -> tuple[
 
 def _cosine(a: Floats, b: Floats) -> float:
     return float(a @ b / (np.linalg.norm(a) * np.linalg.norm(b)))
-
-
-def _openturns() -> Any:
-    try:
-        import openturns
-    except ImportError:
-        raise InputError(
-            "method 'importance' needs OpenTURNS: pip install 'vibrolife[reliability]', or use"
-            " method 'subset'"
-        ) from None
-    return openturns
-
-
-@contextmanager
-def _quiet(ot: Any) -> Iterator[None]:
-    """Keep OpenTURNS off the terminal: a search that fails is said in our words."""
-    before = ot.Log.Flags()
-    ot.Log.Show(ot.Log.NONE)
-    try:
-        yield
-    finally:
-        ot.Log.Show(before)

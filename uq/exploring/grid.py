@@ -27,7 +27,7 @@ class Grid:
     ----------
     model : Model
     reference : str
-        What another process finds the model by; empty if nothing.
+        By which another process finds the model; empty if it cannot.
     axes : dict of str to Axis
         Of the parameters that vary.
     constants : dict of str to float
@@ -39,12 +39,12 @@ class Grid:
     model: Model
     reference: str
     axes: Mapping[str, Axis]
-    constants: Mapping[str, float]
+    constants: dict[str, float]
     settings: Any
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Number of values along each axis."""
+        """Number of values on each axis."""
         return tuple(count for _, _, count in self.axes.values())
 
     @property
@@ -54,16 +54,16 @@ class Grid:
 
     @property
     def choices(self) -> list[Any]:
-        """All that decides the rows, fit for JSON."""
-        model, axes, constants = self.model, list(self.axes.items()), dict(self.constants)
-        return [model.name, model.version, axes, constants, asdict(self.settings)]
+        """Everything that determines the rows, for JSON."""
+        axes, model = list(self.axes.items()), self.model
+        return [model.name, model.version, axes, self.constants, asdict(self.settings)]
 
     def values(self, name: str) -> NDArray[np.float64]:
         """Return the values along an axis."""
         return np.linspace(*self.axes[name])
 
     def block(self, start: int, stop: int) -> Rows:
-        """Return the rows start..stop, as `uq.rows.sampling.row_block` does."""
+        """Return the rows start..stop, as in `uq.rows.sampling.row_block`."""
         number = np.arange(start, stop)
         places = dict(zip(self.axes, np.unravel_index(number, self.shape), strict=True))
         x = np.empty((len(number), len(self.model.parameter_names)))
@@ -79,14 +79,14 @@ def grid_of(
     fixed: Mapping[str, float],
     settings: Mapping[str, Any],
 ) -> Grid:
-    """Check what makes a grid, and make it.
+    """Check and build a grid.
 
     Parameters
     ----------
     model : str or Model
     axes : dict of str to Axis
     fixed : dict of str to float
-        Other parameters that are not to have their nominal values.
+        Other parameters with values that are not nominal.
     settings : dict
         Numerical settings by name.
 
@@ -99,7 +99,11 @@ def grid_of(
     InputError
         Everything that is wrong, one line each.
     """
-    found = find_model(model) if isinstance(model, str) else model
+    if isinstance(model, str):
+        found, reference = find_model(model), model
+    else:
+        installed = model.name in model_names() and find_model(model.name) is model
+        found, reference = model, model.name if installed else ""
     for what, given in (("axes", axes), ("fixed", fixed), ("settings", settings)):
         if not isinstance(given, Mapping):
             raise InputError(f"{what} must be a dictionary with names as keys: {given!r}")
@@ -119,7 +123,7 @@ def grid_of(
         raise InputError(*faults)
     return Grid(
         found,
-        _reference(model),
+        reference,
         {name: (float(a), float(b), index(n)) for name, (a, b, n) in axes.items()},
         {name: float(x) for name, x in (found.nominal | dict(fixed)).items() if name not in axes},
         frozen,
@@ -132,14 +136,6 @@ def _axis_problem(model: Model, name: str, axis: Any) -> str | None:
         enough = index(count) >= 2
     except (TypeError, ValueError):
         return "must be (first value, last value, number of values)"
-    for value in (first, last):
-        if problem := parameter_problem(model, name, value):
-            return problem
-    return None if enough and first < last < np.inf else "must ascend, two finite values at least"
-
-
-def _reference(model: str | Model) -> str:
-    if isinstance(model, str):
-        return model
-    installed = model.name in model_names() and find_model(model.name) is model
-    return model.name if installed else ""
+    problem = parameter_problem(model, name, first) or parameter_problem(model, name, last)
+    ascends = enough and not problem and first < last < np.inf
+    return problem if ascends or problem else "must ascend, two finite values at least"

@@ -1,13 +1,13 @@
-"""How far the rows of a study lie beyond a threshold, asked in standard normal space."""
+"""How far rows of a study lie beyond a threshold, as a function on standard normal space."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from uq.contract import Status
+from uq.contract import Output, Status
 from uq.errors import InputError, nearest
 from uq.exploring.evaluator import Evaluator
 from uq.inputs.values import unknown_name
@@ -15,60 +15,57 @@ from uq.rows.columns import censored_name
 from uq.rows.evaluate import Chunk
 from uq.rows.results import elements
 from uq.rows.sampling import physical, row_seeds
-
-if TYPE_CHECKING:
-    from uq.contract import Output
-    from uq.study.definition import Study
+from uq.study.definition import Study
 
 Floats = NDArray[np.float64]
 
 
 class LimitState:
-    """The margin of rows beyond a threshold.
+    """The distance of rows beyond a threshold.
 
     Parameters
     ----------
     study : Study
     name : str
-        An output, or one element of an output that has dimensions.
+        An output, or one element of an output with dimensions.
     threshold : float
         In the output's unit.
     below : bool
-        Whether the event is to lie below it.
+        Whether the event lies below it.
     evaluator : Evaluator
 
     Attributes
     ----------
     output : Output
+    dimension : int
+        Of standard normal space.
+    rows : int
+        Rows computed so far.
     failed : int
-        Rows that failed, or were censored before the threshold, so far.
+        Those that failed, or were censored before the threshold.
     undefined : int
-        Rows whose output had no meaning.
+        Those whose output was undefined.
     failures : dict of str to str
-        Status label -> what happened to the first row with that status.
+        Status label -> message of the first row with that status.
     """
 
     def __init__(
-        self, study: "Study", name: str, threshold: float, below: bool, evaluator: Evaluator
+        self, study: Study, name: str, threshold: float, below: bool, evaluator: Evaluator
     ) -> None:
         self.study, self.threshold, self.below = study, threshold, below
         self.output, self._place = find_element(study, name)
+        self.dimension = len(study.uncertain)
         self._column = name.partition("[")[0]
         self._evaluator = evaluator
-        self.failed = self.undefined = 0
+        self.rows = self.failed = self.undefined = 0
         self.failures: dict[str, str] = {}
-
-    @property
-    def dimension(self) -> int:
-        """Of standard normal space."""
-        return len(self.study.uncertain)
 
     def physical(self, u: Floats) -> Floats:
         """Map points of standard normal space, (n, dimension), to the model's parameters."""
         return physical(self.study, np.clip(ndtr(u), 2.0**-54, 1.0 - 2.0**-53))
 
     def uncertain(self, u: Floats) -> Floats:
-        """Map points of standard normal space to the uncertain parameters alone."""
+        """Map points of standard normal space to the uncertain parameters."""
         names = self.study.model.parameter_names
         return self.physical(u)[:, [names.index(name) for name in self.study.uncertain]]
 
@@ -83,14 +80,15 @@ class LimitState:
         Returns
         -------
         ndarray, shape (n,)
-            Distance beyond the threshold, positive within the event, -inf for a row that has no
-            value: it counts as outside.
+            Distance beyond the threshold, positive within the event; -inf for a row without a
+            value, which counts as outside.
         """
-        # Every row has random numbers of its own, as the rows of a study do.
-        number = np.arange(len(u)) + self._evaluator.rows
+        # Every row has its own random numbers, as in a study.
+        number = np.arange(len(u)) + self.rows
         chunk = self._evaluator(self.physical(u), row_seeds(self.study.design.seed, number))
         for label, (row, text) in chunk.failures.items():
-            self.failures.setdefault(label, f"row {row}: {text}")
+            self.failures.setdefault(label, f"row {self.rows + row}: {text}")
+        self.rows += len(u)
         return self._margin(chunk)
 
     def _margin(self, chunk: Chunk) -> Floats:
@@ -113,8 +111,8 @@ class LimitState:
         return margin
 
 
-def find_element(study: "Study", name: str) -> tuple["Output", int]:
-    """Return an output by its name, or by that of one of its elements, and the element's place.
+def find_element(study: Study, name: str) -> tuple[Output, int]:
+    """Find an output by its name or that of one of its elements; return it and the element's place.
 
     Raises
     ------

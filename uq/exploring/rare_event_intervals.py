@@ -1,16 +1,9 @@
-"""What the rows of a rare event support: its interval, however the replicates ended."""
-
-from typing import TYPE_CHECKING
+"""The interval of a rare event that its rows support, however the replicates ended."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from uq.exploring.subset_simulation import Floats, Found
 from uq.intervals import Ends, binomial_interval, scatter_interval
-
-if TYPE_CHECKING:
-    from uq.exploring.subset_simulation import Found
-
-Floats = NDArray[np.float64]
 
 
 def log_scatter_interval(estimates: Floats) -> Ends:
@@ -24,8 +17,8 @@ def log_scatter_interval(estimates: Floats) -> Ends:
     Returns
     -------
     low, high : float
-        Student's interval of the logarithms about the mean; where some estimates are zero, that of
-        the estimates themselves, from zero up.
+        Student's interval of the logarithms about the mean; if some estimates are zero, that of
+        the estimates themselves, not below zero.
     """
     mean = float(estimates.mean())
     if (estimates > 0).all():
@@ -35,7 +28,7 @@ def log_scatter_interval(estimates: Floats) -> Ends:
     return np.maximum(low, 0.0), high
 
 
-def subset_interval(found: "list[Found]", samples: int) -> Ends:
+def subset_interval(found: list[Found], samples: int) -> Ends:
     """Return the interval that replicates of subset simulation support.
 
     Parameters
@@ -47,11 +40,11 @@ def subset_interval(found: "list[Found]", samples: int) -> Ends:
     Returns
     -------
     low, high : float
-        Where every replicate reached the event: from their scatter, or where all ended at the first
-        level, whose rows are independent, that of a share of these. Else from zero, or what the
-        scatter leaves above it, to the lesser of two bounds from above. One is that of the share of
-        the first level's rows. The other takes for each replicate that never got there the
-        probability of the last level it reached, of which the event is a part.
+        If every replicate reached the event: from their scatter or, if all ended at the first
+        level, whose rows are independent, that of a share of these rows. Otherwise from zero, or a
+        higher end that the scatter supports, to the lesser of two upper bounds. One is that of the
+        share of the first level's rows. The other gives each replicate that never reached the event
+        the probability of its last level, of which the event is a part.
     """
     estimates = np.array([one.probability for one in found])
     rows = samples * len(found)
@@ -64,18 +57,3 @@ def subset_interval(found: "list[Found]", samples: int) -> Ends:
     at_most = np.array([one.probability or one.reached for one in found])
     high = np.fmin(first[1], log_scatter_interval(at_most)[1])
     return float(np.fmax(scatter[0], 0.0)), float(high)
-
-
-def with_failed_inside(hits: int, failed: int, rows: int) -> float:
-    """Return the bound from above if the failed rows lay within the event.
-
-    Parameters
-    ----------
-    hits, failed, rows : int
-        Of independent rows.
-
-    Returns
-    -------
-    float
-    """
-    return float(binomial_interval((hits + failed) / rows, rows)[1])

@@ -1,30 +1,28 @@
-"""Rare events: the probability that an output lies beyond a threshold, down to 1e-6 and less."""
+"""Rare events: the probability that an output exceeds a threshold, down to 1e-6 and less."""
 
 from math import isfinite
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from uq.errors import InputError, nearest
 from uq.exploring.design_points import design_points, drawn_around
-from uq.exploring.evaluator import Evaluator
+from uq.exploring.evaluator import evaluator_of
 from uq.exploring.limit_state import LimitState
-from uq.exploring.rare_event_intervals import (
-    log_scatter_interval,
-    subset_interval,
-    with_failed_inside,
-)
-from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, subset_simulation
+from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
+from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, Floats, subset_simulation
 from uq.intervals import Ends, binomial_interval
 from uq.running.options import RunOptions
 from uq.study.definition import Study, load_study
 
 _FEWEST = 100  # rows of a level: 10 chains
-Floats = NDArray[np.float64]
+_Generators = list[np.random.Generator]
+_Found = tuple[Floats, Ends, float, dict[str, Any]]
+"""Estimate of each replicate, their interval, its high end if the failed rows were within the
+event, and variables of the result that one method alone gives."""
 
 
 def rare_event(
@@ -38,7 +36,7 @@ def rare_event(
     workers: int | None = None,
     scheduler: str | None = None,
 ) -> xr.Dataset:
-    """Estimate the probability that an output lies beyond a threshold, however small it is.
+    """Estimate the probability that an output exceeds a threshold, however small it is.
 
     Parameters
     ----------
@@ -49,15 +47,15 @@ def rare_event(
     threshold : float
         In the output's unit.
     below : bool
-        Whether the event is to lie below the threshold instead of above.
+        Whether the event lies below the threshold instead of above.
     method : {"subset", "importance"}
-        Subset simulation looks everywhere and assumes nothing. Importance sampling around the
-        design points of FORM takes far fewer rows where the output is smooth, and misses whatever
-        lies around no design point that was found.
+        Subset simulation searches everywhere and assumes nothing. Importance sampling around the
+        design points of FORM takes far fewer rows if the output is smooth, and misses any part of
+        the event away from the design points that were found.
     samples : int
         Rows of each level (subset), or around the design points (importance), of each replicate.
     replicates : int
-        Independent repetitions of the whole method, from whose scatter the interval comes.
+        Independent repetitions of the method, whose scatter gives the interval.
     workers, scheduler
         As in `uq.run`.
 
@@ -70,7 +68,7 @@ def rare_event(
         ``levels`` of each replicate, why it ``ended`` (``event``, ``plateau`` or ``smallest``) and
         ``typical``, the median of each uncertain parameter given the event; importance:
         ``reliability_index``, ``first_order`` probability and ``location`` of each design point.
-        Attribute ``notes``: what to know about them.
+        Attribute ``notes``: caveats.
 
     Raises
     ------
@@ -80,16 +78,16 @@ def rare_event(
     Notes
     -----
     Intervals are ``mean exp(+-t s / sqrt(R))``, s the standard deviation of the replicates'
-    logarithms. Measured over 300 repetitions with 1000 samples and 8 replicates, they held
-    probabilities of 1e-6 to 1e-5 on three problems of 4 to 6 inputs in 94 to 97 % of cases; the
-    mean of subset simulation was 4 to 6 % too large. Where replicates never reach the event, the
-    high end is what the rows support (`uq.exploring.rare_event_intervals.subset_interval`): 8000
-    independent rows without a hit, 4.6e-4.
+    logarithms. Over 300 repetitions with 1000 samples and 8 replicates, they covered probabilities
+    of 1e-6 to 1e-5 on three problems of 4 to 6 inputs in 94 to 97 % of cases; the mean of subset
+    simulation was 4 to 6 % too large. If replicates never reach the event, the high end is what the
+    rows support (`uq.exploring.rare_event_intervals.subset_interval`): for 8000 independent rows
+    without a hit, 4.6e-4.
 
     Examples
     --------
     >>> found = uq.rare_event("studies/exponential-wear.toml", "life", 1e5, below=True)
-    >>> bool(found["low"] < 3.155e-6 < found["high"])  # what it is
+    >>> bool(found["low"] < 3.155e-6 < found["high"])  # the true value
     True
     """
     if not isinstance(study, Study):
@@ -100,24 +98,24 @@ def rare_event(
             f"{study.path}: [design] method = 'imported': rare events draw rows from laws, and"
             " imported rows have none; use another method"
         )
-    evaluator = Evaluator(study, output.partition("[")[0], RunOptions(workers, scheduler))
-    margin = LimitState(study, output, threshold, below, evaluator)
     generators = np.random.default_rng((study.design.seed, 1)).spawn(replicates)
-    with evaluator:
-        found = METHODS[method](margin, samples, generators)
-    low, high = map(float, found.interval)
+    options = RunOptions(workers, scheduler)
+    with evaluator_of(study, output.partition("[")[0], options) as evaluator:
+        margin = LimitState(study, output, threshold, below, evaluator)
+        estimates, interval, failed_high, variables = METHODS[method](margin, samples, generators)
+    low, high = map(float, interval)
     ds = xr.Dataset(
         {
-            "probability": ((), found.estimates.mean()),
+            "probability": ((), estimates.mean()),
             "low": ((), low),
             "high": ((), high),
-            "failed_high": ((), max(found.failed_inside, high) if margin.failed else np.nan),
-            "rows": ((), evaluator.rows),
+            "failed_high": ((), max(failed_high, high) if margin.failed else np.nan),
+            "rows": ((), margin.rows),
             "failed": ((), margin.failed),
             "undefined": ((), margin.undefined),
-            "estimate": ("replicate", found.estimates),
+            "estimate": ("replicate", estimates),
         }
-        | found.variables,
+        | variables,
         {"parameter": list(study.uncertain)},
         {
             "output": output,
@@ -133,27 +131,7 @@ def rare_event(
     return ds.assign_attrs(notes="\n".join(_notes(ds, margin)))
 
 
-class _Found(NamedTuple):
-    """What a method found.
-
-    Attributes
-    ----------
-    estimates : ndarray, shape (R,)
-        Of each replicate.
-    interval : Ends
-    failed_inside : float
-        The high end if the failed rows lay within the event.
-    variables : dict
-        Variables of the result that this method alone gives.
-    """
-
-    estimates: Floats
-    interval: Ends
-    failed_inside: float
-    variables: dict[str, Any]
-
-
-def _subset(margin: LimitState, samples: int, generators: list[np.random.Generator]) -> _Found:
+def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Found:
     failed = []
 
     def counting(u: Floats) -> Floats:
@@ -171,11 +149,11 @@ def _subset(margin: LimitState, samples: int, generators: list[np.random.Generat
         "typical": ("parameter", np.median(inside, axis=0) if len(inside) else nothing),
     }
     estimates = np.array([one.probability for one in found])
-    worst = with_failed_inside(hits, failed[0], rows)
-    return _Found(estimates, subset_interval(found, samples), worst, variables)
+    failed_high = binomial_interval((hits + failed[0]) / rows, rows)[1]
+    return estimates, subset_interval(found, samples), float(failed_high), variables
 
 
-def _importance(margin: LimitState, samples: int, generators: list[np.random.Generator]) -> _Found:
+def _importance(margin: LimitState, samples: int, generators: _Generators) -> _Found:
     u = generators[0].standard_normal((samples, margin.dimension))
     first = margin(u)
     hits, failed = int((first > 0).sum()), margin.failed
@@ -185,23 +163,19 @@ def _importance(margin: LimitState, samples: int, generators: list[np.random.Gen
             "FORM found no design point: the output is not smooth enough, rows fail on the way, or"
             " the threshold is out of reach; use method 'subset'"
         )
-    drawn = [drawn_around(points, samples, rng) for rng in generators]
-    inside = margin(np.concatenate([u for u, _ in drawn])) > 0
-    weights = np.concatenate([weight for _, weight in drawn])
+    drawn, weights = zip(*(drawn_around(points, samples, rng) for rng in generators), strict=True)
+    inside = margin(np.concatenate(drawn)) > 0
+    estimates = (np.concatenate(weights) * inside).reshape(-1, samples).mean(axis=1)
     index = np.linalg.norm(points, axis=1)
-    estimates = (weights * inside).reshape(-1, samples).mean(axis=1)
-    interval = (
-        log_scatter_interval(estimates)
-        if estimates.any()
-        else binomial_interval(hits / samples, samples)
-    )
+    first_rows = binomial_interval(hits / samples, samples)
     variables = {
         "reliability_index": ("design_point", index),
         "first_order": ("design_point", ndtr(-index)),
         "location": (("design_point", "parameter"), margin.uncertain(points)),
     }
-    worst = with_failed_inside(hits, failed, samples)
-    return _Found(estimates, interval, worst, variables)
+    interval = log_scatter_interval(estimates) if estimates.any() else first_rows
+    failed_high = binomial_interval((hits + failed) / samples, samples)[1]
+    return estimates, interval, float(failed_high), variables
 
 
 METHODS = {"subset": _subset, "importance": _importance}
@@ -224,29 +198,25 @@ def _check(threshold: float, method: str, samples: int, replicates: int) -> None
 
 def _where_it_ended(ds: xr.Dataset) -> str:
     """Say why replicates of subset simulation ended before the event."""
-    if "ended" not in ds:
-        return ""
-    ended, count = ds["ended"].values, ds.sizes["replicate"]
     causes = {
-        "plateau": "came to a plateau, where no row lies above the others",
-        "smallest": f"came to levels below {SMALLEST:g}: the threshold may be out of reach",
+        "plateau": "ended on a plateau, where no row lies above the others",
+        "smallest": f"ended at levels below {SMALLEST:g}: the threshold may be out of reach",
     }
-    seen = {cause: int((ended == cause).sum()) for cause in causes}
+    ended = ds["ended"].values.tolist() if "ended" in ds else []
     return "".join(
-        f"; {number} of {count} replicates {causes[cause]}"
-        for cause, number in seen.items()
-        if number
+        f"; {ended.count(cause)} of {len(ended)} replicates {words}"
+        for cause, words in causes.items()
+        if cause in ended
     )
 
 
 def _notes(ds: xr.Dataset, margin: LimitState) -> list[str]:
-    """Say what the numbers do not say of themselves."""
+    """Return caveats that the numbers do not show."""
     notes = []
     estimates, most = ds["estimate"].values, float(ds["high"])
-    count = len(estimates)
+    lost, count = int((estimates == 0).sum()), len(estimates)
     if np.isnan(most):
-        notes.append("no interval: one replicate does not show how far its estimates scatter")
-    lost = int((estimates == 0).sum())
+        notes.append("no interval: a single replicate does not show the scatter of its estimate")
     if lost:
         seen = (
             "no row lay beyond the threshold"
@@ -254,22 +224,22 @@ def _notes(ds: xr.Dataset, margin: LimitState) -> list[str]:
             else f"{lost} of {count} replicates never got beyond the threshold"
         )
         notes.append(
-            f"{seen}: the rows support no more than a probability below {most:.2g}"
-            f"{_where_it_ended(ds)}; more samples say more"
+            f"{seen}: the rows only support a probability below {most:.2g}{_where_it_ended(ds)};"
+            " more samples support a lower one"
         )
     elif ds.attrs["method"] == "subset" and ds["probability"] > LEVEL_SHARE:
-        notes.append("not a rare event: 'uq run' with this threshold says as much, and more")
+        notes.append("not a rare event: 'uq run' with this threshold reports as much, and more")
     if ds.attrs["method"] == "importance":
         notes.append(
-            "holds only if the event lies around the design points that were found; method"
-            " 'subset' looks everywhere"
+            "valid only if the event lies around the design points that were found; method"
+            " 'subset' searches everywhere"
         )
     if margin.failed:
         what = "".join(f"; {label}: {text}" for label, text in margin.failures.items())
         notes.append(
             f"{margin.failed} of {int(ds['rows'])} rows failed, or were censored before the"
-            " threshold, and count as outside the event: the probability is a lower bound; counted"
-            f" as within, the rows support no more than {float(ds['failed_high']):.2g}{what}"
+            " threshold, and count as outside the event: the probability is a lower bound; with"
+            f" them within, the rows support no more than {float(ds['failed_high']):.2g}{what}"
         )
     if margin.undefined:
         notes.append(

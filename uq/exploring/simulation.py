@@ -1,4 +1,4 @@
-"""One row of a model, outside of any study."""
+"""One row of a model, without a study."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -23,7 +23,7 @@ def simulate(
     seed: int = 0,
     trajectory: bool = True,
 ) -> xr.Dataset:
-    """Run a model once, at its nominal values but for what is given.
+    """Run a model once, at its nominal values except those given.
 
     Parameters
     ----------
@@ -36,18 +36,18 @@ def simulate(
     seed : int
         0 to 2^64 - 1, for models that draw random numbers.
     trajectory : bool
-        Whether to compute the time history too.
+        Whether to compute the time history as well.
 
     Returns
     -------
     xarray.Dataset
-        One row of outputs and its status, all parameters, and, where the model gives one,
-        ``trajectory`` (time, quantity) with the unit of each quantity beside it.
+        One row of outputs and its status, all parameters, and, if the model has one,
+        ``trajectory`` (time, quantity) with the unit of each quantity.
 
     Raises
     ------
     InputError
-        When a name is unknown or a value not admissible.
+        When a name is unknown or a value is not admissible.
 
     Examples
     --------
@@ -55,24 +55,19 @@ def simulate(
     4.75
     """
     model = find_model(model) if isinstance(model, str) else model
-    given = dict(parameters or {})
-    faults = [
-        f"{name} = {value!r}: {problem}"
-        for name, value in given.items()
-        if (problem := parameter_problem(model, name, value))
-    ]
-    frozen, wrong = read_settings(model, settings or {})
+    given, chosen = dict(parameters or {}), dict(settings or {})
+    problems = {name: parameter_problem(model, name, value) for name, value in given.items()}
+    frozen, wrong = read_settings(model, chosen)
+    faults = [f"{name} = {given[name]!r}: {why}" for name, why in problems.items() if why]
     faults += [
-        f"setting {name} = {settings[name]!r}: {problem}" if name and settings else problem
-        for name, problem in wrong.items()
+        f"setting {name} = {chosen[name]!r}: {why}" if name else why for name, why in wrong.items()
     ]
     if faults:
         raise InputError(*faults)
 
     values = model.nominal | {name: float(value) for name, value in given.items()}
     x = np.array([[values[name] for name in model.parameter_names]])
-    seeds = np.array([seed], dtype=np.uint64)
-    chunk = in_background(lambda: evaluate(model, frozen, x, seeds))
+    chunk = in_background(lambda: evaluate(model, frozen, x, np.array([seed], dtype=np.uint64)))
     failures = {label: text for label, (_, text) in chunk.failures.items()}
     ds = results.build_rows(model, frozen, values, chunk.columns, chunk.status, failures)
     if not trajectory or model.simulate is None:
@@ -81,7 +76,7 @@ def simulate(
 
 
 def holds_trajectory(path: Path) -> bool:
-    """Return whether a file is the netCDF form of what `simulate` returned with a trajectory."""
+    """Return whether a file is a netCDF file of what `simulate` returns with a trajectory."""
     try:
         with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as ds:
             roles = [variable.attrs.get("role") for variable in ds.data_vars.values()]

@@ -1,7 +1,7 @@
-"""Subset simulation: a rare event as a chain of likely ones, several replicates abreast.
+"""Subset simulation: a rare event as a chain of likely events, all replicates at once.
 
-Written here because OpenTURNS 1.27 asks for a hundred rows at a time, one replicate after the
-other, and ends one run in some dozens with "The variance estimate must be >= 0".
+Our own, because OpenTURNS 1.27 asks for a hundred rows at a time, one replicate after the other,
+and ends one run in a few dozen with "The variance estimate must be >= 0".
 """
 
 from collections.abc import Callable, Generator
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 LimitState = Callable[[Floats], Floats]
 """``margin(u)``: points of standard normal space (n, d) -> distance beyond the limit (n,), positive
-within the event; a row without a value has -inf."""
+within the event, -inf for a row without a value."""
 
 LEVEL_SHARE = 0.1
 """Share of a level's rows from which the next level grows."""
@@ -22,17 +22,17 @@ LEVEL_SHARE = 0.1
 SMALLEST = 1e-12
 """A probability below which a replicate gives up."""
 
-_ACCEPTED = 0.44  # share of moves accepted at which chains forget fastest
+_ACCEPTED = 0.44  # share of accepted moves at which chains mix fastest
 _FIRST_STEP = 0.6
 
 
 class Found(NamedTuple):
-    """What one replicate found.
+    """The outcome of one replicate.
 
     Attributes
     ----------
     probability : float
-        0 if no row ever lay within the event.
+        0 if no row was within the event.
     levels : int
         Levels sampled.
     inside : ndarray, shape (k, d)
@@ -40,9 +40,9 @@ class Found(NamedTuple):
     reached : float
         Probability of the last level, of which the event is a part.
     first_hits : int
-        Rows within the event among the first level's, which are independent.
+        Rows within the event among those of the first level, which are independent.
     ended : {"event", "plateau", "smallest"}
-        Why it went no further.
+        Why it ended.
     """
 
     probability: float
@@ -61,7 +61,7 @@ def subset_simulation(
     Parameters
     ----------
     margin : callable
-        See `LimitState`. Called with the rows of all replicates together.
+        See `LimitState`. Called with the rows of all replicates at once.
     d : int
         Dimension of standard normal space.
     samples : int
@@ -76,13 +76,13 @@ def subset_simulation(
 
     Notes
     -----
-    Levels as in [1]_; chains move by conditional sampling with a step adapted to the share of moves
-    accepted [2]_. A margin with random numbers of its own, drawn afresh in each call, is sampled
-    rightly too: they are part of the state and proposed independently. Levels respect ties: where
-    so many rows share the lowest value that a level would be all of them, it is what lies strictly
-    above it. A replicate ends within the event; or on a plateau, where no row lies above the others
-    so that nothing leads further; or at a level less likely than `SMALLEST`. There is no budget: a
-    level that does not rise ends the replicate, and each that rises leaves rows behind.
+    Levels as in [1]_; chains move by conditional sampling with a step adapted to the share of
+    accepted moves [2]_. A margin with its own random numbers, drawn afresh in each call, is sampled
+    correctly too: they are part of the state and proposed independently. Levels respect ties: if so
+    many rows share the lowest value that a level would contain them all, it is what lies strictly
+    above that value. A replicate ends within the event; or on a plateau, where no row lies above
+    the others; or at a level less likely than `SMALLEST`. There is no budget: a level that does not
+    rise ends the replicate, and each that rises leaves rows behind.
 
     References
     ----------
@@ -107,14 +107,14 @@ def subset_simulation(
 
 
 def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, Floats, Found]:
-    """Yield the points of one replicate, be sent their margins, return what it found."""
+    """Yield the points of one replicate, receive their margins, return its outcome."""
     u = rng.standard_normal((samples, d))
     g = yield u
     top, first_hits = ceil(LEVEL_SHARE * samples), int((g > 0).sum())
     probability, levels, step = 1.0, 1, _FIRST_STEP
     while True:
         limit, lowest = np.partition(g, -top)[-top], g.min()
-        if limit == lowest:  # a tie: go on from the few rows above it, if there are any
+        if limit == lowest:  # a tie: go on from the few rows above it, if any
             limit = g[g > lowest].min(initial=np.inf)
         if limit > 0:
             hits = g > 0

@@ -6,13 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from uq.indices.transforms import (
-    Transformed,
-    heaviness,
-    logarithm,
-    rank,
-    rate,
-)
+from uq.indices.transforms import Transformed, heaviness, logarithm, rank, rate
 from uq.rows.elements import Element, Floats, flags
 from uq.rows.results import failed
 

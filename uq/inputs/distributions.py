@@ -5,9 +5,9 @@ counterpart. `uq.inputs.observed` has those of listed values, `uq.inputs.registr
 """
 
 from math import exp, log, log1p, sqrt
-from typing import Any, Literal, Self
+from typing import Any, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field
 
 from uq.inputs.law import Law, Positive, Scipy
 
@@ -85,18 +85,13 @@ class LogNormal(Law):
         }
     )
 
+    either = (("mean", "cv"), ("median", "sigma"))
+
     distribution: Literal["lognormal"]
     mean: Positive | None = None
     cv: Positive | None = Field(None, description="standard deviation over mean")
     median: Positive | None = None
     sigma: Positive | None = Field(None, description="standard deviation of the logarithm")
-
-    @model_validator(mode="after")
-    def _check_pair(self) -> Self:
-        given = {"mean", "cv", "median", "sigma"} & self.model_fields_set
-        if given not in ({"mean", "cv"}, {"median", "sigma"}):
-            raise ValueError("a lognormal law takes either mean and cv, or median and sigma")
-        return self
 
     def _scipy(self) -> Scipy:
         if self.mean is not None and self.cv is not None:

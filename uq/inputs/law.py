@@ -23,6 +23,8 @@ class Law(BaseModel):
 
     _ascending: ClassVar[tuple[str, ...]] = ()
     discrete: ClassVar[bool] = False
+    either: ClassVar[tuple[tuple[str, ...], ...]] = ()
+    """Sets of arguments, one of which is given."""
 
     source: str = Field("", description="where the numbers come from; shown in every result")
     truncate: Annotated[tuple[float, float] | None, LIST] = Field(
@@ -60,6 +62,16 @@ class Law(BaseModel):
                 f"{name} = {value!r}" for name, value in zip(names, values, strict=True)
             )
             raise ValueError(f"must have {wanted}: {given}")
+        return self
+
+    @model_validator(mode="after")
+    def _check_either(self) -> Self:
+        names = {name for some in self.either for name in some}
+        if names and names & self.model_fields_set not in map(set, self.either):
+            name = vars(self)["distribution"]
+            article = "an" if name[0] in "aeiou" else "a"
+            choice = ", or ".join(" and ".join(some) for some in self.either)
+            raise ValueError(f"{article} {name} law takes either {choice}")
         return self
 
     @model_validator(mode="after")

@@ -131,6 +131,8 @@ class IntegerRange(Listed):
 class Empirical(Listed):
     """The values in a column of a CSV file, all alike: sampling them is drawing one of them."""
 
+    either = (("file", "column"), ("values",))
+
     distribution: Literal["empirical"]
     file: str | None = Field(None, description="CSV file with a header, beside the study file")
     column: str | None = Field(None, description="name of the column")
@@ -138,11 +140,6 @@ class Empirical(Listed):
 
     @model_validator(mode="after")
     def _check_values(self) -> Self:
-        if {"file", "column", "values"} & self.model_fields_set not in (
-            {"file", "column"},
-            {"values"},
-        ):
-            raise ValueError("an empirical law takes either file and column, or values")
         if self.values is not None and (problem := values_problem(self.values)):
             raise ValueError(problem)
         return self

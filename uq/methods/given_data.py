@@ -84,9 +84,7 @@ def beside_nulls(
                 lost = name in tied and sorts_rows
                 found[kind][name] = Estimate(np.nan if lost else value)
         return Indices(
-            found,
-            notes,
-            {kind: _null(corrected(one, one), len(x)) for kind, one in idle.items()},
+            found, notes, {kind: _null(corrected(one, one), len(x)) for kind, one in idle.items()}
         )
 
     return estimate

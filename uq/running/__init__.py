@@ -1,13 +1,13 @@
-"""Rows carried out: here, in processes of their own, on dask workers.
+"""Rows carried out: here, in separate processes, on dask workers.
 
-Reading order: `runner` leads from a study to its result. Its `executor` decides who computes, its
+Reading order: `runner` leads from a study to its result. Its `executor` decides who computes; its
 `dispatch` takes the rows in order, cuts them into chunks and has each computed here or on workers.
 
 - Here: `isolation` starts a `child` process that rows may crash or never leave.
-- On workers: `sent_chunks` sends chunks, and sends them again where a worker was killed; `workers`
-  is what a run sees of a `local_cluster` of `dask_worker` processes, or of a `remote_cluster`;
-  `dask_task` is what they are asked to do.
-- Beside them: `options` (what the user chooses), `progress` (what the user sees), `existing` (a
-  result that is already there), `planning` (what a run will cost), `environment` (what makes
-  another process compute as this one does).
+- On workers: `sent_chunks` sends chunks, and sends them again if a worker is killed; `workers` is
+  what a run sees of a `local_cluster` of `dask_worker` processes, or of a `remote_cluster`;
+  `dask_task` is their task.
+- Beside them: `options` (what the user chooses and sees), `existing` (a result that is already
+  there), `planning` (what a run will cost), `environment` (what makes another process compute as
+  this one).
 """

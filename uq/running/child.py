@@ -1,6 +1,6 @@
-"""A process that computes rows for the one that started it: ``python -m uq.running.child HANDLE``.
+"""A process that computes rows for its parent: ``python -m uq.running.child HANDLE``.
 
-A kernel may crash it or never return; then the other one ends it and starts another.
+A kernel may crash it or never return; then the parent ends it and starts another.
 """
 
 import os
@@ -9,9 +9,6 @@ import threading
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from typing import Any, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
 
 from uq.compilation import compilation
 from uq.contract import Model
@@ -22,20 +19,20 @@ from uq.study.registry import find_model
 
 
 class ModelSpec(NamedTuple):
-    """What a child is for: one model with its settings.
+    """One model with its settings, for a child to run.
 
     Attributes
     ----------
     model : str
-        What `uq.study.registry.find_model` finds it by.
+        Reference for `uq.study.registry.find_model`.
     version : str
-        Which version of it is wanted.
+        Of the model that is wanted.
     settings : tuple of (str, object)
         Names and values.
     output : str
-        The cheap output that it computes alone; "" for all outputs.
+        The cheap output to be computed alone; "" for all outputs.
     code : str
-        `uq.study.code.code_of` the model that is wanted; "" for any.
+        `uq.study.code.code_of` the wanted model; "" for any.
     """
 
     model: str
@@ -44,33 +41,42 @@ class ModelSpec(NamedTuple):
     output: str = ""
     code: str = ""
 
-    def find_model(self) -> Model:
-        """Return the model, as far as it is wanted."""
+    def load(self) -> tuple[Model, Any]:
+        """Return the model, as far as it is wanted, and its settings.
+
+        Raises
+        ------
+        InputError
+            When this process has no such model, or a different one.
+        """
         model = find_model(self.model)
-        return model.alone(self.output) if self.output else model
-
-
-class Request(NamedTuple):
-    """Rows to be computed; see `uq.rows.evaluate.evaluate`."""
-
-    x: NDArray[np.float64]
-    seed: NDArray[np.uint64]
-    start: int
+        if model.version != self.version:
+            raise InputError(
+                f"a worker has version {model.version} of model '{model.name}', "
+                f"this process has {self.version}: install the same on both"
+            )
+        if self.code not in ("", code_of(self.model)):
+            raise InputError(
+                f"a worker has other code of model '{model.name}' than this process: start again "
+                "if it was edited meanwhile, or install the same on both"
+            )
+        wanted = model.alone(self.output) if self.output else model
+        return wanted, model.settings(**dict(self.settings))
 
 
 READY, COMPILING, COMPILED, DONE, REFUSED = "ready", "compiling", "compiled", "done", "refused"
-"""What a child says; with the last two goes a chunk or an exception."""
+"""Messages of a child; the last two come with a chunk or an exception."""
 
 
 def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.Thread:
-    """End this process, from a thread, when the pipe that is its standard input closes.
+    """End this process, from a thread, when the pipe at its standard input closes.
 
-    It does so when the process that holds the other end stops, however that ends.
+    It closes when the process at the other end stops, for whatever reason.
 
     Parameters
     ----------
     cleanup : callable
-        Called before.
+        Called first.
 
     Returns
     -------
@@ -78,7 +84,7 @@ def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.T
     """
 
     def wait() -> None:
-        # From the file descriptor: a thread inside sys.stdin would hold its lock for ever.
+        # From the file descriptor: a thread inside sys.stdin would never release its lock.
         while os.read(0, 1024):
             pass
         cleanup()
@@ -90,23 +96,12 @@ def end_with_parent(cleanup: Callable[[], object] = lambda: None) -> threading.T
 
 
 def main(handle: str) -> None:
-    """Answer the requests that arrive on a connection until it closes."""
+    """Answer requests, each the arguments of `evaluate`, until the connection closes."""
     end_with_parent()
     connection = Connection(int(handle))
     spec: ModelSpec = connection.recv()
     try:
-        model = spec.find_model()
-        if model.version != spec.version:
-            raise InputError(
-                f"a worker has version {model.version} of model '{model.name}', "
-                f"this process has {spec.version}: install the same on both"
-            )
-        if spec.code not in ("", code_of(spec.model)):
-            raise InputError(
-                f"a worker has other code of model '{model.name}' than this process: start again "
-                "if it was edited meanwhile, or install the same on both"
-            )
-        settings = model.settings(**dict(spec.settings))
+        model, settings = spec.load()
     except Exception as error:
         connection.send((REFUSED, error))
         return
@@ -114,9 +109,9 @@ def main(handle: str) -> None:
     compiling, compiled = ((word, None) for word in (COMPILING, COMPILED))
     with compilation(lambda: connection.send(compiling), lambda: connection.send(compiled)):
         while True:
-            request: Request = connection.recv()
+            rows = connection.recv()
             try:
-                answer: Any = DONE, evaluate(model, settings, *request)
+                answer: Any = DONE, evaluate(model, settings, *rows)
             except Exception as error:
                 answer = REFUSED, error
             connection.send(answer)
@@ -125,5 +120,5 @@ def main(handle: str) -> None:
 if __name__ == "__main__":
     try:
         main(sys.argv[1])
-    except (EOFError, OSError):  # the connection closed: nobody wants an answer
+    except (EOFError, OSError):  # the connection closed: no answer is wanted
         sys.exit(0)

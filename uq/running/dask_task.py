@@ -1,7 +1,7 @@
-"""What a worker process is asked to do: plain data in, plain data out.
+"""The task of a worker process: plain data in, plain data out.
 
-A worker hands the rows on to a child of its own, one per thread, which they may crash or never
-leave. Apart from the rest, so that a worker imports no more than it needs.
+A worker passes the rows on to a child of its own, one per thread, which they may crash or never
+leave. A separate module, so that a worker imports only what it needs.
 """
 
 import threading
@@ -20,7 +20,7 @@ from uq.running.isolation import Isolated
 
 _lock = threading.Lock()
 _idle: list[Isolated] = []
-_KEPT = 64  # children at most that wait for more rows of their model
+_KEPT = 64  # idle children at most
 
 
 def evaluate_rows(
@@ -31,18 +31,18 @@ def evaluate_rows(
     seed: NDArray[np.uint64],
     start: int,
 ) -> tuple[Chunk, float]:
-    """Run some rows in a worker process, and say how many seconds that took.
+    """Run some rows in a worker process; return their outputs and the time it took [s].
 
-    One dask task, given plain data only: a worker that lacks the model would not survive the
-    arrival of one of its objects.
+    One dask task, given plain data only: a worker that lacks the model would not survive receiving
+    one of its objects.
 
     Parameters
     ----------
     spec : uq.running.child.ModelSpec
     versions : dict of str to str
-        What computes must be, as `uq.provenance.versions` tells.
+        Versions that the worker must have; see `uq.provenance.versions`.
     limit : float or None
-        Longest time for one row [s].
+        Time limit of a row [s].
     x, seed, start
         As in `uq.rows.evaluate.evaluate`.
     """
@@ -55,22 +55,18 @@ def evaluate_rows(
 
 
 def end_children() -> None:
-    """End the children that wait for more rows."""
+    """End the idle children."""
     with _lock:
-        waiting = _idle.copy()
-        _idle.clear()
-    for child in waiting:
-        child.close()
+        while _idle:
+            _idle.pop().close()
 
 
 @contextmanager
 def _child(spec: ModelSpec, limit: float | None) -> Iterator[Isolated]:
-    """Yield a child that nobody else uses, a waiting one if there is one."""
+    """Yield a child for this call alone, an idle one if there is one."""
     with _lock:
-        fitting = [child for child in _idle if (child.spec, child.limit) == (spec, limit)]
-        child = fitting[0] if fitting else Isolated(spec, limit)
-        if fitting:
-            _idle.remove(child)
+        fitting = [i for i, one in enumerate(_idle) if (one.spec, one.limit) == (spec, limit)]
+        child = _idle.pop(fitting[0]) if fitting else Isolated(spec, limit)
     try:
         yield child
     except BaseException:

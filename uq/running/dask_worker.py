@@ -1,7 +1,7 @@
 """One dask worker process of a local cluster: ``python -m uq.running.dask_worker ADDRESS FOLDER``.
 
-Its standard input is a pipe from the process that started it. When that process ends, however it
-ends, the pipe closes; then the worker removes their temporary folder and stops.
+Its standard input is a pipe from its parent. When the parent ends, for whatever reason, the pipe
+closes; then the worker removes their temporary folder and stops.
 """
 
 import asyncio
@@ -18,7 +18,7 @@ def main(address: str, folder: str) -> None:
     guard = end_with_parent(lambda: shutil.rmtree(folder, ignore_errors=True))
     try:
         asyncio.run(_serve(address, folder))
-    finally:  # the scheduler lives in the parent: if that is gone, there is something to remove
+    finally:  # the scheduler lives in the parent: if it is gone, the folder must be removed
         guard.join(_GOODBYE_SECONDS)
 
 

@@ -1,4 +1,4 @@
-"""The rows of one run: taken in order, computed here or on workers, kept.
+"""The rows of one run: taken in order, computed here or on workers, and kept.
 
 Rows are cut into chunks of whole design groups, one kernel call each. How they are cut and who
 computes them changes no bit of the result.
@@ -13,8 +13,7 @@ from uq.rows.evaluate import Chunk, KernelError
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
 from uq.running.isolation import Evaluate
-from uq.running.options import RunOptions
-from uq.running.progress import Progress
+from uq.running.options import Progress, RunOptions
 from uq.running.sent_chunks import SentChunks
 from uq.store import DiskStore, MemoryStore, row_bytes
 
@@ -22,17 +21,17 @@ if TYPE_CHECKING:
     from uq.running.workers import Workers
 
 CHUNK_SECONDS = 0.5
-"""Work in a chunk, unless the caller says how many rows."""
+"""Work in a chunk, unless the number of rows is given."""
 
-# Longest chunk for the sake of a whole block of the kernel: half a block may take as long.
+# Longest chunk that is a whole block of the kernel: half a block may take as long.
 _BLOCK_SECONDS = 5.0
 _FIRST_ROWS = 16
 _SENT_CHUNKS = 4  # at least, also while workers start
-_LAST_SHARE = 1 / 8  # of a chunk: smaller ones towards the end would waste work
+_LAST_SHARE = 1 / 8  # of a chunk: smaller chunks at the end would waste work
 _GROWTH = 4  # of the chunks of the pilot
 _LIMIT_SHARE = 0.25  # of the time limit of a row, for a whole chunk
 _CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
-_ENOUGH_ROWS = 32  # to blame the model and not the rows
+_ENOUGH_ROWS = 32  # to blame the model rather than the rows
 
 
 class Dispatcher:
@@ -43,11 +42,11 @@ class Dispatcher:
     workload : Workload
     options : RunOptions
     store : MemoryStore or DiskStore
-        Where they are kept; what it lacks is computed.
+        Keeps the rows; missing rows are computed.
     evaluate : callable
         Computes rows on this computer.
     stop : int, optional
-        Number behind the last row that is wanted; by default all are.
+        Number after the last row that is wanted; by default all are.
 
     Attributes
     ----------
@@ -66,9 +65,7 @@ class Dispatcher:
         self.workload = workload
         self.store = store
         self._options = options
-        self._wish = options.chunk_rows
         self._evaluate = evaluate
-        self._row_limit = options.row_limit
         stop = store.total if stop is None else stop
         self._todo = deque((a, min(b, stop)) for a, b in store.missing if a < stop)
         self._rows = sum(b - a for a, b in self._todo)
@@ -83,26 +80,21 @@ class Dispatcher:
 
     @property
     def seconds(self) -> float:
-        """Work of all rows that were to be computed, by the cost of the latest."""
+        """Work of all rows to be computed, at the cost of the latest [s]."""
         return self._row_seconds * self._rows
 
     @property
     def seconds_left(self) -> float:
-        """Work that is left, by the cost of the latest rows computed here."""
+        """Work left, at the cost of the latest rows [s]."""
         return self._row_seconds * self._left
 
-    @property
-    def groups(self) -> int:
-        """Tasks into which the rows can be cut at most."""
-        return self.store.total // self.workload.group
-
     def pilot(self, share: float) -> None:
-        """Run the first rows here, more and more of them, until a chunk takes a while.
+        """Run the first rows here, in growing chunks, until a chunk takes long enough.
 
-        The first call may compile, so only later ones tell the cost of a row. No more than about
-        `share` of all rows that are to be computed is done here.
+        The first call may compile, so only later ones show the cost of a row. At most about `share`
+        of all rows to be computed run here.
         """
-        size = self._whole(self._wish or _FIRST_ROWS)
+        size = whole_groups(self.workload, self._options.chunk_rows or _FIRST_ROWS)
         least_left = (1 - share) * self._untaken
         self._here(size)
         spent = 0.0
@@ -111,18 +103,18 @@ class Dispatcher:
             spent += self._here(size)
 
     def finish_here(self) -> None:
-        """Run the other rows without workers."""
+        """Run the remaining rows without workers."""
         while not self.complete:
             self._here(self._chunk_rows())
 
     def finish_on(self, crew: "Workers") -> None:
-        """Run the other rows on workers, and here while none of our own is there."""
+        """Run the remaining rows on workers, and here until a local worker is there."""
         self._dashboard = crew.dashboard
-        sent = SentChunks(self.workload, crew, self._row_limit)
+        sent = SentChunks(self.workload, crew, self._options.row_limit)
         while not self.complete:
             threads = crew.threads
             sharing = max(1, threads or crew.own)
-            # No more chunks are sent than keep the workers busy.
+            # Only as many chunks are sent as keep the workers busy.
             while self._untaken and len(sent) < max(_SENT_CHUNKS, 2 * sharing):
                 sent.send(*self._take(self._shared(sharing)))
             if crew.own and not threads and self._untaken:
@@ -133,7 +125,7 @@ class Dispatcher:
             self.store.keep_up()
 
     def _here(self, size: int) -> float:
-        """Run the next rows on this computer; return the seconds it took."""
+        """Run the next rows on this computer; return the time it took [s]."""
         if not self._untaken:
             return 0.0
         start, some = self._take(size)
@@ -156,7 +148,7 @@ class Dispatcher:
         self.store.preview.add(chunk)
         self.store.add(start, some, chunk)
         self._left -= len(some.x)
-        self.report_progress()  # at once: an interrupt says how many rows are kept
+        self.report_progress()  # at once: an interrupt reports how many rows are kept
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
             raise KernelError(f"model '{self.workload.model.name}': every row is wrong: {wrong}")
@@ -171,34 +163,40 @@ class Dispatcher:
 
     def _chunk_rows(self) -> int:
         most = _CHUNK_BYTES // row_bytes(self.workload)
-        if self._row_limit and self._row_seconds:  # sound chunks are not to be stopped
-            most = max(1, min(most, int(_LIMIT_SHARE * self._row_limit / self._row_seconds)))
-        if self._wish:
-            return self._whole(min(self._wish, most) if self._row_limit else self._wish)
-        return min(self._whole(most), chunk_rows(self.workload, self._row_seconds))
+        if (
+            self._options.row_limit and self._row_seconds
+        ):  # chunks of sound rows must not be stopped
+            most = max(
+                1, min(most, int(_LIMIT_SHARE * self._options.row_limit / self._row_seconds))
+            )
+        if wish := self._options.chunk_rows:
+            return whole_groups(self.workload, min(wish, most) if self._options.row_limit else wish)
+        good = chunk_rows(self.workload, self._row_seconds)
+        return min(whole_groups(self.workload, most), good)
 
     def _shared(self, threads: int) -> int:
-        """Return the rows of the next chunk: all threads are to finish together."""
+        """Return the rows of the next chunk, so that all threads finish together."""
         size = self._chunk_rows()
         share = max(ceil(self._untaken / threads), int(_LAST_SHARE * size))
-        return min(size, self._whole(share))
-
-    def _whole(self, size: float) -> int:
-        """Round up to whole groups of the design."""
-        return self.workload.group * ceil(size / self.workload.group)
+        return min(size, whole_groups(self.workload, share))
 
 
 def chunk_rows(workload: Workload, row_seconds: float) -> int:
-    """Return how many rows make a good chunk, whole groups of the design.
+    """Return the number of rows of a good chunk, in whole groups of the design.
 
     Parameters
     ----------
     workload : Workload
     row_seconds : float
-        What a row costs [s], 0 if unknown.
+        Cost of a row [s], 0 if unknown.
     """
     size: float = _CHUNK_BYTES // row_bytes(workload)
     if row_seconds:
         block = min(workload.model.block, ceil(_BLOCK_SECONDS / row_seconds))
         size = min(size, block * max(1, round(CHUNK_SECONDS / (row_seconds * block))))
-    return workload.group * ceil(size / workload.group)
+    return whole_groups(workload, size)
+
+
+def whole_groups(workload: Workload, rows: float) -> int:
+    """Round a number of rows up to whole groups of the design."""
+    return workload.group * ceil(rows / workload.group)

@@ -1,4 +1,4 @@
-"""What makes another process import and compile as this one does."""
+"""What makes another process import and compile as this one."""
 
 import os
 import sys
@@ -7,21 +7,21 @@ from typing import Any
 SINGLE_THREADED = {
     f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL", "VECLIB_MAXIMUM")
 }
-"""Environment that these libraries read when they are loaded.
+"""Environment variables that these libraries read when they are loaded.
 
-Several processes with a thread per core each would get in each other's way, and another number of
-threads may give other last bits.
+Several processes with one thread per core each would slow each other down, and a different number
+of threads may change the last bits.
 """
 
 
 def command(module: str, *arguments: str) -> list[str]:
     """Return the command that runs a module in another process of this Python."""
-    # -P: the folder one works in is searched only where this process searches it.
+    # -P: the current folder is searched only if this process searches it.
     return [sys.executable, "-P", "-m", module, *arguments]
 
 
 def inherited() -> dict[str, str]:
-    """Return the environment of a process that is to give the bits of this one."""
+    """Return the environment of a process that must give the same bits as this one."""
     environment = dict(os.environ) | {"PYTHONPATH": os.pathsep.join(sys.path)}
     return SINGLE_THREADED | environment | _numba_settings()
 
@@ -29,7 +29,7 @@ def inherited() -> dict[str, str]:
 def _numba_settings() -> dict[str, str]:
     """Return the instruction set and cache that numba uses in this process, if it is loaded.
 
-    It reads the environment once, at import: what the environment says now may be something else.
+    It reads the environment once, at import; the environment may have changed since.
     """
     if "numba" not in sys.modules:
         return {}

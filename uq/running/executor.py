@@ -1,7 +1,8 @@
-"""Who computes rows: this computer, and dask workers where the work is worth starting them."""
+"""Who computes rows: this computer, and dask workers if the work is worth starting them."""
 
 from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
@@ -19,26 +20,26 @@ if TYPE_CHECKING:
     from uq.running.workers import Workers
 
 SHORT_SECONDS = 4.0
-"""Work that is shorter than this is not worth starting workers."""
+"""Shorter work is not worth starting workers."""
 
 
 class Executor:
-    """Whoever computes the rows of one dispatcher after another; a context manager.
+    """Computes the rows of one dispatcher after another; a context manager.
 
     Workers start when they are first needed, and stay for the next dispatcher.
 
     Parameters
     ----------
     workload : Workload
-        All dispatchers are about its model and settings.
+        With the model and settings of all dispatchers.
     options : RunOptions
     compiling : callable
-        Called when the model begins to be compiled.
+        Called when compilation of the model starts.
 
     Attributes
     ----------
     evaluate : Evaluate
-        Computes rows on this computer, in a process of their own unless the user wants none.
+        Computes rows on this computer, in a separate process unless the user wants none.
 
     Raises
     ------
@@ -64,7 +65,7 @@ class Executor:
     def __enter__(self) -> Self:
         if self._options.workers == 0:
             self._stack.enter_context(compilation(self._compiling))
-            self.evaluate = _in_process(self._workload)
+            self.evaluate = partial(_in_process, self._workload)
         else:
             process = isolated(self._workload, self._options.row_limit, self._compiling)
             self.evaluate = self._stack.enter_context(process)
@@ -94,26 +95,25 @@ class Executor:
         self._seconds += dispatcher.seconds
 
     def _short(self, dispatcher: Dispatcher) -> bool:
-        """Return whether these rows, with those before, are not worth starting workers."""
+        """Return whether these rows and those before are not worth starting workers."""
         return self._crew is None and self._seconds + dispatcher.seconds_left < SHORT_SECONDS
 
     def _started(self, dispatcher: Dispatcher) -> "Workers":
-        from uq.running import local_cluster, remote_cluster
+        from uq.running.local_cluster import CORES, local_workers
+        from uq.running.remote_cluster import remote_workers
 
         if self._crew is None:
             if self._options.scheduler is not None:
-                crew = remote_cluster.remote_workers(self._options.scheduler)
+                crew = remote_workers(self._options.scheduler)
             else:
-                count = self._options.workers or local_cluster.CORES
-                crew = local_cluster.local_workers(min(count, dispatcher.groups))
+                groups = dispatcher.store.total // dispatcher.workload.group
+                crew = local_workers(min(self._options.workers or CORES, groups))
             self._crew = self._stack.enter_context(crew)
         return self._crew
 
 
-def _in_process(workload: Workload) -> Evaluate:
-    """Return what computes rows in this process: nothing protects it from them."""
-
-    def call(x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
-        return in_background(lambda: evaluate(workload.model, workload.settings, x, seed, start))
-
-    return call
+def _in_process(
+    workload: Workload, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int
+) -> Chunk:
+    """Compute rows in this process, which nothing protects from them."""
+    return in_background(lambda: evaluate(workload.model, workload.settings, x, seed, start))

@@ -1,4 +1,4 @@
-"""The result of a study that is already there."""
+"""The existing result of a study."""
 
 import os
 from pathlib import Path
@@ -14,23 +14,23 @@ from uq.study.definition import Study
 
 
 def output_path(study: Study, output: str | Path | None = None) -> Path:
-    """Return where the result of a study goes."""
+    """Return the path of the result of a study."""
     return Path(output) if output is not None else Path("results") / f"{study.name}.nc"
 
 
 def finished(study: Study, path: Path) -> xr.Dataset | None:
-    """Return the result of this very study, if `path` holds it.
+    """Return the result of this study, if `path` holds it.
 
-    Its [analysis], comments and sources may have changed since: then the file gets the new text.
-    None also where it holds fewer samples, and more can be appended; a study that may end early is
-    complete where enough is known.
+    If its [analysis], comments or sources have changed since, the file gets the new text. None also
+    if it holds fewer samples and more can be appended; a study with [design] until is complete once
+    its estimate is precise enough.
 
     Raises
     ------
     InputError
         When `path` holds something else.
     """
-    if not os.path.isfile(path):  # nor can it be seen
+    if not os.path.isfile(path):  # or it is out of reach
         return None
     remedy = "choose another output, or overwrite it with --fresh"
     ds = results.open_result(path, remedy)
@@ -38,8 +38,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
         change = what_changed(ds.attrs["study"], ds.attrs["model_version"], study)
         raise InputError(f"{path}: holds the result of another study ({change}); {remedy}")
     there, wanted = int(ds.attrs["samples"]), study.design.samples
-    enough = there < wanted and stopping.ended(study.design, ds)
-    if there != wanted and not enough:
+    if there > wanted or (there < wanted and not stopping.ended(study.design, ds)):
         problem = remedy if there > wanted else refusal_to_extend(study)
         if problem:
             sizes = f"samples = {there}, not {wanted}"
@@ -53,7 +52,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
 
 
 def made_elsewhere(study: Study, path: Path, ds: xr.Dataset) -> str:
-    """Say what to do where rows of a result are of other code of its model than is here."""
+    """Say what to do about rows of a result that other code of the model computed."""
     if not is_other_code(ds.attrs, study.model_reference):
         return ""
     return (

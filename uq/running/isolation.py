@@ -1,7 +1,7 @@
-"""Rows computed in a process of their own, which they may crash or never leave.
+"""Rows computed in a separate process, which they may crash or never leave.
 
-Rows that do so are computed again in parts, down to single ones: the guilty ones get a status and a
-sentence, the others the values that they have anywhere.
+Such rows are computed again in parts, down to single rows: the guilty ones get a status and a
+message, the others the same values as anywhere.
 """
 
 import signal
@@ -30,11 +30,11 @@ from uq.study.code import code_of
 if TYPE_CHECKING:
     from uq.rows.workload import Workload
 
-# Somebody else may have killed a process: three, that of its chunk included, make a row guilty.
+# A process may be killed from outside: three kills, that of its chunk included, blame the row.
 _SINGLE_CRASHES = 2
-_PARTS = 8  # of rows that crashed: more would be small for kernels, fewer would crash more often
+_PARTS = 8  # of rows that crashed: more are too small for kernels, fewer crash more often
 _STARTS = 3
-_FIRST_SECONDS = 5.0  # a first call loads compiled code: 1 s, more where the computer is busy
+_FIRST_SECONDS = 5.0  # a first call loads compiled code: 1 s, more on a busy computer
 _DYING_SECONDS = 5.0
 _POLL_SECONDS = 0.2  # so that an interrupt is seen
 
@@ -44,7 +44,7 @@ Evaluate = Callable[[NDArray[np.float64], NDArray[np.uint64], int], Chunk]
 
 
 def spec_of(workload: "Workload") -> child.ModelSpec:
-    """Return what a process that computes rows of some work is told beforehand."""
+    """Return what a process needs to compute rows of a workload."""
     settings = tuple(asdict(workload.settings).items())
     code = code_of(workload.model_reference)
     return child.ModelSpec(
@@ -56,15 +56,15 @@ def spec_of(workload: "Workload") -> child.ModelSpec:
 def isolated(
     workload: "Workload", limit: float | None = None, compiling: Callable[[], object] = lambda: None
 ) -> Iterator[Evaluate]:
-    """Yield a function that computes rows of some work in a process of their own.
+    """Yield a function that computes rows of a workload in a separate process.
 
     Parameters
     ----------
     workload : Workload
     limit : float, optional
-        Longest time for one row [s].
+        Time limit of a row [s].
     compiling : callable
-        Called when that process begins to compile.
+        Called when that process starts to compile.
     """
     process = Isolated(spec_of(workload), limit, compiling)
     with undone(process.close):
@@ -72,15 +72,15 @@ def isolated(
 
 
 class Isolated:
-    """A process that computes rows, replaced when it dies.
+    """A process that computes rows, and is replaced when it dies.
 
     Parameters
     ----------
     spec : uq.running.child.ModelSpec
     limit : float or None
-        Longest time for one row [s]; compiling does not count.
+        Time limit of a row [s]; compilation does not count.
     compiling : callable
-        Called when the process begins to compile.
+        Called when the process starts to compile.
     """
 
     def __init__(
@@ -97,58 +97,44 @@ class Isolated:
         self._grace = 0.0
         self._closed = threading.Event()
 
-    def start(self) -> None:
-        """Start the process and load the model, if that is not done yet.
-
-        Raises
-        ------
-        InputError
-            When it has no such model, or another version of it.
-        RunError
-            When it cannot start, or was closed.
-        """
-        self._connection = self._connection or self._started()
-
     def evaluate(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int = 0) -> Chunk:
-        """Run some rows; parameters and exceptions as `uq.rows.evaluate.evaluate`.
+        """Run some rows; parameters and exceptions as in `uq.rows.evaluate.evaluate`.
 
         Raises
         ------
         RunError
             When the process cannot start, or was closed from another thread.
         """
-        chunk = self._ask(child.Request(x, seed, start))
+        chunk = self._ask(x, seed, start)
         if isinstance(chunk, Chunk):
             return chunk
         if len(x) == 1:
             return self._single(x, seed, start)
-        # A time that is over costs more than rows that are taken singly.
+        # Waiting for the time limit costs more than computing rows one by one.
         size = ceil(len(x) / _PARTS) if chunk.status is Status.CRASHED else 1
         parts = range(0, len(x), size)
         part = self.evaluate if size > 1 else self._single
         return joined([part(x[i : i + size], seed[i : i + size], start + i) for i in parts])
 
     def _single(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
-        """Run one row on its own, so that it is known who is guilty."""
+        """Run one row by itself, to find out whether it is guilty."""
         for _ in range(_SINGLE_CRASHES):
-            outcome = self._ask(child.Request(x, seed, start))
+            outcome = self._ask(x, seed, start)
             if isinstance(outcome, Chunk):
                 return outcome
             if outcome.status is not Status.CRASHED:
                 break
-        model = self.spec.find_model()
-        settings = model.settings(**dict(self.spec.settings))
-        return lost_rows(model, settings, 1, cast(Fault, outcome), start)
+        return lost_rows(*self.spec.load(), 1, cast(Fault, outcome), start)
 
     def close(self) -> None:
         """End the process, whatever it is doing."""
         self._closed.set()
         self._end(at_once=True)
 
-    def _ask(self, request: child.Request) -> Chunk | Fault:
+    def _ask(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk | Fault:
         try:
-            connection = self._connection or self._started()
-            connection.send(request)
+            connection = self.start()
+            connection.send((x, seed, start))
             answer = self._answer(connection, self.limit and self.limit + self._grace)
         except (EOFError, OSError):
             return Fault(Status.CRASHED, f"killed its process ({self._end()})")
@@ -159,11 +145,10 @@ class Isolated:
         kind, value = answer
         if kind == child.REFUSED:
             raise value
-        chunk: Chunk = value
-        return chunk
+        return cast(Chunk, value)
 
     def _answer(self, connection: Connection, limit: float | None) -> tuple[str, Any] | None:
-        """Return what the process has to say, or None when the time is over."""
+        """Return the answer of the process, or None when its time is over."""
         began: float | None = time.monotonic()
         while True:
             while not connection.poll(min(limit or _POLL_SECONDS, _POLL_SECONDS)):
@@ -178,8 +163,18 @@ class Isolated:
             else:
                 return kind, value
 
-    def _started(self) -> Connection:
-        """Start the process, again if somebody kills it meanwhile."""
+    def start(self) -> Connection:
+        """Start the process and load the model, unless done; again if it is killed meanwhile.
+
+        Raises
+        ------
+        InputError
+            When it has no such model, or a different one.
+        RunError
+            When it cannot start, or was closed.
+        """
+        if self._connection:
+            return self._connection
         for _ in range(_STARTS):
             if self._closed.is_set():
                 raise RunError("the process for the rows was ended")
@@ -190,7 +185,7 @@ class Isolated:
                     stdin=subprocess.PIPE,
                     stdout=subprocess.DEVNULL,
                     pass_fds=(there.fileno(),),
-                    start_new_session=True,  # Ctrl-C is for this process, which ends that one
+                    start_new_session=True,  # Ctrl-C reaches this process, which ends the other
                     env=inherited(),
                 )
             self._connection = connection
@@ -208,7 +203,7 @@ class Isolated:
         raise RunError(f"a process for the rows could not start: {reason}")
 
     def _end(self, at_once: bool = False) -> str:
-        """End the process, unless it is dying by itself; return how it ended."""
+        """End the process, unless it is already dying; return how it ended."""
         process, connection = self._process, self._connection
         self._process = self._connection = None
         if connection:
@@ -219,8 +214,6 @@ class Isolated:
             process.wait(0.0 if at_once else _DYING_SECONDS)
         except subprocess.TimeoutExpired:
             process.kill()
-            process.wait()
-        if process.stdin:
-            process.stdin.close()
+        process.communicate()  # closes its standard input, and waits
         code = process.returncode
         return signal.strsignal(-code) or "signal" if code < 0 else f"exit code {code}"

@@ -1,7 +1,7 @@
 """Dask worker processes on this computer.
 
-They are plain child processes that import ``uq.running.dask_worker``, so that the calling script
-needs no ``__main__`` guard; dask's scheduler runs in a thread of this process.
+They are plain child processes that run ``uq.running.dask_worker``, so that the calling script needs
+no ``__main__`` guard; dask's scheduler runs in a thread of this process.
 """
 
 import logging
@@ -23,10 +23,14 @@ from uq.running.environment import command, inherited
 from uq.running.workers import Workers, quiet
 
 CORES = CPU_COUNT
-"""Cores this process may use: affinity and container limits included."""
+"""Cores that this process may use, within affinity and container limits."""
 
 _START_SECONDS = 60
 _DEATHS_AT_MOST = 50  # between two chunks that arrive
+_WORKER_SETTINGS = {
+    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
+    "DASK_DISTRIBUTED__WORKER__HTTP__ROUTES": "[]",
+}
 
 
 @contextmanager
@@ -40,7 +44,7 @@ def local_workers(count: int) -> Iterator[Workers]:
     Yields
     ------
     Workers
-        They connect in their own time; what is submitted before waits for them.
+        They connect by and by; tasks submitted earlier wait for them.
     """
     with ExitStack() as stack:
         folder = Path(tempfile.mkdtemp(prefix="uq-"))
@@ -48,22 +52,18 @@ def local_workers(count: int) -> Iterator[Workers]:
         settings = {
             "temporary-directory": str(folder),
             "distributed.scheduler.http.routes": [],
-            "distributed.scheduler.allowed-failures": 2,  # the third worker killed ends a task
+            "distributed.scheduler.allowed-failures": 2,  # the third killed worker fails a task
         }
         stack.enter_context(dask.config.set(settings))
         stack.enter_context(quiet())
-        cluster = stack.enter_context(
-            LocalCluster(
-                n_workers=0,
-                processes=True,
-                threads_per_worker=1,
-                host="127.0.0.1",
-                # The port cannot be done without: one that is free, with nothing behind it.
-                dashboard_address="127.0.0.1:0",
-                scheduler_kwargs={"dashboard": False},
-                silence_logs=logging.CRITICAL,
-            )
+        cluster = LocalCluster(
+            n_workers=0,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",  # some free port, with nothing behind it, is required
+            scheduler_kwargs={"dashboard": False},
+            silence_logs=logging.CRITICAL,
         )
+        stack.enter_context(cluster)
         client = stack.enter_context(Client(cluster, set_as_default=False, direct_to_workers=True))
         processes = _Processes(cluster.scheduler_address, folder)
         stack.enter_context(undone(processes.kill))
@@ -93,25 +93,25 @@ class _Processes:
                 stdin=subprocess.PIPE,
                 stdout=stream,
                 stderr=stream,
-                env=_environment(),
+                env=inherited() | _WORKER_SETTINGS,
             )
         self._running[process] = log
 
     def watch(self, threads: int, progress: bool) -> None:
-        """Replace dead processes; give up when they die young, or none has ever connected."""
+        """Replace dead processes; give up if they keep dying, or none ever connects."""
         self._connected = self._connected or threads > 0
         if progress:
             self._deaths = 0
         for process, log in list(self._running.items()):
             if process.poll() is None:
                 continue
-            killed = process.returncode < 0  # by somebody: the next may live
+            killed = process.returncode < 0  # from outside: the next may live
             if not self._connected and not killed:
                 said = log.read_text(errors="replace").strip()
                 last = said.splitlines()[-1] if said else f"exit code {process.returncode}"
                 raise RunError(f"a worker process could not start: {last}")
             del self._running[process]
-            _close(process)
+            process.communicate()  # closes its standard input
             self._deaths += 1
             self.start()
         if self._deaths > _DEATHS_AT_MOST:
@@ -123,17 +123,4 @@ class _Processes:
         for process in self._running:
             process.kill()
         for process in self._running:
-            process.wait()
-            _close(process)
-
-
-def _close(process: subprocess.Popen[bytes]) -> None:
-    if process.stdin:
-        process.stdin.close()
-
-
-def _environment() -> dict[str, str]:
-    return inherited() | {
-        "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
-        "DASK_DISTRIBUTED__WORKER__HTTP__ROUTES": "[]",
-    }
+            process.communicate()

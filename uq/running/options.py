@@ -1,40 +1,77 @@
-"""What a user may choose about how a run goes; no choice changes a bit of a sound row."""
+"""What a user chooses and sees of a run; no choice changes a bit of a sound row."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import NamedTuple
 
 from uq.errors import InputError
-from uq.running.progress import Report
+
+
+class Progress(NamedTuple):
+    """How far a run is.
+
+    Attributes
+    ----------
+    done, total, failed : int
+        Rows.
+    found : int
+        Rows among those done that were there from the start.
+    status : dict of str to int
+        Status label -> rows.
+    median : tuple of (str, float) or None
+        Name and median [s] of a lifetime, among the rows that arrived in this process.
+    shares : dict of str to float
+        Of regimes, among the same rows.
+    dashboard : str
+        Address of the dashboard of a dask cluster, or "".
+    compiling : bool
+        Whether the model is being compiled, and rows wait for it.
+    """
+
+    done: int
+    total: int
+    failed: int
+    found: int = 0
+    status: Mapping[str, int] = MappingProxyType({})
+    median: tuple[str, float] | None = None
+    shares: Mapping[str, float] = MappingProxyType({})
+    dashboard: str = ""
+    compiling: bool = False
+
+
+Report = Callable[[Progress], object]
+"""Called whenever rows have arrived."""
 
 Say = Callable[[str], object]
-"""What is called with a line for the user."""
+"""Called with a line for the user."""
 
 
 def ignore(_: object) -> None:
-    """Do nothing with what there is to report."""
+    """Do nothing with a report."""
 
 
 @dataclass(frozen=True)
 class RunOptions:
-    """How rows are carried out.
+    """How a run is carried out.
 
     Attributes
     ----------
     workers : int or None
-        Worker processes; 0 computes in this process, and a row that crashes ends it. None: one
-        process for what takes a few seconds, else one worker per core.
+        Worker processes; 0 computes in this process, which a crashing row ends. None: one process
+        for a few seconds of work, else one worker per core.
     scheduler : str or None
         Address of a running dask scheduler, instead of own workers.
     chunk_rows : int or None
         Rows per task, rounded up to whole groups of the design; None: half a second of work.
     row_limit : float or None
-        Longest time for one row [s]; one that outlives it is stopped.
+        Time limit of a row [s]; rows that exceed it are stopped.
     fresh : bool
-        Whether to overwrite whatever the output holds.
+        Whether to overwrite an existing output.
     mixed : bool
-        Whether to go on also with rows that other code of the model computed.
+        Whether to reuse rows computed by other code of the model.
     progress : callable
-        Called with a `Progress` as rows arrive, and when the model begins to be compiled.
+        Called with a `Progress` as rows arrive, and when compilation of the model starts.
     say : callable
         Called with a line for the user: what was found on disk.
     """
@@ -49,7 +86,7 @@ class RunOptions:
     say: Say = ignore
 
     def check(self) -> None:
-        """Refuse what is impossible, or excludes each other.
+        """Refuse impossible or contradictory options.
 
         Raises
         ------
@@ -66,9 +103,9 @@ class RunOptions:
         if self.row_limit is not None and self.workers == 0:
             raise InputError(
                 "a time limit for rows needs another process that can be stopped: "
-                "workers = 0 has none (leave it out, or take 1)"
+                "workers = 0 has none (omit it, or use 1)"
             )
 
 
 DEFAULTS = RunOptions()
-"""What a run does unless it is told otherwise."""
+"""The options of a run unless others are given."""

@@ -13,16 +13,15 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
-from uq.errors import InputError
-from uq.interrupts import undone
 from uq.rows import results
 from uq.rows.evaluate import Chunk, joined
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload, workload_of
 from uq.running import executor
-from uq.running.dispatch import CHUNK_SECONDS, chunk_rows
+from uq.running.dispatch import CHUNK_SECONDS, chunk_rows, whole_groups
 from uq.running.environment import command, inherited
-from uq.running.isolation import Isolated, spec_of
+from uq.running.isolation import Evaluate, isolated
+from uq.running.options import RunOptions
 from uq.store import row_bytes
 from uq.study.definition import Study
 
@@ -34,8 +33,8 @@ _GROWTH = 4
 _FILE_BYTES = 30_000  # names, units, the study
 _CHUNKS_AT_LEAST = 2  # per process
 _GOLDEN = (5**0.5 - 1) / 2
-# What a run does beside its rows takes this many times what loading its packages takes: a busy
-# computer is slow in both.
+# The overhead of a run, as a multiple of the time that loading its packages takes: both grow
+# together on a busy computer.
 _RUN_LOADS = 1.5
 _WORKERS_LOADS = 2.0
 
@@ -54,11 +53,11 @@ class Cost(NamedTuple):
     seconds : float
         From start to result, once the model is compiled [s].
     seconds_low, seconds_high : float
-        95 % interval of it, as far as rows cost more than others [s].
+        95 % interval of it, from the scatter of the cost of rows.
     result_bytes : int
         The result.
     run_bytes : int
-        All that is on disk for a moment, the result included.
+        Peak disk use, the result included.
     """
 
     rows: int
@@ -75,7 +74,7 @@ class Cost(NamedTuple):
 def pilot(
     study: Study, workers: int | None = None, compiling: Callable[[], object] = lambda: None
 ) -> tuple[Cost, xr.Dataset]:
-    """Run a few rows of a study, as many at the same time as the whole run would.
+    """Run a few rows of a study, in as many processes as the whole run would use.
 
     Parameters
     ----------
@@ -83,7 +82,7 @@ def pilot(
     workers : int, optional
         As in `uq.run`.
     compiling : callable
-        Called when the model begins to be compiled.
+        Called when compilation of the model starts.
 
     Returns
     -------
@@ -91,47 +90,34 @@ def pilot(
     xarray.Dataset
         The rows of the pilot, with the schema of a result.
     """
-    if workers is not None and workers < 0:
-        raise InputError(f"workers must not be negative: {workers}")
+    RunOptions(workers).check()
     from uq.running.local_cluster import CORES
 
     workload = workload_of(study)
-    processes = min(workers or (1 if workers == 0 else CORES), workload.total // workload.group)
+    total = workload.total
+    processes = min(workers or (1 if workers == 0 else CORES), total // workload.group)
     with ExitStack() as stack:
-        crew = [Isolated(spec_of(workload), None, compiling) for _ in range(processes)]
-        for process in crew:
-            stack.enter_context(undone(process.close))
+        crew = [stack.enter_context(isolated(workload, None, compiling)) for _ in range(processes)]
         load_seconds = _load_seconds()
         row_seconds, pilot_seconds = _warm_up(workload, crew)
-        some, chunks, row = _sample(workload, crew, row_seconds)
-    kept = row_bytes(study) * workload.total
+        done, chunks = _sample(workload, crew, chunk_rows(workload, row_seconds))
+    some, found, seconds = zip(*done, strict=True)
+    rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
+    row_seconds, error = _row_cost(seconds, [len(part.x) for part in some], chunks)
+
+    kept = row_bytes(study) * total
     constants = len(study.model.parameter_names) - len(study.uncertain)
-    size = (
-        _FILE_BYTES + kept - 8 * constants * workload.total
-    )  # a constant is one number in the result
-    alone = row.seconds * workload.total
+    size = _FILE_BYTES + kept - 8 * constants * total  # a constant is one number in the result
+    alone = row_seconds * total
     if workers is None and alone < executor.SHORT_SECONDS:
         processes = 1
     beside = _RUN_LOADS * load_seconds
     if workers or processes > 1:
         beside += _WORKERS_LOADS * load_seconds + pilot_seconds
-    low, seconds, high = (
-        alone / processes * share + beside
-        for share in (max(0.0, 1 - row.error), 1.0, 1 + row.error)
-    )
-    chunk = joined(chunks)
-    rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
-    cost = Cost(
-        rows=workload.total,
-        workers=processes,
-        pilot_rows=len(rows.x),
-        row_seconds=row.seconds,
-        seconds=seconds,
-        seconds_low=low,
-        seconds_high=high,
-        result_bytes=size,
-        run_bytes=kept + size,
-    )
+    shares = 1.0, max(0.0, 1 - error), 1 + error
+    likely, low, high = (alone / processes * share + beside for share in shares)
+    cost = Cost(total, processes, len(rows.x), row_seconds, likely, low, high, size, kept + size)
+    chunk = joined(found)
     failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
     return cost, results.build(study, rows, chunk.columns, chunk.status, failures)
 
@@ -143,21 +129,27 @@ def _load_seconds() -> float:
     return time.perf_counter() - began
 
 
-def _warm_up(workload: Workload, crew: list[Isolated]) -> tuple[float, float]:
-    """Compile the model in one process, load it in the others.
+def _timed(
+    evaluate: Evaluate, workload: Workload, start: int, size: int
+) -> tuple[Rows, Chunk, float]:
+    """Compute some rows; return them, their outputs, and the time it took [s]."""
+    rows = workload.block(start, min(start + size, workload.total))
+    began = time.perf_counter()
+    chunk = evaluate(rows.x, rows.seed, start)
+    return rows, chunk, time.perf_counter() - began
 
-    Then one takes more and more rows, as a run does before it starts workers: return the time of
-    a row, and of all those rows.
+
+def _warm_up(workload: Workload, crew: Sequence[Evaluate]) -> tuple[float, float]:
+    """Compile the model in one process, and load it in the others.
+
+    Then one process computes growing chunks, as a run does before it starts workers: return the
+    time of a row, and of all those rows.
     """
-    size, seconds = min(workload.total, workload.group * ceil(_FIRST_ROWS / workload.group)), 0.0
-    first = workload.block(0, size)
-    for process in crew:
-        process.evaluate(first.x, first.seed)
+    size, seconds = min(workload.total, whole_groups(workload, _FIRST_ROWS)), 0.0
+    for evaluate in crew:
+        _timed(evaluate, workload, 0, size)
     while True:
-        rows = workload.block(0, size)
-        began = time.perf_counter()
-        crew[0].evaluate(rows.x, rows.seed)
-        last = time.perf_counter() - began
+        *_, last = _timed(crew[0], workload, 0, size)
         seconds += last
         grown = min(_GROWTH * size, chunk_rows(workload, last / size), workload.total)
         if seconds > CHUNK_SECONDS or grown <= size:
@@ -166,35 +158,30 @@ def _warm_up(workload: Workload, crew: list[Isolated]) -> tuple[float, float]:
 
 
 def _sample(
-    workload: Workload, crew: list[Isolated], row_seconds: float
-) -> tuple[list[Rows], list[Chunk], "_RowCost"]:
-    """Return rows spread over the study, what became of them, and what a row costs.
+    workload: Workload, crew: Sequence[Evaluate], size: int
+) -> tuple[list[tuple[Rows, Chunk, float]], int]:
+    """Return chunks spread over the study, with the time of each, and how many it has in all.
 
-    They are cut as a run cuts them: rows that are computed together may share work.
+    They are cut as in a run: rows that are computed together may share work.
     """
-    size = chunk_rows(workload, row_seconds)
     chunks = ceil(workload.total / size)
     starts = [index * size for index in _spread(chunks)]
     least, end = _CHUNKS_AT_LEAST * len(crew), time.perf_counter() + PILOT_SECONDS
     done: dict[int, tuple[Rows, Chunk, float]] = {}
     turn = Lock()
 
-    def compute(process: Isolated) -> None:
+    def compute(evaluate: Evaluate) -> None:
         while True:
             with turn:
                 taken = len(starts)
                 if not taken or (chunks - taken >= least and time.perf_counter() > end):
                     return
                 start = starts.pop()
-            rows = workload.block(start, min(start + size, workload.total))
-            began = time.perf_counter()
-            chunk = process.evaluate(rows.x, rows.seed, start)
-            done[start] = rows, chunk, time.perf_counter() - began
+            done[start] = _timed(evaluate, workload, start, size)
 
     with ThreadPoolExecutor(len(crew)) as pool:
         list(pool.map(compute, crew))
-    rows, found, seconds = zip(*(done[start] for start in sorted(done)), strict=True)
-    return list(rows), list(found), _row_cost(seconds, [len(some.x) for some in rows], chunks)
+    return [done[start] for start in sorted(done)], chunks
 
 
 def _spread(count: int) -> list[int]:
@@ -203,18 +190,11 @@ def _spread(count: int) -> list[int]:
     return [index * stride % count for index in range(count)][::-1]
 
 
-class _RowCost(NamedTuple):
-    """Time of one process for one row [s], and how far off it may be, as a share of it."""
-
-    seconds: float
-    error: float
-
-
-def _row_cost(seconds: Sequence[float], rows: Sequence[int], chunks: int) -> _RowCost:
-    """Return the cost of a row by some of the chunks, with the half-width of its 95 % interval."""
+def _row_cost(seconds: Sequence[float], rows: Sequence[int], chunks: int) -> tuple[float, float]:
+    """Return the time of a row [s] from some of the chunks, and its relative 95 % half-width."""
     mean, m = sum(seconds) / sum(rows), len(seconds)
     if m == chunks:
-        return _RowCost(mean, 0.0)
+        return mean, 0.0
     each = np.divide(seconds, rows)
     deviation = each.std(ddof=1) / np.sqrt(m) * np.sqrt(1 - m / chunks)
-    return _RowCost(mean, float(special.stdtrit(m - 1, 0.975) * deviation / mean))
+    return mean, float(special.stdtrit(m - 1, 0.975) * deviation / mean)

@@ -1,13 +1,11 @@
 """From a study to its result: rows in chunks, on this computer or on dask workers.
 
 The first rows always run on this computer. They compile the kernel once, before any worker needs
-it, they show what a row costs, and they are the first chunks of the result. A process of its own
-computes them, so that a row may crash it, unless the user wants all in one process.
+it, show what a row costs, and are the first chunks of the result. A separate process computes them,
+because a row may crash it, unless the user wants a single process.
 """
 
 import warnings
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +19,7 @@ from uq.rows.workload import Workload, workload_of
 from uq.running.dispatch import Dispatcher
 from uq.running.executor import Executor
 from uq.running.existing import finished, made_elsewhere, output_path
-from uq.running.options import RunOptions, Say, ignore
-from uq.running.progress import Progress, Report
+from uq.running.options import Progress, Report, RunOptions, Say, ignore
 from uq.study.definition import Study, load_study
 from uq.study.reading import read_study_text
 
@@ -39,11 +36,11 @@ def run(
     say: Say | None = None,
     mixed: bool = False,
 ) -> xr.Dataset:
-    """Run a study and write its result, or return the result that is already there.
+    """Run a study and write its result, or return the existing result.
 
-    Rows are kept on disk as they arrive: a run that was stopped goes on where it was, and a result
-    with fewer samples is extended, where the design allows it. A study with [design] until ends
-    when its estimate is known well enough, or its samples are spent.
+    Rows are kept on disk as they arrive: an interrupted run resumes, and a result with fewer
+    samples is extended where the design allows it. A study with [design] until ends when its
+    estimate is precise enough, or its samples are spent.
 
     Parameters
     ----------
@@ -52,41 +49,41 @@ def run(
     output : str or Path, optional
         Default ``results/<name>.nc``.
     workers : int, optional
-        Worker processes; 0 computes in this process, and a row that crashes ends it. By default
-        one process computes what takes a few seconds, else one worker per core.
+        Worker processes; 0 computes in this process, which a crashing row ends. By default one
+        process computes what takes a few seconds, else one worker per core.
     scheduler : str, optional
         Address of a running dask scheduler, instead of own workers.
     chunk_rows : int, optional
         Rows per task, rounded up to whole groups of the design; by default half a second of work.
     row_limit : float, optional
-        Longest time for one row [s]; one that outlives it is stopped and marked ``timed-out``.
+        Time limit of a row [s]; rows that exceed it are stopped and marked ``timed-out``.
     fresh : bool
-        Overwrite whatever `output` holds.
+        Overwrite an existing `output`.
     progress : callable, optional
-        Called with a `Progress` as rows arrive, and when the model begins to be compiled.
+        Called with a `Progress` as rows arrive, and when compilation of the model starts.
     say : callable, optional
-        Called with a line for the user: what was found on disk. Without it, a complete result that
-        other code of the model computed is returned with a warning.
+        Called with a line for the user: what was found on disk. Without it, a complete result
+        computed by other code of the model is returned with a warning.
     mixed : bool
-        Go on also with rows that other code of the model computed.
+        Also reuse rows computed by other code of the model.
 
     Returns
     -------
     xarray.Dataset
-        See `uq.rows.results`; in memory if it takes less than 200 MB, else read when it is used.
+        See `uq.rows.results`; in memory if it takes less than 200 MB, else read on use.
 
     Raises
     ------
     InputError
-        Before anything is computed, when study or output are not usable.
+        Before anything is computed, when study or output cannot be used.
     KernelError
-        When the model does not keep its contract.
+        When the model breaks its contract.
     RunError
         When there is no result: workers die, a disk is full.
 
     Examples
     --------
-    >>> ds = uq.run("studies/ishigami.toml")  # in results/ishigami.nc, too
+    >>> ds = uq.run("studies/ishigami.toml")  # also in results/ishigami.nc
     >>> ds.sizes["sample"]
     10240
     """
@@ -94,14 +91,7 @@ def run(
         study = load_study(study)
     path = output_path(study, output)
     options = RunOptions(
-        workers,
-        scheduler,
-        chunk_rows,
-        row_limit,
-        fresh,
-        mixed,
-        progress=progress or ignore,
-        say=say or ignore,
+        workers, scheduler, chunk_rows, row_limit, fresh, mixed, progress or ignore, say or ignore
     )
     ds = run_study(study, path, options)
     if say is None and not mixed and (line := made_elsewhere(study, path, ds)):
@@ -110,46 +100,36 @@ def run(
 
 
 def run_study(study: Study, path: Path, options: RunOptions) -> xr.Dataset:
-    """Run a study into a file, or return the result that is already there; as `run`."""
-    until = _until(study)
+    """Run a study into a file, or return the existing result; see `run`."""
+    _check_budget(study)
     if not options.fresh and (found := finished(study, path)) is not None:
         return found
-    with kept(study, path, options) as there:
-        return carry_out(workload_of(study), options, there, until)
-
-
-@contextmanager
-def kept(
-    study: Study, path: Path, options: RunOptions, again: Mapping[str, Any] | None = None
-) -> Iterator[store.DiskStore]:
-    """Keep the rows of a run on disk, if there is room for them; see `uq.store.keep`."""
-    needed = 2 * store.row_bytes(study) * rows(study)  # the rows, and the result made from them
-    store.check_target(path, needed - store.size_kept(path))
-    with store.keep(study, path, options.fresh, again, options.say, options.mixed) as there:
-        yield there
+    with store.keep(study, path, options.fresh, None, options.say, options.mixed) as kept:
+        return carry_out(workload_of(study), options, kept, study)
 
 
 def compute(study: Study, **options: Any) -> xr.Dataset:
     """Run a study without writing anything; options as those of `RunOptions`."""
-    return carry_out(workload_of(study), RunOptions(**options), until=_until(study))
+    _check_budget(study)
+    return carry_out(workload_of(study), RunOptions(**options), study=study)
 
 
 def carry_out(
     workload: Workload,
     options: RunOptions,
     kept: store.DiskStore | None = None,
-    until: Study | None = None,
+    study: Study | None = None,
 ) -> xr.Dataset:
-    """Compute the rows of some workload, in memory or to be kept.
+    """Compute the rows of a workload.
 
     Parameters
     ----------
     workload : Workload
     options : RunOptions
     kept : DiskStore, optional
-        Where the rows are kept.
-    until : Study, optional
-        The study that the workload is, if it may end early.
+        Where to keep the rows; in memory by default.
+    study : Study, optional
+        The study of the workload, which may have a [design] until.
 
     Returns
     -------
@@ -162,37 +142,34 @@ def carry_out(
         options.progress(Progress(*counts, compiling=True))
 
     with Executor(workload, options, compiling) as executor:
-        for part in (*_interim_studies(until, there.reach), None):
-            stop = workload.total if part is None else rows(part)
+        for part in (*_interim_studies(study, there.reach), None):
+            stop = rows(part) if part else workload.total
             dispatcher = Dispatcher(workload, options, there, executor.evaluate, stop)
             if there.found:
                 dispatcher.report_progress()
             executor.finish(dispatcher)
-            if part is None or until is None:
-                break
-            if stopping.interim_estimate(until.design, there.first(part)).reached:
-                there.cut(part)
-                dispatcher.report_progress()
-                break
+            if study and part:
+                if stopping.interim_estimate(study.design, there.first(part)).reached:
+                    there.cut(part)
+                    dispatcher.report_progress()
+                    break
     return there.dataset()
 
 
-def _until(study: Study) -> Study | None:
-    """Return the study, if it may end early: at the interim sizes of its file's budget."""
-    if study.design.until is None:
-        return None
-    budget = read_study_text(study.text, study.path).design.samples
-    if study.design.samples != budget:
-        raise InputError(
-            f"--samples {study.design.samples}: a study with [design] until spends at most the"
-            f" samples of its file, {budget}: change them there"
-        )
-    return study
+def _check_budget(study: Study) -> None:
+    """Refuse a study with [design] until whose samples are not those of its file."""
+    if study.design.until is not None:
+        budget = read_study_text(study.text, study.path).design.samples
+        if study.design.samples != budget:
+            raise InputError(
+                f"--samples {study.design.samples}: a study with [design] until uses at most the"
+                f" samples of its file, {budget}: change them there"
+            )
 
 
-def _interim_studies(until: Study | None, reach: int) -> list[Study]:
-    """Return the study at each interim size from `reach` on, where a resumed run stood."""
-    if until is None:
+def _interim_studies(study: Study | None, reach: int) -> list[Study]:
+    """Return the study at each interim size, from the one that a resumed run had reached."""
+    if study is None or study.design.until is None:
         return []
-    parts = [until.with_samples(samples) for samples in stopping.interim_sizes(until.design)]
+    parts = [study.with_samples(samples) for samples in stopping.interim_sizes(study.design)]
     return [part for part in parts[:-1] if rows(part) >= reach]

@@ -1,10 +1,10 @@
-"""Chunks sent to dask workers: what comes back, and what is sent again.
+"""Chunks sent to dask workers: what returns, and what is sent again.
 
 The chunks of a killed worker are computed by another. A chunk that kills its worker three times is
 halved until the guilty row is found, which is marked as crashed.
 """
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from uq.contract import Status
 from uq.errors import InputError, RunError
@@ -23,42 +23,22 @@ if TYPE_CHECKING:
 _TRIES = 3
 _WAIT_SECONDS = 0.2
 
+_Sent = tuple[int, Rows, int]
+"""Number of the first row, the rows, and how often they have been sent."""
 
-class _Sent(NamedTuple):
-    start: int
-    rows: Rows
-    tries: int = 1
-
-
-class Returned(NamedTuple):
-    """Rows that are back.
-
-    Attributes
-    ----------
-    start : int
-        Number of the first of them.
-    rows : Rows
-    chunk : Chunk
-        What became of them.
-    seconds : float
-        What computing them took, 0 if unknown.
-    """
-
-    start: int
-    rows: Rows
-    chunk: Chunk
-    seconds: float
+Returned = tuple[int, Rows, Chunk, float]
+"""Number of the first row, the rows, their outputs, and what they cost [s], 0 if unknown."""
 
 
 class SentChunks:
-    """Chunks that workers have, or are about to have.
+    """Chunks that workers have, or are about to get.
 
     Parameters
     ----------
     workload : Workload
     crew : Workers
     row_limit : float or None
-        Longest time for one row [s].
+        Time limit of a row [s].
     """
 
     def __init__(self, workload: Workload, crew: "Workers", row_limit: float | None = None) -> None:
@@ -75,9 +55,14 @@ class SentChunks:
     def __len__(self) -> int:
         return len(self._under_way) + len(self._unsent)
 
-    def send(self, start: int, rows: Rows) -> None:
+    def send(self, start: int, rows: Rows, tries: int = 1) -> None:
         """Have some rows computed."""
-        self._send(_Sent(start, rows))
+        data = rows.x, rows.seed, start
+        future = self._crew.client.submit(
+            evaluate_rows, self._spec, versions(), self._row_limit, *data, pure=False
+        )
+        self._under_way[future] = start, rows, tries
+        self._arrivals.add(future)
 
     def returned(self) -> list[Returned]:
         """Return what is back, after a short wait if there is nothing.
@@ -85,20 +70,19 @@ class SentChunks:
         Raises
         ------
         InputError
-            When the workers or the model are not usable.
+            When the workers or the model cannot be used.
         RunError
-            When there is no hope of getting rows back.
+            When rows cannot be computed.
         """
         condition = self._arrivals.thread_condition
         with condition:
             if not self._arrivals.has_ready():
                 condition.wait(_WAIT_SECONDS)
-        back = []
+        back: list[Returned] = []
         for future, result in self._arrivals.next_batch(block=False):
             sent = self._under_way.pop(future)
             if future.status == "finished":
-                chunk, seconds = result
-                back.append(Returned(sent.start, sent.rows, chunk, seconds))
+                back.append((*sent[:2], *result))
             elif future.status == "error":
                 back += self._failed(sent, result[1])
             else:
@@ -107,25 +91,11 @@ class SentChunks:
         if self._unsent and self._crew.connected:
             again, self._unsent = self._unsent, []
             for sent in again:
-                self._send(sent)
+                self.send(*sent)
         return back
 
-    def _send(self, sent: _Sent) -> None:
-        future = self._crew.client.submit(
-            evaluate_rows,
-            self._spec,
-            versions(),
-            self._row_limit,
-            sent.rows.x,
-            sent.rows.seed,
-            sent.start,
-            pure=False,
-        )
-        self._under_way[future] = sent
-        self._arrivals.add(future)
-
     def _failed(self, sent: _Sent, error: Any) -> list[Returned]:
-        """Send rows again that did not come back, in halves if they killed their workers."""
+        """Send rows again that did not return, in halves if they killed their workers."""
         from distributed import KilledWorker
 
         start, rows, tries = sent
@@ -136,12 +106,12 @@ class SentChunks:
             if count == 1:
                 fault = Fault(Status.CRASHED, "killed every worker that computed it")
                 lost = lost_rows(self._workload.model, self._workload.settings, 1, fault, start)
-                return [Returned(start, rows, lost, 0.0)]
+                return [(start, rows, lost, 0.0)]
             half = count // 2
             self.send(start, rows.part(0, half))
             self.send(start + half, rows.part(half, count))
         elif tries < _TRIES:
-            self._send(sent._replace(tries=tries + 1))
+            self.send(start, rows, tries + 1)
         else:
             reason = " ".join(str(error.__cause__ or error).split())
             raise RunError(

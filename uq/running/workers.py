@@ -16,7 +16,7 @@ class Workers:
     ----------
     client : distributed.Client
     own : int
-        Processes that this process started, 0 on somebody's cluster.
+        Workers that this process started, 0 on an existing cluster.
     """
 
     def __init__(self, client: Client, watch: Callable[[int, bool], None], own: int = 0) -> None:
@@ -31,24 +31,24 @@ class Workers:
 
     @property
     def dashboard(self) -> str:
-        """Address of the page on which somebody's cluster shows what it does, or ""."""
-        if self.own:  # nothing is behind the address that dask tells
+        """Address of the dashboard of an existing cluster, or ""."""
+        if self.own:  # nothing is behind the address that dask reports
             return ""
         try:
             return str(self.client.dashboard_link or "")
-        except (KeyError, OSError):  # a scheduler without one, or just gone
+        except (KeyError, OSError):  # no dashboard, or the scheduler has just gone
             return ""
 
     @property
     def threads(self) -> int:
-        """Tasks that can run at the same time, as long as no worker is connected none."""
+        """Tasks that can run at the same time: none until a worker connects."""
         try:
             return sum(self.client.nthreads().values()) if self.connected else 0
-        except OSError:  # the scheduler went away just now
+        except OSError:  # the scheduler has just gone
             return 0
 
     def watch(self, progress: bool = False) -> None:
-        """Replace workers that died, if they are ours; to be called now and then.
+        """Replace dead workers if this process started them; to be called regularly.
 
         Parameters
         ----------
@@ -58,14 +58,14 @@ class Workers:
         Raises
         ------
         RunError
-            When there will be no workers: they cannot start, keep dying, or stay away.
+            When no workers are to be expected: they cannot start, keep dying, or stay away.
         """
         self._watch(self.threads, progress)
 
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep dask's log off the terminal: workers that come and go are no news to the user."""
+    """Keep the log of dask off the terminal: workers that come and go do not matter to the user."""
     log = logging.getLogger("asyncio")
     level = log.level
     log.setLevel(logging.CRITICAL)
@@ -75,5 +75,5 @@ def quiet() -> Iterator[None]:
                 stack.enter_context(silence_logging_cmgr(logging.CRITICAL, logger))
             yield
     finally:
-        gc.collect()  # what nobody waited for, after an interruption, says so when it is collected
+        gc.collect()  # after an interruption: objects never awaited complain when collected
         log.setLevel(level)

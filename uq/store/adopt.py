@@ -1,8 +1,8 @@
-"""The rows of a complete result, taken over into chunk files: how a run goes further."""
+"""The rows of a complete result, taken back into a run that extends or repeats it."""
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,51 +14,26 @@ from uq.rows import results
 from uq.rows.columns import columns_of
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, row_block
-from uq.store.chunk_file import Block
+from uq.store.chunk_file import blocks_of
+from uq.store.disk import DiskStore
 from uq.store.tally import Failures
 from uq.study.code import made_here
-
-if TYPE_CHECKING:
-    from uq.study.definition import Study
+from uq.study.definition import Study
 
 _ROWS = 100_000  # at a time
 
 
-class Adopted(NamedTuple):
-    """Some rows of a result.
-
-    Attributes
-    ----------
-    blocks : list of Block
-    rows : Rows
-    chunk : Chunk
-    made : dict of str to str
-        Processor and versions that computed them.
-    settings : dict
-        Settings that were others than the study's.
-    """
-
-    blocks: list[Block]
-    rows: Rows
-    chunk: Chunk
-    made: dict[str, str]
-    settings: dict[str, Any]
-
-
-def adopted(study: "Study", path: Path, all_rows: bool) -> Iterator[Adopted]:
-    """Yield the rows of a result.
+def adopt(store: DiskStore, study: Study, path: Path, all_rows: bool) -> None:
+    """Copy the rows of a result into a store.
 
     Parameters
     ----------
+    store : DiskStore
     study : Study
         The result's own, perhaps with more samples.
     path : Path
     all_rows : bool
-        Whether also those that failed.
-
-    Yields
-    ------
-    Adopted
+        Whether to include failed rows.
     """
     ds = results.open_result(path)
     here = made_here(study.model_reference)
@@ -71,11 +46,11 @@ def adopted(study: "Study", path: Path, all_rows: bool) -> Iterator[Adopted]:
             if numbers.size:
                 part = some.isel(sample=numbers - first)
                 rows, chunk = _inputs(study, part, first), _outputs(study, part, numbers)
-                yield Adopted(_blocks(numbers), rows, chunk, made, settings)
+                store.adopt(blocks_of(numbers), rows, chunk, made, settings)
 
 
 def variants(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], NDArray[np.bool_]]]:
-    """Yield the settings that rows were computed with, other than the study's, and which rows."""
+    """Yield the settings of rows that differ from the study's, and which rows have them."""
     if "rerun" not in ds:
         yield {}, np.ones(ds.sizes["sample"], np.bool_)
         return
@@ -85,7 +60,7 @@ def variants(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], NDArray[np.bool_]
         yield read_toml(f"settings = {text}")["settings"], codes == code
 
 
-def _inputs(study: "Study", part: xr.Dataset, first: int) -> Rows:
+def _inputs(study: Study, part: xr.Dataset, first: int) -> Rows:
     numbers = part["sample"].values
     drawn = row_block(study, first, int(numbers[-1]) + 1)
     kept = Rows(*(field[numbers - first] for field in drawn))
@@ -94,7 +69,7 @@ def _inputs(study: "Study", part: xr.Dataset, first: int) -> Rows:
     return kept
 
 
-def _outputs(study: "Study", part: xr.Dataset, numbers: NDArray[np.int64]) -> Chunk:
+def _outputs(study: Study, part: xr.Dataset, numbers: NDArray[np.int64]) -> Chunk:
     columns = {
         name: part[name].values.astype(column.dtype)
         for name, column in columns_of(study.model, study.settings).items()
@@ -104,14 +79,6 @@ def _outputs(study: "Study", part: xr.Dataset, numbers: NDArray[np.int64]) -> Ch
     for code in np.unique(status[status != Status.OK]):
         kind, row = Status(code), int(numbers[np.argmax(status == code)])
         example = str(part["status"].attrs.get(f"example_{kind.name.lower()}", ""))
-        told = example.startswith(f"row {row}: ")
-        failures[kind.label] = row, example.partition(": ")[2] if told else kind.meaning
+        known = example.startswith(f"row {row}: ")
+        failures[kind.label] = row, example.partition(": ")[2] if known else kind.meaning
     return Chunk(columns, status, failures)
-
-
-def _blocks(numbers: NDArray[np.int64]) -> list[Block]:
-    """Return ascending numbers as blocks of adjacent ones."""
-    ends = np.flatnonzero(np.diff(numbers) > 1)
-    firsts = numbers[np.concatenate([[0], ends + 1])]
-    lasts = numbers[np.concatenate([ends, [-1]])]
-    return [(int(a), int(b) + 1) for a, b in zip(firsts, lasts, strict=True)]

@@ -1,10 +1,10 @@
-"""Rows as the bytes of one structured array: what a chunk file holds."""
+"""Chunk files: rows as the bytes of one structured array."""
 
 import hashlib
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,30 +14,11 @@ from uq.rows.sampling import Rows
 from uq.store.files import flush
 
 Block = tuple[int, int]
-"""Numbers of the first row and of the one behind the last."""
-
-
-class Piece(NamedTuple):
-    """Adjacent rows, with inputs and outputs.
-
-    Attributes
-    ----------
-    start : int
-    data : ndarray
-        Of the type that `row_type` returns.
-    """
-
-    start: int
-    data: NDArray[Any]
-
-    @property
-    def stop(self) -> int:
-        """Number of the row behind the last."""
-        return self.start + len(self.data)
+"""Number of the first row, and of the row after the last."""
 
 
 def row_type(parameters: int, columns: Mapping[str, Column]) -> np.dtype[Any]:
-    """Return the type of one row: its place in the design, its inputs, what became of it."""
+    """Return the type of one row: its place in the design, its inputs, outputs and status."""
     rows = [
         ("x", np.float64, (parameters,)),
         ("seed", np.uint64),
@@ -74,12 +55,12 @@ def unpack(data: NDArray[Any]) -> tuple[Rows, dict[str, NDArray[Any]], NDArray[n
 
 
 def save(path: Path, data: NDArray[Any]) -> str:
-    """Write a chunk file, whole or not at all, and return its SHA-256.
+    """Write a chunk file, completely or not at all, and return its SHA-256.
 
     Raises
     ------
     OSError
-        Then nothing is left behind.
+        Nothing is left behind then.
     """
     content = data.tobytes()
     temporary = path.with_suffix(".part")
@@ -95,25 +76,27 @@ def save(path: Path, data: NDArray[Any]) -> str:
 
 
 def load(path: Path, kind: np.dtype[Any], rows: int, sha256: str) -> NDArray[Any] | None:
-    """Read a chunk file; None if it is not there, or not what was written."""
+    """Read a chunk file; None if it is missing or not as written."""
     try:
         if path.stat().st_size != rows * kind.itemsize:
             return None
         content = path.read_bytes()
     except OSError:
         return None
-    if hashlib.sha256(content).hexdigest() != sha256:
-        return None
-    return np.frombuffer(content, kind)
+    sound = hashlib.sha256(content).hexdigest() == sha256
+    return np.frombuffer(content, kind) if sound else None
 
 
-def joined(pieces: Sequence[Piece]) -> tuple[list[Block], NDArray[Any]]:
-    """Put pieces into the order of their rows; return the blocks they make, and their rows."""
-    ordered = sorted(pieces, key=lambda piece: piece.start)
-    blocks: list[Block] = []
-    for piece in ordered:
-        if blocks and blocks[-1][1] == piece.start:
-            blocks[-1] = blocks[-1][0], piece.stop
-        else:
-            blocks.append((piece.start, piece.stop))
-    return blocks, np.concatenate([piece.data for piece in ordered])
+def blocks_of(numbers: NDArray[np.int64]) -> list[Block]:
+    """Return ascending row numbers as blocks of adjacent rows."""
+    ends = np.flatnonzero(np.diff(numbers) > 1)
+    firsts = numbers[np.concatenate([[0], ends + 1])]
+    lasts = numbers[np.concatenate([ends, [-1]])]
+    return [(int(a), int(b) + 1) for a, b in zip(firsts, lasts, strict=True)]
+
+
+def joined(pieces: Sequence[tuple[int, NDArray[Any]]]) -> tuple[list[Block], NDArray[Any]]:
+    """Sort pieces, each its first row number and its rows; return their blocks and all rows."""
+    ordered = sorted(pieces, key=lambda piece: piece[0])
+    numbers = [np.arange(start, start + len(data)) for start, data in ordered]
+    return blocks_of(np.concatenate(numbers)), np.concatenate([data for _, data in ordered])

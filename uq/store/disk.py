@@ -1,10 +1,10 @@
-"""Rows that are kept on disk as they arrive, whatever happens to the process."""
+"""Rows kept on disk as they arrive, whatever happens to the process."""
 
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,25 +16,23 @@ from uq.rows.columns import columns_of
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
 from uq.rows.workload import workload_of
-from uq.store.chunk_file import Block, Piece, joined, load, pack, row_type, save, unpack
+from uq.store.chunk_file import Block, joined, load, pack, row_type, save, unpack
 from uq.store.files import reason
 from uq.store.folder import JOURNAL, clear, folder_of
 from uq.store.journal import Journal
 from uq.store.merge import merge
 from uq.store.records import RowsRecord, RunRecord, missing
-from uq.store.tally import Failures, Tally, ended, joined_failures
+from uq.store.tally import Failures, Tally, joined_failures
 from uq.study.code import made_here
-
-if TYPE_CHECKING:
-    from uq.study.definition import Study
+from uq.study.definition import Study
 
 _WRITING_SHARE = 1 / 20  # of the time, unless single chunks take longer
-_FIRST_COST = 0.01  # of writing [s], before it is known: what is over in a moment is written once
+_FIRST_COST = 0.01  # of writing [s], before it is known: a very short run writes once
 _PENDING_BYTES = 8_000_000  # in memory at most
 
 
 class DiskStore(Tally):
-    """The rows of one run, in the folder beside its result, whose lock is held.
+    """The rows of one run, in the folder beside its result; the caller holds its lock.
 
     Parameters
     ----------
@@ -46,10 +44,10 @@ class DiskStore(Tally):
     ----------
     folder : Path
     settings : dict
-        Settings that rows to come are computed with, where others than the study's.
+        Settings of the rows to come that differ from the study's.
     """
 
-    def __init__(self, study: "Study", path: Path) -> None:
+    def __init__(self, study: Study, path: Path) -> None:
         super().__init__(workload_of(study))
         self.folder = folder_of(path)
         self.settings: dict[str, Any] = {}
@@ -59,7 +57,7 @@ class DiskStore(Tally):
         self.row_type = row_type(len(model.parameter_names), columns_of(model, study.settings))
         self._journal = Journal(self.folder / JOURNAL)
         self._records: list[RowsRecord] = []
-        self._pending: list[Piece] = []
+        self._pending: list[tuple[int, NDArray[Any]]] = []
         self._pending_failures: Failures = {}
         self._made = made_here(study.model_reference)
         self._written = time.monotonic()
@@ -67,12 +65,12 @@ class DiskStore(Tally):
 
     @property
     def missing(self) -> list[Block]:
-        """Blocks of rows that are not there."""
+        """Blocks of missing rows."""
         return missing(self._records, self.total)
 
     @property
     def reach(self) -> int:
-        """Number behind the last row that is there."""
+        """Number after the last row that is there."""
         return max((record.blocks[-1][1] for record in self._records), default=0)
 
     @property
@@ -81,7 +79,7 @@ class DiskStore(Tally):
         return [dict(pairs) for pairs in {tuple(record.made.items()) for record in self._records}]
 
     def find(self, records: list[RowsRecord]) -> int:
-        """Take rows that were kept before; return how many are damaged and will not be taken."""
+        """Take the rows kept earlier; return how many are damaged and therefore missing."""
         damaged = 0
         for record in records:
             if self._load(record) is None:
@@ -92,24 +90,21 @@ class DiskStore(Tally):
         return damaged
 
     def note(self, record: RunRecord) -> None:
-        """Write down that a run begins, or where it ends early."""
-        with self._told():
+        """Record that a run starts, or where it ends early."""
+        with self._explained():
             self._journal.append(record.model_dump(mode="json"))
         self._run = record
 
-    def first(self, study: "Study") -> xr.Dataset:
-        """Return the rows of a study of fewer samples, which are all that have arrived."""
+    def first(self, study: Study) -> xr.Dataset:
+        """Return the result of a study with fewer samples, whose rows have all arrived."""
         self._write()
-        whole = np.empty(rows(study), self.row_type)
-        for record, data in self._loaded():
-            done = 0
-            for start, stop in record.blocks:
-                whole[start:stop] = data[done : done + stop - start]
-                done += stop - start
-        return results.build(study, *unpack(whole), self.examples)
+        data = np.empty(rows(study), self.row_type)
+        for record, part in self._loaded():
+            data[record.numbers] = part
+        return results.build(study, *unpack(data), self.examples)
 
-    def cut(self, study: "Study") -> None:
-        """End with the rows of a study of fewer samples, which are all that have arrived."""
+    def cut(self, study: Study) -> None:
+        """End the run with the rows of a study with fewer samples, which have all arrived."""
         self._study, self.workload = study, workload_of(study)
         self.total = self.workload.total
         size = {"samples": study.design.samples, "rows": self.total}
@@ -125,14 +120,14 @@ class DiskStore(Tally):
         chunk : Chunk
         """
         data = pack(self.row_type, rows, chunk.columns, chunk.status)
-        failed, by_status = self.failed_in(chunk), ended(chunk.status)
-        # Rows last: should a signal end the process in between, they are not kept without these.
+        counts = self.counts(chunk.columns, chunk.status)
+        # Rows last: if a signal ends the process in between, they are not kept without these.
         self._pending_failures = joined_failures(self._pending_failures, chunk.failures)
-        self._pending.append(Piece(start, data))
-        self.count(len(chunk.status), failed, by_status, chunk.failures)
+        self._pending.append((start, data))
+        self.count(*counts, chunk.failures)
 
     def keep_up(self) -> None:
-        """Write what has arrived, unless that would take more of the time than is due.
+        """Write what has arrived, unless that would exceed the share of time for writing.
 
         Raises
         ------
@@ -140,7 +135,7 @@ class DiskStore(Tally):
             When it cannot be written.
         """
         due = time.monotonic() - self._written >= self._cost / _WRITING_SHARE
-        large = sum(piece.data.nbytes for piece in self._pending) > _PENDING_BYTES
+        large = sum(data.nbytes for _, data in self._pending) > _PENDING_BYTES
         if (due or large) and not self.shapes_all_wrong:
             self._write()
 
@@ -153,18 +148,18 @@ class DiskStore(Tally):
         settings: dict[str, Any],
     ) -> None:
         """Write rows that were computed earlier; they count as found."""
-        with self._told():
+        with self._explained():
             data = pack(self.row_type, rows, chunk.columns, chunk.status)
             self._take(self._save(blocks, data, chunk.failures, made, settings))
         self.found = self.done
 
     def dataset(self) -> xr.Dataset:
-        """Make the result of rows that are all there, and remove what it was made from.
+        """Write the result of a complete run, and remove what it was made from.
 
         Raises
         ------
         RunError
-            When it cannot be written; then the rows stay.
+            When it cannot be written; the rows stay then.
         """
         self._write()
         try:
@@ -173,13 +168,13 @@ class DiskStore(Tally):
             )
         except RunError as error:
             raise RunError(
-                f"{error}; the rows are kept, and the same command goes on from there"
+                f"{error}; the rows are kept, and the same command resumes the run"
             ) from None
         clear(self.folder)
         return results.open_result(self._path)
 
     def close(self) -> None:
-        """Write what has arrived, if that can be done, and remove what is of no use."""
+        """Write what has arrived, if possible, and remove useless files."""
         if not self.shapes_all_wrong:
             with suppress(RunError):
                 self._write()
@@ -193,11 +188,10 @@ class DiskStore(Tally):
         if not self._pending:
             return
         began = time.monotonic()
-        with self._told():
+        with self._explained():
             blocks, data = joined(self._pending)
             failures = self._pending_failures
-            record = self._save(blocks, data, failures, self._made, self.settings)
-        self._records.append(record)
+            self._records.append(self._save(blocks, data, failures, self._made, self.settings))
         self._pending, self._pending_failures = [], {}
         self._written = time.monotonic()
         self._cost = self._written - began
@@ -211,13 +205,13 @@ class DiskStore(Tally):
         settings: Mapping[str, Any],
     ) -> RowsRecord:
         """Write a chunk file, then its line in the journal."""
-        _, columns, status = unpack(data)
+        _, failed, status = self.counts(*unpack(data)[1:])
         record = RowsRecord(
             time=time.time(),
             blocks=tuple(blocks),
             sha256="",
-            failed=self.failed_in(Chunk(columns, status, {})),
-            status=ended(status),
+            failed=failed,
+            status=status,
             failures=failures,
             made=dict(made),
             settings=dict(settings),
@@ -227,15 +221,15 @@ class DiskStore(Tally):
         return record
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
-        """Tell what a disk that takes no more means for the run."""
+    def _explained(self) -> Iterator[None]:
+        """Say what a disk that cannot be written means for the run."""
         try:
             yield
         except OSError as error:
             kept = sum(record.rows for record in self._records)
             raise RunError(
                 f"{self.folder}: could not be written: {reason(error, self.folder)}; {kept} of "
-                f"{self.total} rows are kept, and the same command goes on from there"
+                f"{self.total} rows are kept, and the same command resumes the run"
             ) from None
 
     def _take(self, record: RowsRecord) -> None:
@@ -250,7 +244,6 @@ class DiskStore(Tally):
 
     def _loaded(self) -> Iterator[tuple[RowsRecord, NDArray[Any]]]:
         for record in self._records:
-            data = self._load(record)
-            if data is None:
+            if (data := self._load(record)) is None:
                 raise RunError(f"{self._file(record)}: was damaged during the run")
             yield record, data

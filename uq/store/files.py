@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all."""
+"""Files written completely or not at all."""
 
 import os
 import shutil
@@ -16,7 +16,7 @@ from uq.store.seal import seal
 
 
 def check_target(path: Path, size: int) -> None:
-    """Refuse, before anything is computed, a path that cannot be written.
+    """Refuse a path that cannot be written, before anything is computed.
 
     Parameters
     ----------
@@ -52,19 +52,19 @@ def write(ds: xr.Dataset, path: Path) -> None:
     ----------
     ds : xarray.Dataset
     path : Path
-        Missing folders are made.
+        Missing folders are created.
 
     Raises
     ------
     RunError
-        When it cannot be written; then nothing is left behind.
+        When it cannot be written; nothing is left behind then.
     """
     with whole(path) as temporary:
         ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
 
 
 def write_result(ds: xr.Dataset, path: Path) -> None:
-    """Write a result, with its checksum, as `write` does."""
+    """Write a result as `write` does, with its checksum."""
     with whole(path) as temporary:
         ds.to_netcdf(temporary, engine="netcdf4", format="NETCDF4")
         seal(temporary)
@@ -77,9 +77,9 @@ def whole(path: Path, folder: Path | None = None) -> Iterator[Path]:
     Parameters
     ----------
     path : Path
-        Missing folders are made; a link is written through.
+        Missing folders are created; a link is followed.
     folder : Path, optional
-        Where the temporary name is, on the same disk; by default beside the file.
+        Of the temporary file, on the same disk; by default the folder of the file.
 
     Yields
     ------
@@ -88,9 +88,9 @@ def whole(path: Path, folder: Path | None = None) -> Iterator[Path]:
     Raises
     ------
     InputError
-        When something is there that is no file.
+        When there is something other than a file.
     RunError
-        When the file cannot be written; then nothing is left behind.
+        When the file cannot be written; nothing is left behind then.
     """
     file = file_behind(path)
     made = [parent for parent in file.absolute().parents if not parent.exists()]
@@ -112,14 +112,14 @@ def whole(path: Path, folder: Path | None = None) -> Iterator[Path]:
 
 
 def remove_empty(folders: list[Path]) -> None:
-    """Remove those of some folders, the innermost first, that exist and hold nothing."""
+    """Remove empty folders, the innermost first."""
     for folder in folders:
         if folder.exists() and not any(folder.iterdir()):
             folder.rmdir()
 
 
 def flush(path: Path) -> None:
-    """Wait until a file, or the names in a folder, are on the disk."""
+    """Wait until a file, or the entries of a folder, are on the disk."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)
@@ -133,7 +133,7 @@ def nearest_folder(path: Path) -> Path:
 
 
 def reason(error: Exception, path: Path) -> str:
-    """Say why a write failed: HDF5 reports a full disk, or a quota, as "HDF error"."""
+    """Say why a write failed: HDF5 reports a full disk or a quota as "HDF error"."""
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     free = shutil.disk_usage(nearest_folder(path)).free

@@ -1,30 +1,31 @@
-"""The folder beside a result in which its rows are kept until it is complete."""
+"""The folder beside a result that keeps its rows until it is complete."""
 
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
 
 from uq.errors import InputError, RunError
 from uq.interrupts import undone
 from uq.places import file_behind
 from uq.store.files import flush, reason, remove_empty
 from uq.store.journal import read
-from uq.store.records import RowsRecord, RunRecord, understood
+from uq.store.records import History, history_of
 
 JOURNAL, LOCK = "journal", "lock"
-_LOCK_SECONDS = 0.5  # some disks need a second attempt to take over a lock
+_LOCK_SECONDS = 0.5  # some disks need a second attempt to take a lock over
 
 
-class Holder(NamedTuple):
-    """The process that writes into a folder, as filelock names it.
+@dataclass(frozen=True)
+class Holder:
+    """The process that holds the lock of a folder.
 
     Attributes
     ----------
     host : str
-        In a container with its number space for processes: "name?pidns-number".
+        As filelock names it, in a container with its process namespace: "name?pidns-number".
     pid : int
     """
 
@@ -33,27 +34,26 @@ class Holder(NamedTuple):
 
     @property
     def computer(self) -> str:
-        """Name of the computer alone."""
+        """Name of the computer only."""
         return self.host.partition("?")[0]
 
 
 def folder_of(path: Path) -> Path:
-    """Return the folder in which the rows of a result are kept, beside the file itself."""
+    """Return the folder that keeps the rows of a result, beside the file itself."""
     file = file_behind(path)
     return file.with_name(f"{file.name}.rows")
 
 
-def history(folder: Path) -> list[RunRecord | RowsRecord]:
-    """Return what the journal of a folder says; nothing if no run ever began there."""
+def history(folder: Path) -> History | None:
+    """Return what the journal of a folder records; None if no run has started there."""
     try:
-        records = understood(read(folder / JOURNAL))
+        return history_of(read(folder / JOURNAL))
     except OSError as error:
         raise InputError(f"{folder / JOURNAL}: cannot be read: {error.strerror}") from None
-    return records if any(isinstance(record, RunRecord) for record in records) else []
 
 
 def holder(folder: Path) -> Holder | None:
-    """Return who wrote the lock of a folder, whether that process is alive or not."""
+    """Return who wrote the lock of a folder, alive or not."""
     try:
         pid, host = (folder / LOCK).read_text("utf-8", "replace").splitlines()[:2]
         return Holder(host, int(pid))
@@ -62,10 +62,10 @@ def holder(folder: Path) -> Holder | None:
 
 
 def is_held(folder: Path) -> bool:
-    """Return whether a process has the lock of a folder, or may have it on another computer.
+    """Return whether a process holds the lock of a folder, or may hold it on another computer.
 
-    One that has ended does not, though its number may be in use again: a copy of the lock is tried
-    to be taken over, which disturbs nobody.
+    A process that has ended does not, even if its number is in use again: this tries to take over
+    a copy of the lock, which disturbs nobody.
     """
     from filelock import SoftFileLock, Timeout
 
@@ -83,10 +83,10 @@ def is_held(folder: Path) -> bool:
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Make a folder if need be, and be the only one to write into it.
+    """Create a folder if need be, and be the only process to write into it.
 
-    A lock whose process is gone is taken over. A folder that holds nothing at the end is removed,
-    with those above it that were made for its sake.
+    The lock of a process that is gone is taken over. A folder that is empty at the end is removed,
+    with those above it that were created with it.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def locked(folder: Path) -> Iterator[None]:
     InputError
         When another process holds the lock.
     RunError
-        When the folder cannot be made.
+        When the folder cannot be created.
     """
     from filelock import SoftFileLock, Timeout
 
@@ -117,7 +117,7 @@ def locked(folder: Path) -> Iterator[None]:
         except Timeout:
             raise InputError(_held(folder)) from None
         except OSError as error:
-            raise RunError(f"{folder}: could not be made: {reason(error, folder)}") from None
+            raise RunError(f"{folder}: could not be created: {reason(error, folder)}") from None
         yield
 
 
@@ -140,7 +140,7 @@ def _this_host() -> str:
 
 
 def clear(folder: Path) -> None:
-    """Remove all that is kept in a folder; the journal first, for without it nothing counts."""
+    """Remove all rows in a folder; the journal first, because without it nothing counts."""
     (folder / JOURNAL).unlink(missing_ok=True)
     for file in folder.iterdir():
         if file.name != LOCK and file.is_file():

@@ -1,6 +1,6 @@
-"""An append-only journal: one record per line, each with a checksum of its own.
+"""An append-only journal: one record per line, each with its own checksum.
 
-A line that was cut by a crash, or damaged since, does not count; the others do.
+A line cut by a crash, or damaged since, is ignored; the others count.
 """
 
 import json
@@ -13,35 +13,29 @@ Record = dict[str, Any]
 
 
 class Journal:
-    """A journal that is open for writing.
+    """A journal open for writing.
 
     Parameters
     ----------
     path : Path
-        Made if it does not exist.
-
-    Attributes
-    ----------
-    records : list of dict
-        What it held when it was opened.
+        Created if it does not exist.
     """
 
     def __init__(self, path: Path) -> None:
-        self.records = read(path)
         self._file = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
         self._end = os.fstat(self._file).st_size
-        # A last line that was cut must not swallow the next.
+        # A cut last line must not swallow the next one.
         self._cut = self._end > 0 and os.pread(self._file, 1, self._end - 1) != b"\n"
 
     def append(self, record: Record) -> None:
-        """Add a record; it is on the disk when this returns.
+        """Append a record, which is on the disk when this returns.
 
         Interrupted at any point, it may be called again with the same record.
 
         Raises
         ------
         OSError
-            Then the journal is as it was before.
+            The journal is unchanged then.
         """
         line = (b"\n" if self._cut else b"") + _line(record)
         try:
@@ -62,7 +56,7 @@ class Journal:
 
 
 def read(path: Path) -> list[Record]:
-    """Return the sound records of a journal, also of one that is being written; none of no file."""
+    """Return the sound records of a journal, which may be being written; none without a file."""
     try:
         lines = path.read_bytes().split(b"\n")
     except FileNotFoundError:

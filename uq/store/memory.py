@@ -1,19 +1,16 @@
-"""Rows that are kept in memory, for what is not to be written as it arrives."""
-
-from typing import TYPE_CHECKING
+"""Rows kept in memory, for analyses that do not write them as they arrive."""
 
 import numpy as np
 import xarray as xr
 
 from uq.rows import results
-from uq.rows.columns import blank_rows, columns_of
+from uq.rows.columns import columns_of
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
 from uq.rows.workload import Workload, workload_of
-from uq.store.tally import Tally, ended
-
-if TYPE_CHECKING:
-    from uq.study.definition import Study
+from uq.store.chunk_file import pack, row_type, unpack
+from uq.store.tally import Tally
+from uq.study.definition import Study
 
 
 class MemoryStore(Tally):
@@ -22,24 +19,24 @@ class MemoryStore(Tally):
     Parameters
     ----------
     workload : Workload
+
+    Attributes
+    ----------
+    reach : int
+        Number after the last row that is there at the start: 0.
     """
+
+    reach = 0
 
     def __init__(self, workload: Workload) -> None:
         super().__init__(workload)
-        total, d = self.total, len(workload.model.parameter_names)
-        self._rows = Rows(
-            x=np.empty((total, d)),
-            seed=np.empty(total, dtype=np.uint64),
-            replicate=np.empty(total, dtype=np.int32),
-            group=np.empty(total, dtype=np.int64),
-            block=np.empty(total, dtype=np.int16),
-        )
-        self._columns = blank_rows(columns_of(workload.model, workload.settings), total)
-        self._status = np.zeros(total, dtype=np.int8)
+        model = workload.model
+        kind = row_type(len(model.parameter_names), columns_of(model, workload.settings))
+        self._data = np.empty(self.total, kind)
 
     @property
     def missing(self) -> list[tuple[int, int]]:
-        """Blocks of rows that are not there at the start."""
+        """Blocks of rows that are missing at the start."""
         return [(0, self.total)]
 
     def add(self, start: int, rows: Rows, chunk: Chunk) -> None:
@@ -51,41 +48,28 @@ class MemoryStore(Tally):
         rows : Rows
         chunk : Chunk
         """
-        stop = start + len(chunk.status)
-        for field, part in rows._asdict().items():
-            getattr(self._rows, field)[start:stop] = part
-        for name, whole in self._columns.items():
-            whole[start:stop] = chunk.columns[name]
-        self._status[start:stop] = chunk.status
-        self.count(stop - start, self.failed_in(chunk), ended(chunk.status), chunk.failures)
+        data = pack(self._data.dtype, rows, chunk.columns, chunk.status)
+        self._data[start : start + len(data)] = data
+        self.count(*self.counts(chunk.columns, chunk.status), chunk.failures)
 
-    @property
-    def reach(self) -> int:
-        """Number behind the last row that is there at the start."""
-        return 0
+    def first(self, study: Study) -> xr.Dataset:
+        """Return the result of a study with fewer samples, whose rows have all arrived."""
+        return results.build(study, *unpack(self._data[: rows(study)]), self.examples)
 
-    def first(self, study: "Study") -> xr.Dataset:
-        """Return the result of a study of fewer samples, whose rows have all arrived."""
-        n = rows(study)
-        columns = {name: whole[:n] for name, whole in self._columns.items()}
-        parts = self._rows.part(0, n), columns, self._status[:n]
-        return results.build(study, *parts, self.examples)
-
-    def cut(self, study: "Study") -> None:
-        """End with the rows of a study of fewer samples, which are all that have arrived."""
+    def cut(self, study: Study) -> None:
+        """Drop all but the rows of a study with fewer samples, which have all arrived."""
         self.workload = workload_of(study)
-        n = self.total = self.workload.total
-        self._rows, self._status = self._rows.part(0, n), self._status[:n]
-        self._columns = {name: whole[:n] for name, whole in self._columns.items()}
+        self.total = self.workload.total
+        self._data = self._data[: self.total]
 
     def keep_up(self) -> None:
-        """Nothing: what is here is kept nowhere else."""
+        """Do nothing: these rows are written nowhere."""
 
     def chunk(self) -> Chunk:
-        """Return what became of the rows of a run that have all arrived."""
-        return Chunk(self._columns, self._status, self.failures)
+        """Return outputs and status of the rows of a complete run."""
+        return Chunk(*unpack(self._data)[1:], self.failures)
 
     def dataset(self) -> xr.Dataset:
-        """Return the result of a run whose rows have all arrived."""
+        """Return the result of a complete run."""
         assert self.workload.finish is not None
-        return self.workload.finish(self._rows, self._columns, self._status, self.examples)
+        return self.workload.finish(*unpack(self._data), self.examples)

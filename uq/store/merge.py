@@ -1,8 +1,8 @@
-"""From chunk files to one result, a file at a time: memory does not grow with the rows."""
+"""From chunk files to one result, one file at a time: memory does not grow with the rows."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,41 +15,39 @@ from uq.store.chunk_file import Block, unpack
 from uq.store.files import whole
 from uq.store.records import RowsRecord
 from uq.store.seal import seal
-
-if TYPE_CHECKING:
-    from uq.study.definition import Study
+from uq.study.definition import Study
 
 Loaded = Iterable[tuple[RowsRecord, NDArray[Any]]]
 
 
 def merge(
-    study: "Study",
+    study: Study,
     records: Sequence[RowsRecord],
     loaded: Loaded,
     failures: Mapping[str, str],
     path: Path,
     folder: Path,
 ) -> None:
-    """Write the result of a study whose rows are all there.
+    """Write the result of a complete study.
 
-    The file depends on the rows alone, not on the chunk files in which they lie.
+    The file depends on the rows alone, not on how they are split into chunk files.
 
     Parameters
     ----------
     study : Study
     records : sequence of RowsRecord
     loaded : iterable of (RowsRecord, ndarray)
-        The same in any order, each with its rows.
+        The same records in any order, each with its rows.
     failures : dict of str to str
-        As `uq.rows.results.build` wants them.
+        As for `uq.rows.results.build`.
     path : Path
     folder : Path
-        Where the file is until it is complete.
+        Of the temporary file.
 
     Raises
     ------
     RunError
-        When it cannot be written; then `path` is as it was.
+        When it cannot be written; `path` is unchanged then.
     """
     import netCDF4
 
@@ -58,10 +56,10 @@ def merge(
     with whole(path, folder) as temporary:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
             for record, data in loaded:
-                numbers = np.concatenate([np.arange(*block) for block in record.blocks])
-                ds = results.build(study, *unpack(data), failures, numbers).assign_attrs(made)
+                parts = unpack(data)
+                ds = results.build(study, *parts, failures, record.numbers).assign_attrs(made)
                 if len(variants) > 1:
-                    ds["rerun"] = _rerun(variants, variants.index(record.settings), len(numbers))
+                    ds["rerun"] = _rerun(variants, variants.index(record.settings), record.rows)
                 if not file.variables:
                     _define(file, ds, rows(study))
                 _place(file, ds, record.blocks)
@@ -69,7 +67,7 @@ def merge(
 
 
 def _define(file: Any, ds: xr.Dataset, total: int) -> None:
-    """Give a file all that a result has, but for the rows."""
+    """Write everything in a result but the rows."""
     variables, attributes = xr.conventions.encode_dataset_coordinates(ds)
     file.setncatts(attributes)
     for dim, size in ds.sizes.items():
@@ -86,7 +84,7 @@ def _define(file: Any, ds: xr.Dataset, total: int) -> None:
 
 
 def _place(file: Any, ds: xr.Dataset, blocks: Sequence[Block]) -> None:
-    """Write rows to where they belong."""
+    """Write rows to their places."""
     for name, variable in ds.variables.items():
         if "sample" in variable.dims:
             done = 0
@@ -96,7 +94,7 @@ def _place(file: Any, ds: xr.Dataset, blocks: Sequence[Block]) -> None:
 
 
 def _made(records: Sequence[RowsRecord]) -> dict[str, str]:
-    """Return the processors and versions that made the rows, as attributes of the result."""
+    """Return the processors and versions that computed the rows, as attributes of the result."""
     names = dict.fromkeys(name for record in records for name in record.made)
     return {
         name: "; ".join(sorted({record.made.get(name, "unknown") for record in records}))
@@ -105,7 +103,7 @@ def _made(records: Sequence[RowsRecord]) -> dict[str, str]:
 
 
 def _variants(records: Sequence[RowsRecord]) -> list[dict[str, Any]]:
-    """Return the settings that occur, other than the study's own, by the first row of each."""
+    """Return the sets of settings that differ from the study's, ordered by first row."""
     variants: list[dict[str, Any]] = [{}]
     for record in sorted(records, key=lambda record: record.blocks):
         if record.settings not in variants:

@@ -1,9 +1,13 @@
-"""What stands in the journal of a run."""
+"""The records of a run's journal."""
 
+from bisect import bisect_left
 from collections.abc import Sequence
-from typing import Annotated, Any, Literal
+from contextlib import suppress
+from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from uq.store.chunk_file import Block
 from uq.store.journal import Record
@@ -13,22 +17,22 @@ Count = Annotated[int, Field(ge=0, lt=2**62)]
 
 
 class RunRecord(BaseModel):
-    """A run that began, or went on.
+    """A run that started or resumed.
 
     Attributes
     ----------
     time : float
         When [s since 1970].
     host, pid
-        Which process it was.
+        The process.
     identity, study, model_version, samples
-        As in the attributes of a result: what is to be computed.
+        What is to be computed, as in the attributes of a result.
     rows : int
-        Rows in all.
+        Total number of rows.
     row_type : str
-        How rows lie in the chunk files.
+        Layout of a row in the chunk files.
     again : bool
-        Whether it is about failed rows of a result that is complete.
+        Whether the run recomputes failed rows of a complete result.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -46,17 +50,24 @@ class RunRecord(BaseModel):
     again: bool
 
 
+def _ascending(blocks: tuple[Block, ...]) -> tuple[Block, ...]:
+    edges = [edge for block in blocks for edge in block]
+    if edges != sorted(edges) or any(start == stop for start, stop in blocks):
+        raise ValueError("blocks are empty, overlap or do not ascend")
+    return blocks
+
+
 class RowsRecord(BaseModel):
-    """Rows that are in a chunk file.
+    """Rows in a chunk file.
 
     Attributes
     ----------
     time : float
         When they were written [s since 1970].
     blocks : tuple of (int, int)
-        First row and the one behind the last of each block, in ascending order.
+        First row and end of each block (end excluded), in ascending order.
     sha256 : str
-        Of the file.
+        Checksum of the file.
     failed : int
     status : dict of str to int
         Status label -> rows.
@@ -64,14 +75,16 @@ class RowsRecord(BaseModel):
     made : dict of str to str
         Processor and versions that computed them.
     settings : dict
-        Settings that were others than the study's.
+        Settings that differ from the study's.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     kind: Literal["rows"] = "rows"
     time: float
-    blocks: Annotated[tuple[tuple[Count, Count], ...], Field(min_length=1)]
+    blocks: Annotated[
+        tuple[tuple[Count, Count], ...], Field(min_length=1), AfterValidator(_ascending)
+    ]
     sha256: str
     failed: Count
     status: dict[str, Count]
@@ -81,19 +94,46 @@ class RowsRecord(BaseModel):
 
     @property
     def rows(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return sum(stop - start for start, stop in self.blocks)
 
     @property
-    def file_name(self) -> str:
-        """Name of the chunk file, behind the study's hash: no record can name another file."""
-        return f"{self.blocks[0][0]}-{self.blocks[-1][1]}.rows"
+    def numbers(self) -> NDArray[np.int64]:
+        """Numbers of the rows, in the order of the file."""
+        return np.concatenate([np.arange(*block) for block in self.blocks])
 
     @property
-    def in_order(self) -> bool:
-        """Whether the blocks are what they should be."""
-        edges = [edge for block in self.blocks for edge in block]
-        return edges == sorted(edges) and all(start < stop for start, stop in self.blocks)
+    def file_name(self) -> str:
+        """Name of the chunk file after the study's hash: no record can name another file."""
+        return f"{self.blocks[0][0]}-{self.blocks[-1][1]}.rows"
+
+
+class History(NamedTuple):
+    """The records of a journal in which a run has started.
+
+    Attributes
+    ----------
+    run : RunRecord
+        The latest run.
+    chunks : list of RowsRecord
+        Rows of all runs.
+    latest : list of RowsRecord
+        Rows of the latest run.
+    """
+
+    run: RunRecord
+    chunks: list[RowsRecord]
+    latest: list[RowsRecord]
+
+    @property
+    def kept(self) -> list[RowsRecord]:
+        """Records that count, each row once."""
+        return without_overlap(self.chunks, self.run.rows)
+
+    @property
+    def complete(self) -> bool:
+        """Whether all rows are there."""
+        return not missing(self.kept, self.run.rows)
 
 
 _RECORD: TypeAdapter[RunRecord | RowsRecord] = TypeAdapter(
@@ -102,52 +142,45 @@ _RECORD: TypeAdapter[RunRecord | RowsRecord] = TypeAdapter(
 
 
 def understood(records: Sequence[Record]) -> list[RunRecord | RowsRecord]:
-    """Return those records of a journal that mean something."""
+    """Return the valid records of a journal."""
     found = []
     for record in records:
-        try:
-            known = _RECORD.validate_python(record)
-        except ValidationError:
-            continue
-        if isinstance(known, RunRecord) or known.in_order:
-            found.append(known)
+        with suppress(ValidationError):
+            found.append(_RECORD.validate_python(record))
     return found
 
 
+def history_of(records: Sequence[Record]) -> History | None:
+    """Return what a journal records; None if no run has started."""
+    run, chunks, before = None, list[RowsRecord](), 0
+    for record in understood(records):
+        if isinstance(record, RowsRecord):
+            chunks.append(record)
+        else:
+            run, before = record, len(chunks)
+    return History(run, chunks, chunks[before:]) if run else None
+
+
 def without_overlap(records: Sequence[RowsRecord], total: int) -> list[RowsRecord]:
-    """Return the latest records of rows within 0..total that no later record holds too."""
+    """Return the latest records of rows within 0..total that no later record covers."""
     kept: list[RowsRecord] = []
-    free: list[Block] = [(0, total)]
+    taken: list[Block] = []
     for record in reversed(records):
-        rest = _without(free, record.blocks)
-        if _size(free) - _size(rest) == record.rows:
+        end = record.blocks[-1][1]
+        if end <= total and all(_is_free(taken, *block) for block in record.blocks):
             kept.append(record)
-            free = rest
+            taken = sorted([*taken, *record.blocks])
     return sorted(kept, key=lambda record: record.blocks)
 
 
+def _is_free(taken: Sequence[Block], start: int, stop: int) -> bool:
+    """Return whether a block overlaps none of some ascending blocks."""
+    place = bisect_left(taken, (stop, 0))
+    return not place or taken[place - 1][1] <= start
+
+
 def missing(records: Sequence[RowsRecord], total: int) -> list[Block]:
-    """Return the blocks of rows that no record holds."""
-    return _without([(0, total)], sorted(block for record in records for block in record.blocks))
-
-
-def _without(free: Sequence[Block], taken: Sequence[Block]) -> list[Block]:
-    """Return what is left of some blocks when others are taken away; both in ascending order."""
-    left: list[Block] = []
-    rest = list(taken)[::-1]
-    for start, stop in free:
-        while rest and rest[-1][0] < stop:
-            first, last = rest[-1]
-            if start < first:
-                left.append((start, first))
-            start = max(start, last)
-            if last > stop:
-                break
-            rest.pop()
-        if start < stop:
-            left.append((start, stop))
-    return left
-
-
-def _size(blocks: Sequence[Block]) -> int:
-    return sum(stop - start for start, stop in blocks)
+    """Return the blocks of rows that are in none of some records without overlap."""
+    blocks = sorted(block for record in records for block in record.blocks)
+    edges = [0, *(edge for block in blocks for edge in block), total]
+    return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]

@@ -1,4 +1,4 @@
-"""A checksum of all that a netCDF file says, kept in the file itself."""
+"""A checksum of the content of a netCDF file, kept in the file itself."""
 
 import hashlib
 from pathlib import Path
@@ -12,7 +12,7 @@ _ROWS = 1_000_000  # read at a time
 
 
 def seal(path: Path) -> None:
-    """Give a file its checksum as an attribute."""
+    """Store the checksum of a file as an attribute."""
     import netCDF4
 
     with netCDF4.Dataset(path, "a") as file:
@@ -20,7 +20,7 @@ def seal(path: Path) -> None:
 
 
 def is_intact(path: Path) -> bool | None:
-    """Return whether a file still says what it said when it was sealed; None if it never was.
+    """Return whether a file is unchanged since it was sealed; None if it never was.
 
     Raises
     ------

@@ -1,8 +1,9 @@
 """Counts of the rows of a run, wherever they are kept."""
 
 from collections import Counter
+from collections.abc import Mapping
 from math import prod
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,17 +12,14 @@ from uq.contract import Status
 from uq.rows.columns import columns_of, failed_rows
 from uq.rows.preview import Preview
 from uq.rows.workload import Workload
-
-if TYPE_CHECKING:
-    from uq.rows.evaluate import Chunk
-    from uq.study.definition import Study
+from uq.study.definition import Study
 
 Failures = dict[str, tuple[int, str]]
-"""Status label -> number of the first row with that status, and what happened to it."""
+"""Status label -> number of the first row with that status, and its message."""
 
 
 class Tally:
-    """How many rows there are, and how they ended.
+    """Counts of rows by how they ended.
 
     Parameters
     ----------
@@ -34,7 +32,7 @@ class Tally:
     done : int
         Rows that are there.
     failed : int
-        Rows among them that failed.
+        Failed rows among them.
     found : int
         Rows that were there from the start.
     failures : Failures
@@ -47,46 +45,43 @@ class Tally:
     def __init__(self, workload: Workload) -> None:
         self.workload = workload
         self.total = workload.total
-        self.done = 0
-        self.failed = 0
-        self.found = 0
+        self.done = self.failed = self.found = 0
         self.failures: Failures = {}
         self.status: Counter[str] = Counter()
         self.preview = Preview(workload)
-        self._bad_shapes = 0
 
     def count(self, rows: int, failed: int, status: dict[str, int], failures: Failures) -> None:
         """Count some rows."""
         self.done += rows
         self.failed += failed
         self.status.update(status)
-        self._bad_shapes += status.get(Status.BAD_SHAPE.label, 0)
         self.failures = joined_failures(self.failures, failures)
 
     @property
     def shapes_all_wrong(self) -> str | None:
         """What is wrong with the shape of every row so far, if every row has a wrong shape."""
-        if 0 < self._bad_shapes == self.done:
-            return self.failures[Status.BAD_SHAPE.label][1]
-        return None
+        label = Status.BAD_SHAPE.label
+        return self.failures[label][1] if 0 < self.status[label] == self.done else None
 
     @property
     def examples(self) -> dict[str, str]:
-        """What happened to the first row of each status, status label -> sentence."""
+        """Status label -> message of the first row with that status."""
         return {label: f"row {row}: {text}" for label, (row, text) in self.failures.items()}
 
-    def failed_in(self, chunk: "Chunk") -> int:
-        """Return how many rows of a chunk failed."""
+    def counts(
+        self, columns: Mapping[str, NDArray[Any]], status: NDArray[np.int8]
+    ) -> tuple[int, int, dict[str, int]]:
+        """Return the number of some rows, of the failed ones, and of each status."""
         required = (
-            (output, chunk.columns[name])
+            (output, columns[name])
             for name, output in self.workload.model.outputs.items()
             if not output.may_be_undefined
         )
-        return int(np.count_nonzero(failed_rows(chunk.status, required)))
+        return len(status), int(np.count_nonzero(failed_rows(status, required))), by_status(status)
 
 
-def ended(status: NDArray[np.int8]) -> dict[str, int]:
-    """Return how many rows ended how."""
+def by_status(status: NDArray[np.int8]) -> dict[str, int]:
+    """Return the number of rows of each status."""
     codes, counts = np.unique(status, return_counts=True)
     return {Status(code).label: int(n) for code, n in zip(codes, counts, strict=True)}
 
@@ -98,8 +93,8 @@ def joined_failures(first: Failures, second: Failures) -> Failures:
     }
 
 
-def row_bytes(workload: "Workload | Study") -> int:
-    """Return about how many bytes a row takes, inputs and outputs."""
+def row_bytes(workload: Workload | Study) -> int:
+    """Return roughly how many bytes a row takes, inputs and outputs."""
     columns = columns_of(workload.model, workload.settings).values()
     outputs = sum(column.dtype.itemsize * prod(column.shape) for column in columns)
     return 8 * len(workload.model.parameter_names) + 32 + outputs

@@ -12,13 +12,11 @@ from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import law_problem
 from uq.inputs.distributions import LogNormal, Normal, Uniform
 from uq.inputs.law import Law
-from uq.inputs.observed import Empirical
 from uq.inputs.registry import LAWS
 from uq.inputs.values import bounds_of
 from uq.literals import toml
 from uq.study.file import AnalysisTable, DesignTable
 
-_DESIGN = {"method": "monte-carlo", "samples": 1000, "seed": 1}
 _UNCERTAIN = 3
 
 
@@ -122,12 +120,9 @@ def _uncertain(model: Model, laws: dict[str, Law]) -> Iterator[str]:
 def _menu() -> Iterator[str]:
     common = ("distribution", *Law.model_fields)
     for name, law in LAWS.items():
-        arguments = [key for key in law.model_fields if key not in common]
-        if law is LogNormal:
-            arguments = ["mean, cv", "or median, sigma"]
-        elif law is Empirical:
-            arguments = ["file, column", "or values"]
-        yield f"# {name}: {', '.join(arguments)}"
+        own = [key for key in law.model_fields if key not in common]
+        arguments = ", or ".join(", ".join(names) for names in law.either or [own])
+        yield f"# {name}: {arguments}"
     yield "# Any of them may be cut: truncate = [lower, upper]"
     yield '# A law may be that of a factor on another uncertain parameter: times = "other"'
     yield '# A parameter may be the same as another, instead of a law: equals = "other"'
@@ -156,10 +151,6 @@ def _settings(model: Model) -> Iterator[str]:
 
 def _numbers(model: Model) -> list[str]:
     return [name for name, output in model.outputs.items() if not output.is_category]
-
-
-def _design_examples(model: Model) -> dict[str, Any]:
-    return {"until": {"output": _numbers(model)[0], "half_width": 1.0}}
 
 
 def _analysis_examples(model: Model) -> dict[str, Any]:

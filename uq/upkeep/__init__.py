@@ -1,1 +1,1 @@
-"""What is done to a run afterwards: its status, more samples, failed rows again, verification."""
+"""After a run: its status, more samples, failed rows again, verification."""

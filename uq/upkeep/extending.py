@@ -15,29 +15,29 @@ from uq.upkeep.stored_study import study_of
 def extend(
     path: Path, samples: int, model: str | None = None, options: RunOptions = DEFAULTS
 ) -> xr.Dataset:
-    """Give a result more samples; nothing is computed again.
+    """Add samples to a result; nothing is computed again.
 
     Parameters
     ----------
     path : Path
-        A result, or what is to become one.
+        A result, complete or not.
     samples : int
-        Base size of each replicate, in all.
+        Total base size of each replicate.
     model : str, optional
-        Where the model lives, if it is not installed.
+        Where its model lives, if it is not installed.
     options : RunOptions
 
     Returns
     -------
     xarray.Dataset
-        The same bits as if so many samples had been asked for from the start.
+        The same bits as if it had had this many samples from the start.
 
     Raises
     ------
     InputError
         When the design cannot be extended, or there are more samples already.
     RunError
-        As `uq.running.runner.run` does.
+        As in `uq.running.runner.run`.
     """
     study = study_of(path, model)
     there = study.design.samples
@@ -47,6 +47,6 @@ def extend(
     if samples > there and problem:
         raise InputError(f"{path}: {problem}")
     study = study.with_samples(samples)
-    # So many are wanted, whatever is known: [design] until has no say.
+    # This many are wanted, whatever the precision: [design] until does not apply.
     design = study.design.model_copy(update={"until": None})
     return runner.run_study(replace(study, design=design), path, options)

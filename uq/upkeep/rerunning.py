@@ -1,4 +1,4 @@
-"""Failed rows once more, with other numerical settings if need be."""
+"""Failed rows computed again, with other numerical settings if need be."""
 
 import json
 from collections.abc import Mapping
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq.contract import Model
+from uq import store
 from uq.errors import InputError
 from uq.inputs.values import read_settings
 from uq.rows import results
@@ -31,10 +31,10 @@ def rerun_failed(
     Parameters
     ----------
     path : Path
-        A complete result; replaced when all these rows are done.
+        A complete result; replaced once all these rows are done.
     settings : dict
-        Numerical settings other than the study's; the result says for each row whether it was
-        computed with them, in the variable ``rerun``.
+        Numerical settings that differ from the study's; the variable ``rerun`` of the result says
+        which rows were computed with them.
     model : str, optional
         Where the model lives, if it is not installed.
     options : RunOptions
@@ -46,35 +46,35 @@ def rerun_failed(
     Raises
     ------
     InputError
-        When a setting is not admissible, or changes what the outputs are.
+        When a setting is not admissible, or changes the outputs.
     RunError
-        As `uq.running.runner.run` does.
+        As in `uq.running.runner.run`.
     """
     ds = results.open_result(path)
     study = study_of(path, model)
     changed = changed_settings(study, settings)
     failed = int(np.count_nonzero(results.failed(ds)))
     if not failed:
-        options.say(f"{path}: no row failed; there is nothing to do")
+        options.say(f"{path}: no row failed; nothing to do")
         return ds
     differing = {
         name: getattr(changed, name)
         for name in settings
         if getattr(changed, name) != getattr(study.settings, name)
     }
-    plain = json.loads(json.dumps(differing))  # as it will be read again
-    with runner.kept(study, path, options, again=plain) as kept:
+    plain = json.loads(json.dumps(differing))  # as read back later
+    with store.keep(study, path, options.fresh, plain, options.say, options.mixed) as kept:
         workload = workload_of(study)._replace(settings=changed)
         return runner.carry_out(workload, options, kept)
 
 
 def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
-    """Return the settings of a study with some of them changed.
+    """Return the settings of a study with some changes.
 
     Raises
     ------
     InputError
-        When one is not admissible, or rows would have outputs of other shapes or coordinates.
+        When one is not admissible, or would change shapes or coordinates of the outputs.
     """
     changed, wrong = read_settings(study.model, asdict(study.settings) | dict(settings))
     if wrong:
@@ -84,11 +84,11 @@ def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
                 for name, problem in wrong.items()
             )
         )
-    if _axes(study.model, changed) != _axes(study.model, study.settings):
+    axes, others = (
+        {dim: list(values) for dim, values in study.model.coordinates(each).items()}
+        for each in (changed, study.settings)
+    )
+    if axes != others:
         names = ", ".join(settings)
-        raise InputError(f"--setting {names}: would give these rows other outputs than the others")
+        raise InputError(f"--setting {names}: would give these rows other outputs than the rest")
     return changed
-
-
-def _axes(model: Model, settings: Any) -> dict[str, list[Any]]:
-    return {dim: list(values) for dim, values in model.coordinates(settings).items()}

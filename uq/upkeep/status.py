@@ -1,29 +1,22 @@
-"""Where a run stands, also one that is under way: read from the journal, without disturbing it."""
+"""How far a run is, even one under way: read from its journal, without disturbing it."""
 
+from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from uq.rows import results
 from uq.store import folder_of
-from uq.store.folder import history, holder, is_held
-from uq.store.records import RowsRecord, RunRecord, without_overlap
-from uq.store.tally import ended
-
-
-@dataclass(frozen=True)
-class Writer:
-    """The process that is writing rows."""
-
-    host: str
-    pid: int
+from uq.store.folder import Holder, history, holder, is_held
+from uq.store.records import History
+from uq.store.tally import by_status
 
 
 @dataclass(frozen=True)
 class RunStatus:
-    """How far the run is that makes a result.
+    """How far a run is.
 
     Attributes
     ----------
@@ -31,17 +24,17 @@ class RunStatus:
         Path of the result.
     state : {"complete", "running", "interrupted"}
     rows : int
-        In all; of them `done`, `failed` and `left`.
+        Total; of them `done`, `failed` and `left`.
     status : dict of str to int
         Status label -> rows.
     rate : float or None
-        Of the latest run [rows/s]; None where unknown.
+        Of the latest run [rows/s]; None if unknown.
     seconds_left : float or None
-        Until it is done, at this rate [s].
-    process : Writer or None
-        Who is writing.
+        Until completion at this rate [s].
+    process : Holder or None
+        The process that is writing.
     complete_rows : int or None
-        Rows of the result that exists.
+        Rows of an existing result.
     """
 
     output: str
@@ -53,83 +46,66 @@ class RunStatus:
     status: Mapping[str, int]
     rate: float | None
     seconds_left: float | None
-    process: Writer | None
+    process: Holder | None
     complete_rows: int | None
 
 
-@dataclass(frozen=True)
-class _Counts:
-    rows: int
-    done: int
-    failed: int
-    status: Mapping[str, int]
-    rate: float | None = None
-
-
 def run_status(path: Path) -> RunStatus:
-    """Return how far the run is that makes a result.
+    """Return how far the run of a result is.
 
     Parameters
     ----------
     path : Path
-        Of the result, whether it exists or not.
+        Of the result, existing or not.
 
     Raises
     ------
     InputError
-        When there is neither a result nor rows that were kept for one.
+        When there are neither a result nor rows kept for one.
     """
     folder = folder_of(path)
-    records = history(folder)
-    complete = _complete(path) if path.is_file() or not records else None
-    under_way = _under_way(records) if records else None
+    found = history(folder)
     held = holder(folder)
-    running = held is not None and is_held(folder)
-    if under_way is None or (complete is not None and under_way.done == under_way.rows):
-        assert complete is not None
-        found, state = complete, "complete"
-    else:
-        found, state = under_way, "running" if running else "interrupted"
-    left = found.rows - found.done
+    process = replace(held, host=held.computer) if held and is_held(folder) else None
+    complete = _complete(path, process) if path.is_file() or not found else None
+    if complete and (not found or found.complete):
+        return complete
+    assert found is not None
+    return _under_way(path, process, found, complete.rows if complete else None)
+
+
+def _complete(path: Path, process: Holder | None) -> RunStatus:
+    ds = results.open_result(path)
+    rows, failed = ds.sizes["sample"], int(np.count_nonzero(results.failed(ds)))
+    status = by_status(ds["status"].values)
     return RunStatus(
-        output=str(path),
-        state=state,
-        rows=found.rows,
-        done=found.done,
-        failed=found.failed,
-        left=left,
-        status=found.status,
-        rate=found.rate,
-        seconds_left=left / found.rate if found.rate else None,
-        process=Writer(held.computer, held.pid) if held and running else None,
-        complete_rows=complete.rows if complete else None,
+        str(path), "complete", rows, rows, failed, 0, status, None, None, process, rows
     )
 
 
-def _complete(path: Path) -> _Counts:
-    ds = results.open_result(path)
-    rows, failed = ds.sizes["sample"], int(np.count_nonzero(results.failed(ds)))
-    return _Counts(rows, rows, failed, ended(ds["status"].values))
-
-
-def _under_way(records: list[RunRecord | RowsRecord]) -> _Counts:
-    last = max(i for i, record in enumerate(records) if isinstance(record, RunRecord))
-    run = records[last]
-    assert isinstance(run, RunRecord)
-    chunks = [record for record in records if isinstance(record, RowsRecord)]
-    kept = without_overlap(chunks, run.rows)
-    latest = [record for record in records[last:] if isinstance(record, RowsRecord)]
+def _under_way(
+    path: Path, process: Holder | None, found: History, complete_rows: int | None
+) -> RunStatus:
+    kept, latest = found.kept, found.latest
     # From the first rows on, if there are others: before them, the model may have been compiled.
-    began, since = (latest[0].time, latest[1:]) if latest[1:] else (run.time, latest)
+    began, since = (latest[0].time, latest[1:]) if latest[1:] else (found.run.time, latest)
     seconds = since[-1].time - began if since else 0.0
-    status: dict[str, int] = {}
+    rate = sum(record.rows for record in since) / seconds if seconds > 0 else None
+    done = sum(record.rows for record in kept)
+    left = found.run.rows - done
+    status: Counter[str] = Counter()
     for record in kept:
-        for label, count in record.status.items():
-            status[label] = status.get(label, 0) + count
-    return _Counts(
-        run.rows,
-        sum(record.rows for record in kept),
-        sum(record.failed for record in kept),
-        status,
-        sum(record.rows for record in since) / seconds if seconds > 0 else None,
+        status.update(record.status)
+    return RunStatus(
+        output=str(path),
+        state="running" if process else "interrupted",
+        rows=found.run.rows,
+        done=done,
+        failed=sum(record.failed for record in kept),
+        left=left,
+        status=dict(status),
+        rate=rate,
+        seconds_left=left / rate if rate else None,
+        process=process,
+        complete_rows=complete_rows,
     )

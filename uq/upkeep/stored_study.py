@@ -1,4 +1,4 @@
-"""The study that a result, or what is to become one, holds."""
+"""The study of a result, or of a run that is not complete."""
 
 from pathlib import Path
 
@@ -6,7 +6,6 @@ from uq.errors import InputError
 from uq.rows import results
 from uq.store import folder_of
 from uq.store.folder import history
-from uq.store.records import RunRecord
 from uq.study.changes import what_changed
 from uq.study.definition import Study, study_from_text
 
@@ -19,17 +18,17 @@ def study_of(path: Path, model: str | None = None) -> Study:
     path : Path
         Of the result.
     model : str, optional
-        Where its model lives, if that is not installed.
+        Where its model lives, if it is not installed.
 
     Returns
     -------
     Study
-        With as many samples as there are, or are to be.
+        With the number of samples of the result or run.
 
     Raises
     ------
     InputError
-        When there is nothing, or the model here is another than the one that made it.
+        When there is nothing, or the model here differs from the one that computed it.
     """
     identity, text, version, samples = _recorded(path)
     study = study_from_text(text, f"{path}: its study", model).with_samples(samples)
@@ -44,12 +43,9 @@ def study_of(path: Path, model: str | None = None) -> Study:
 
 def _recorded(path: Path) -> tuple[str, str, str, int]:
     """Return identity, text, version of the model and samples of the study of a result."""
-    folder = folder_of(path)
-    if not path.is_file():
-        runs = [run for run in history(folder) if isinstance(run, RunRecord)]
-        if runs:
-            return runs[-1].identity, runs[-1].study, runs[-1].model_version, runs[-1].samples
+    if not path.is_file() and (found := history(folder_of(path))):
+        run = found.run
+        return run.identity, run.study, run.model_version, run.samples
     attrs = results.open_result(path).attrs
-    names = ("study_identity", "study", "model_version", "samples")
-    identity, text, version, samples = (attrs[name] for name in names)
-    return identity, text, version, int(samples)
+    samples = int(attrs["samples"])
+    return attrs["study_identity"], attrs["study"], attrs["model_version"], samples

@@ -1,7 +1,6 @@
-"""Whether a result is what was computed, and would be computed here."""
+"""Whether a result is as written, and would be the same if computed here."""
 
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -21,35 +20,13 @@ from uq.upkeep.rerunning import changed_settings
 from uq.upkeep.stored_study import study_of
 
 ROWS = 16
-"""Rows that are computed again."""
+"""Rows to recompute."""
 
-_NOT_AGAIN = (Status.CRASHED, Status.TIMED_OUT)  # they would do it to this process
-
-
-class Version(NamedTuple):
-    """Something that made a result, and is another here."""
-
-    name: str
-    made: str
-    here: str
-
-
-class Recomputed(NamedTuple):
-    """Rows that were computed again.
-
-    Attributes
-    ----------
-    rows : list of int
-    differences : list of str
-        One sentence per row that came out otherwise.
-    """
-
-    rows: list[int]
-    differences: list[str]
+_NOT_AGAIN = (Status.CRASHED, Status.TIMED_OUT)  # they would do the same to this process
 
 
 def checksum_holds(path: Path) -> bool | None:
-    """Return whether a result says what it said when it was written; None if it has no checksum.
+    """Return whether a result is as written; None if it has no checksum.
 
     Raises
     ------
@@ -63,17 +40,20 @@ def checksum_holds(path: Path) -> bool | None:
         raise InputError(f"{path}: not a readable netCDF file") from None
 
 
-def other_versions(ds: xr.Dataset, model: str | None = None) -> list[Version]:
-    """Return what made a result and is another here: processor, Python, libraries, model's code."""
+def other_versions(ds: xr.Dataset, model: str | None = None) -> dict[str, tuple[str, str]]:
+    """Return what differs here from what made a result: name -> (there, here).
+
+    Compared are processor, Python, libraries and the code of the model.
+    """
     pairs = made_here(model or ds.attrs["model"]).items()
-    found = [Version(name, str(ds.attrs.get(name, "unknown")), here) for name, here in pairs]
-    return [version for version in found if version.made != version.here]
+    found = {name: (str(ds.attrs.get(name, "unknown")), here) for name, here in pairs}
+    return {name: (made, here) for name, (made, here) in found.items() if made != here}
 
 
-def recompute(path: Path, model: str | None = None) -> Recomputed:
-    """Compute a random handful of rows of a result again, and compare them to the bit.
+def recompute(path: Path, model: str | None = None) -> tuple[list[int], list[str]]:
+    """Recompute a few random rows of a result, and compare them bit by bit.
 
-    Rows that crashed or timed out are left alone.
+    Rows that crashed or timed out are skipped.
 
     Parameters
     ----------
@@ -83,12 +63,15 @@ def recompute(path: Path, model: str | None = None) -> Recomputed:
 
     Returns
     -------
-    Recomputed
+    rows : list of int
+        Numbers of the recomputed rows.
+    differences : list of str
+        One sentence per row that differs.
 
     Raises
     ------
     InputError
-        When the model is not there, or another.
+        When the model is missing or differs.
     """
     ds, study = results.open_result(path), study_of(path, model)
     candidates = np.flatnonzero(~np.isin(ds["status"].values, _NOT_AGAIN))
@@ -102,11 +85,11 @@ def recompute(path: Path, model: str | None = None) -> Recomputed:
         for row, own in sorted(settings.items())
         if (names := _differing(study, own, row, ds.isel(sample=[row])))
     ]
-    return Recomputed(sorted(settings), differences)
+    return sorted(settings), differences
 
 
 def _differing(study: Study, settings: object, row: int, there: xr.Dataset) -> list[str]:
-    """Return the names of what comes out otherwise."""
+    """Return the names of what differs."""
     model = study.model
     rows = row_block(study, row, row + 1)
     chunk = in_background(lambda: evaluate(model, settings, rows.x, rows.seed, row))

@@ -118,6 +118,7 @@ def _step(w, head, groups, cosine, sine):
         right, left = head[_RIGHT * LANES + lane], head[_LEFT * LANES + lane]
         free = fma(head[_RE * LANES + lane], cosine, head[_SUM * LANES + lane])
         free = fma(-head[_IM * LANES + lane], sine, free) + head[_RANDOM * LANES + lane]
+        # The contact force over the stop's stiffness: penetration to the right less to the left.
         over, under = free - right, -free - left
         p = ((over if over > 0.0 else 0.0) - (under if under > 0.0 else 0.0)) * head[
             _STIFF * LANES + lane

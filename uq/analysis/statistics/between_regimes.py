@@ -19,7 +19,7 @@ _KIND = Kind(shown=_shown, readers=frozenset((JSON, TERMINAL, REPORT)))
 
 
 def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield the share for the output, or the logarithm or rank of a lifetime."""
+    """Yield the share of the variance between regimes, of a life by its logarithm or rank."""
     target = number_of(element)
     if "regime" not in output_names(context.rows) or target.refused:
         return
