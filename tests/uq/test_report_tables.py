@@ -170,7 +170,7 @@ def test_indices_are_ranked_beside_an_input_without_effect():
     (method,) = sensitivity_of(Findings(ds))
     lost = int(ds["y"].isnull().sum())
     assert lost > 0
-    assert method.used.startswith(f"From {200 - lost} rows; {lost} groups with missing values dropped")
+    assert method.used.startswith(f"From {200 - lost} rows; {lost} groups with missing")
     (table,) = method.subjects[0].tables
     names = [row[0].text for row in table.rows]
     nulls = ["(an input without effect)", "(largest of 4 such inputs)"]

@@ -52,7 +52,7 @@ def write_report(result: str | Path, path: str | Path) -> None:
     ds = open_result(result)
     check_target(path, 0)
     if path.exists() and path.samefile(result):
-        raise InputError(f"{path}: is the result itself; choose another name for the report")
+        raise InputError(f"{path}: is the result itself; give the report another name")
     text = page(ds, result.name)
     with whole(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
