@@ -1,1 +1,1 @@
-"""The machines: they know nothing of sampling, dask, files or xarray."""
+"""The machines, independent of sampling, dask, files and xarray."""

@@ -1,8 +1,8 @@
 """Functions with known answers, declared as models.
 
-They run through everything the machines run through, so that every number the platform prints can
-be held against a closed form. Each is written element by element: a row's result does not depend
-on the rows beside it, to the bit.
+They pass through the same code as the machines, so that every number the platform prints can be
+compared with a closed form. Each is computed element by element: a row's result does not depend on
+the other rows, to the bit.
 """
 
 import os
@@ -30,7 +30,7 @@ def _ok(rows: int) -> NDArray[np.int8]:
 
 
 def _columns(x: Array) -> Array:
-    # Contiguous columns: strided ones may take another code path in numpy, with other last bits.
+    # Contiguous columns: numpy may use other code for strided ones, with other last bits.
     return np.ascontiguousarray(x.T)
 
 
@@ -137,9 +137,9 @@ class LinearParameters(NamedTuple):
 
 @dataclass(frozen=True)
 class LinearSettings:
-    """Faults on request, so that they are injected through the front door."""
+    """Faults on request, injected as ordinary settings."""
 
-    fail_above: Annotated[float, Setting("rows whose x1 lies above this fail")] = 2.0
+    fail_above: Annotated[float, Setting("rows with x1 above this fail")] = 2.0
     fail_how: Annotated[
         str,
         Setting("how those rows fail", choices=("nan", "inf", "raise", "shape", "exit", "hang")),
@@ -147,9 +147,9 @@ class LinearSettings:
 
 
 def linear(x: Array, seed: NDArray[np.uint64], settings: LinearSettings) -> Result:
-    """Evaluate y = x1 + 2 x2 + 3 x3 + 4 x4, and fail where it is asked to.
+    """Evaluate y = x1 + 2 x2 + 3 x3 + 4 x4, and fail on request.
 
-    A row that fails by ``exit`` ends the process at once; by ``hang`` it never returns.
+    A row that fails by ``exit`` ends the process at once; one that fails by ``hang`` never returns.
 
     With independent inputs uniform on [0, 1], the mean is 5, the variance 30/12, and
     S_i = ST_i = i^2/30.
@@ -208,7 +208,7 @@ class ExponentialWearParameters(NamedTuple):
 
 
 def exponential_wear(x: Array, seed: NDArray[np.uint64], settings: NoSettings) -> Result:
-    """Evaluate life = depth/rate, never (+inf) where rate < threshold or nothing wears at all.
+    """Evaluate life = depth/rate; never (+inf) where rate < threshold or rate = 0.
 
     A lognormal rate gives a lognormal life; an exponential depth (gamma or weibull of shape 1) an
     exponential one.
@@ -230,7 +230,7 @@ def exponential_wear(x: Array, seed: NDArray[np.uint64], settings: NoSettings) -
     rate, depth, threshold = _columns(x)
     wears = (rate >= threshold) & (rate > 0.0)
     life = np.full(len(x), np.inf)
-    with np.errstate(over="ignore"):  # slower than the largest float can tell is never, too
+    with np.errstate(over="ignore"):  # a life beyond the largest float is never, too
         np.divide(depth, rate, out=life, where=wears)
     return {"life": life}, _ok(len(x))
 

@@ -6,6 +6,7 @@ import importlib
 import re
 import shutil
 import sys
+import threading
 import tomllib
 from inspect import isfunction
 from pathlib import Path
@@ -14,7 +15,12 @@ import pytest
 import yaml
 
 import uq as public
+from uq import plots
+from uq.analysis.as_json import summary_json
+from uq.analysis.summary import summarise
+from uq.cli.tables import show_summary
 from uq.errors import InputError
+from uq.report import page
 from uq.study.definition import study_from_text
 from uq.study.registry import find_model, model_names
 
@@ -136,9 +142,12 @@ def test_files_modules_and_targets_named_exist(name):
     assert set(re.findall(r"(?:^|`)make (\w+)", text, re.M)) <= set(targets)
 
 
+FUNCTION = re.compile(r"`((?:uq|models|docs)/[\w/]+\.py):([\w.]+)`")
+
+
 @every_source
 def test_functions_named_exist(name):
-    for path, function in re.findall(r"`((?:uq|models|docs)/[\w/]+\.py):([\w.]+)`", SOURCES[name]):
+    for path, function in FUNCTION.findall(SOURCES[name]):
         assert (HOUSE / path).is_file(), path
         names = definitions(ast.parse((HOUSE / path).read_text()))
         assert function in names, f"{path} has no {function}"
@@ -151,6 +160,48 @@ def definitions(tree, before=""):
     for name, node in list(found.items()):
         found |= definitions(node, f"{name}.") if isinstance(node, ast.ClassDef) else {}
     return found
+
+
+def test_a_row_and_a_number_take_the_path_that_is_described(folder, monkeypatch, write_study):
+    path = write_study("exponential-wear", uncertain=("rate",))
+    monkeypatch.setattr(plots, "FIGURES", {})
+
+    def row():
+        public.run(path, "out.nc", workers=0)
+
+    def number():
+        ds = public.open_result("out.nc")
+        public.summary(ds)
+        summary_json(summarise(ds))
+        show_summary(ds, summarise(ds))
+        public.survival(ds, "life")
+        public.compare(ds, ds)
+        page(ds, "out.nc")
+
+    _, first, second = SOURCES["docs/architecture.md"].split("## The path of a ")
+    for text, action in ((first, row), (second, number)):
+        named = {(path, f) for path, f in FUNCTION.findall(text) if path.startswith("uq/")}
+        passed = functions_called(action)
+        elsewhere = {"isolation", "sent_chunks", "dask_task"}  # in other processes
+        lacking = {(file, f) for file, f in named - passed if Path(file).stem not in elsewhere}
+        assert {f for _, f in lacking if f[0].islower()} == set()  # classes are not called
+
+
+def functions_called(action):
+    """Return the functions of the house that an action calls."""
+    codes = set()
+
+    def note(frame, event, argument):
+        codes.add(frame.f_code)
+
+    threading.setprofile(note)
+    sys.setprofile(note)
+    try:
+        action()
+    finally:
+        sys.setprofile(None)
+        threading.setprofile(None)
+    return {(code.co_filename.removeprefix(f"{HOUSE}/"), code.co_qualname) for code in codes}
 
 
 def test_the_picture_of_the_house_is_what_its_script_draws():

@@ -3,21 +3,21 @@
 After J. Knudsen and A. R. Massih, "Impact work-rate and wear of a loosely supported beam subject
 to harmonic excitation", ASME IMECE 2002, and J. Sound Vib. 278 (2004) 1025.
 
-Reading order; a storey imports only those above it:
+Reading order; each part imports only those above it:
 
-    parameters    what a user sets and gets
+    parameters    inputs, settings and outputs
     structure     the rod as one oscillator per mode, and the load on it
     exact         one propagator: from event to event, the yardstick
-    lanes         the other: many beams abreast in fixed steps, twenty times as fast
-    start         the propagator, the gaps and the state to begin with
+    lanes         the other: many beams at a time in fixed steps, twenty times as fast
+    start         propagator, gaps and state at the start
     response      the settled response at constant gaps
     wear          lives of beams whose gaps grow with the impact work
-    units         dimensionless results in units
+    units         conversion of dimensionless results to units
     batch         from rows of parameters to outputs
     trajectory    one labelled time history
     branches      periodic orbits followed over frequency, gap and wear
     explore       labelled data for notebooks
-    paper         the published facts and ours
+    paper         the published facts compared with the model
 """
 
 from typing import Any
@@ -27,7 +27,7 @@ from uq.contract import Model, Trajectory
 
 
 def _batch(x: Any, seed: Any, settings: Settings) -> Any:
-    from models.beam.batch import batch  # numba only when something is computed
+    from models.beam.batch import batch  # imports numba only when needed
 
     return batch(x, seed, settings)
 

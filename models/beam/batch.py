@@ -19,7 +19,7 @@ from models.beam.wear.lives import Lives, find_lives
 from models.beam.wear.random_lives import find_random_lives
 from uq.contract import Status
 
-# They scale lifetimes and nothing else (eq 12): rows that differ only here share a simulation.
+# These only scale lifetimes (eq 12): rows that differ only here share a simulation.
 _SCALES = [Params._fields.index(name) for name in ("wear_coefficient", "contact_area")]
 _BAND = [Params._fields.index(name) for name in ("random_force_low", "random_force_high")]
 
@@ -42,7 +42,7 @@ def batch(
     x : ndarray, shape (n, d)
         Parameters in the order of `Params`.
     seed : ndarray of uint64, shape (n,)
-        Of the random force's realisation; without one the beam is deterministic.
+        Of the realisation of the random force; without one the beam is deterministic.
     settings : Settings
 
     Returns
@@ -54,10 +54,10 @@ def batch(
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
     seed = np.where(p.random_force_level > 0, seed, np.uint64(0))
-    # The halves of a seed are floats without rounding.
+    # The halves of a seed are exact as floats.
     halves = np.stack([seed >> np.uint64(32), seed & np.uint64(0xFFFFFFFF)], axis=1)
     given = x.copy()
-    given[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load is none
+    given[np.ix_(p.random_force_level == 0, _BAND)] = 0.0  # a band without a load has no effect
     dynamic = np.hstack([np.delete(given, _SCALES, axis=1), halves.astype(float)])
     _, first, back = np.unique(dynamic, axis=0, return_index=True, return_inverse=True)
     some: Rows = Params._make(np.ascontiguousarray(x[first].T))
@@ -79,8 +79,8 @@ def simulate_rows(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None =
     Returns
     -------
     Simulated
-        NaN for a beam that takes too many steps or events in a period, and for one whose random
-        force has no band.
+        NaN for a beam with too many steps or events in a period, and for one whose random force has
+        no band.
     """
     b = beams(p, settings, seed)
     propagator = PROPAGATORS[settings.propagator]
@@ -137,14 +137,14 @@ def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
 def _in_units(
     p: Rows, s: Simulated, settings: Settings
 ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
-    """Give the results their units, and apply the horizon."""
+    """Convert the results to units, and apply the horizon."""
     to_watt = watt(p)[:, None]
     wear_rate = wear_per_work(p)
     to_second = 1 / (p.forcing_frequency * wear_rate)[:, None, None]
     time, error = s.lives.time * to_second, s.lives.error * to_second
     reached = s.lives.reached & (time <= settings.horizon)
     never = np.isinf(s.lives.time)
-    # A beam that no propagator could follow has NaN for its work: nothing is known of its life.
+    # The work of a beam that no propagator could follow is NaN: its life is unknown.
     lost = np.asarray(np.isnan(s.response.work).any(axis=1), bool)
     censored = ~reached & ~never & ~lost[:, None, None]
     time = np.where(censored, np.minimum(time, settings.horizon), time)

@@ -1,8 +1,8 @@
 """Parameters, settings and outputs of the beam, each declared once.
 
-Nominal values after Knudsen & Massih (ASME IMECE 2002), whose printed table is known to us only
-in part: a source says "given" where the number is legible, "inferred" where it was recovered from
-the paper's results, "fitted" where it was chosen to meet them, "assumed" where the paper has none.
+Nominal values after Knudsen & Massih (ASME IMECE 2002), whose printed table is only partly legible:
+a source is "given" where the number is legible, "inferred" where it was recovered from the paper's
+results, "fitted" where it was chosen to match them, "assumed" where the paper has none.
 """
 
 from collections.abc import Mapping, Sequence
@@ -50,10 +50,10 @@ class Params(NamedTuple):
         "assumed: the paper's stops are placed symmetrically")] = 0.0
     mass_damping: Annotated[float, Parameter(
         "c_m", "s-1", "mass-proportional damping", (0.05, 60.0),
-        "inferred: 1 to 6 reproduce the paper alike")] = 2.0
+        "inferred: 1 to 6 reproduce the paper equally well")] = 2.0
     stiffness_damping: Annotated[float, Parameter(
         "c_k", "s", "stiffness-proportional damping", (4e-7, 3.6e-4),
-        "inferred: 1e-5 to 2.5e-5 reproduce the paper alike")] = 1.2e-5
+        "inferred: 1e-5 to 2.5e-5 reproduce the paper equally well")] = 1.2e-5
     wear_coefficient: Annotated[float, Parameter(
         "k", "m2 N-1", "worn volume per impact work at the right site", (1e-18, 1e-10),
         "assumed: the paper keeps k symbolic")] = 1e-14
@@ -102,12 +102,12 @@ class Settings:
     ] = 0
     residual_flexibility: Annotated[
         bool,
-        Setting("whether the modes left out still give way to the contact force, as springs"),
+        Setting("whether the truncated modes still yield to the contact force, as springs"),
     ] = False
     steps_per_period: Annotated[
         int,
         Setting(
-            "steps of the fast propagator in a forcing period; 0 chooses for each row",
+            "steps of the fast propagator per forcing period; 0 chooses for each row",
             bounds=(0, 100_000),
         ),
     ] = 0
@@ -177,7 +177,7 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "linear_time_to_depth": Output(
         "s",
-        "earlier time to depth if the first work-rates lasted",
+        "earlier time to depth at constant initial work-rates",
         "lifetime",
         ("depth",),
         may_be_censored=False,
@@ -187,11 +187,11 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "gap_ratio": Output(
         "1",
-        "gap of the less worn site over the more worn one's at the first time to depth",
+        "gap of the less worn site over that of the more worn one at the first time to depth",
         dims=("depth",),
         may_be_undefined=True,
     ),
-    "regime": Output("1", "kind of response at the initial gaps", "category", categories=REGIMES),
+    "regime": Output("1", "type of response at the initial gaps", "category", categories=REGIMES),
     "period": Output("1", "period of the response in forcing periods, 0 if aperiodic"),
     "floquet_multiplier": Output(
         "1",
@@ -199,7 +199,7 @@ OUTPUTS: Mapping[str, Output] = {
         may_be_undefined=True,
     ),
     "regime_changes": Output(
-        "1", "changes of regime until both sites have worn by the last depth, or for good"
+        "1", "changes of regime until both sites have worn by the last depth, or wear has stopped"
     ),
     "fundamental_frequency": Output("Hz", "first natural frequency of the beam out of contact"),
 }

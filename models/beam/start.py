@@ -1,4 +1,4 @@
-"""Where a beam starts: its propagator, its gaps and its state."""
+"""The start of a beam: its propagator, gaps and state."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ PROPAGATORS: dict[str, Propagator] = {"fast": lanes, "exact": exact}
 def one_system(beams: Beams, settings: Settings) -> tuple[Propagator, System]:
     """Return a propagator that can follow one beam, and the system it prepares.
 
-    The exact one where contact is too stiff, or a random force too fast, for fixed steps.
+    The exact one if contact is too stiff, or a random force too fast, for fixed steps.
     """
     for propagator in (PROPAGATORS[settings.propagator], exact):
         for _, system in propagator.groups(beams, settings):
@@ -22,11 +22,11 @@ def one_system(beams: Beams, settings: Settings) -> tuple[Propagator, System]:
 
 
 def initial_gaps(p: Rows) -> Array:
-    """Return the right and the left gap when new, in initial gaps, shape (n, 2)."""
+    """Return the initial right and left gaps, in units of their mean X0, shape (n, 2)."""
     return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
 
 
 def initial_state(propagator: Propagator, system: System, p: Rows) -> Array:
-    """Return the state of n beams at the start, as their propagator keeps it."""
+    """Return the state of n beams at the start, in their propagator's form."""
     x0 = p.initial_gap
     return propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)

@@ -21,12 +21,12 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     params : Params
     settings : Settings
     seed : int
-        Of the random force's realisation.
+        Of the realisation of the random force.
 
     Returns
     -------
     Trajectory
-        NaN where the band of a random force has no width.
+        NaN if the band of a random force has no width.
     """
     p: Rows = Params._make(np.array([value], float) for value in params)
     b = beams(p, settings, np.array([seed], np.uint64))

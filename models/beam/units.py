@@ -1,4 +1,4 @@
-"""Dimensionless results in units: of one beam, or of n whose parameters are arrays."""
+"""Units of dimensionless results, of one beam or of n whose parameters are arrays."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ def newton(p: Params) -> Any:
 
 
 def joule(p: Params) -> Any:
-    """Return the work of one unit of dimensionless work [J]."""
+    """Return one unit of dimensionless work [J]."""
     return p.contact_stiffness * p.initial_gap**2
 
 

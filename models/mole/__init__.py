@@ -3,17 +3,17 @@
 After J.-H. Ho, V.-D. Nguyen and K.-C. Woo, "Nonlinear dynamics of a new electro-vibro-impact
 system", Nonlinear Dyn. 63 (2011) 35.
 
-Reading order; a storey imports only those above it:
+Reading order; each part imports only those above it:
 
     parameters    inputs, settings and outputs
     theory        the equations
     exact         one mole at a time: the yardstick
-    lanes         sixteen moles abreast: what studies run on
+    lanes         sixteen moles at a time: the propagator of studies
     response      settled motion, its averages and its regime
     batch         from rows of a study to outputs
     trajectory    one time history
     explore       histories, sections and diagrams for notebooks
-    paper         the paper's claims beside ours
+    paper         the paper's claims compared with the model
 """
 
 from typing import Any
@@ -23,7 +23,7 @@ from uq.contract import Model, Trajectory
 
 
 def _batch(x: Any, seed: Any, settings: Settings) -> Any:
-    from models.mole.batch import batch  # numba only when something is computed
+    from models.mole.batch import batch  # imports numba only when needed
 
     return batch(x, seed, settings)
 

@@ -32,7 +32,7 @@ def batch(
     Returns
     -------
     outputs : dict of str to ndarray, shape (n,)
-        As `models.mole.parameters.OUTPUTS` says.
+        Those of `models.mole.parameters.OUTPUTS`.
     status : ndarray of int8, shape (n,)
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
@@ -89,7 +89,7 @@ def _outputs(p: Rows, machines: Machines, response: Response) -> dict[str, NDArr
 
 
 def _mean(parts: Any, time: Any, repeats: Any) -> tuple[Any, Any]:
-    """Return the mean rate of something in batches, and its standard error."""
+    """Return the mean rate of a quantity given in batches, and its standard error."""
     mean, error = mean_and_error(parts)
     error = np.where(repeats, 0.0, error)
     return mean * BATCHES / time, error * BATCHES / time

@@ -1,7 +1,7 @@
-"""Time histories, Poincare sections and bifurcation diagrams of the mole, labelled for plotting.
+"""Time histories, Poincaré sections and bifurcation diagrams of the mole, labelled for plotting.
 
-A phase plane is a history of displacement and velocity. Basins of attraction, of this model or any
-other, come from ``uq.basins``.
+For a phase portrait, plot velocity over displacement of a history. Basins of attraction, of this
+model or any other, come from ``uq.basins``.
 """
 
 from collections.abc import Sequence
@@ -30,9 +30,9 @@ _STATES = {
     "voltage": (P, "V", "voltage of the source less that of the capacitor"),
 }
 _SEEN = {
-    "peak_contact_force": ("N", "largest force of the stop on the bar since the point before"),
-    "impacts": ("1", "contacts begun since the point before"),
-    "advance": ("m", "progression of the mole since the point before"),
+    "peak_contact_force": ("N", "largest force of the stop on the bar since the previous point"),
+    "impacts": ("1", "contacts begun since the previous point"),
+    "advance": ("m", "progression of the mole since the previous point"),
 }
 _HISTORY = {
     "displacement": (equations.DISPLACEMENT, *_STATES["displacement"][1:]),
@@ -46,25 +46,25 @@ _HISTORY = {
 def history(
     params: Params, settings: Settings, begin: float, end: float, points: int = 4000
 ) -> xr.Dataset:
-    """Return a stretch of the time history of one mole.
+    """Return part of the time history of one mole.
 
     Parameters
     ----------
     params : Params
         Each field a float.
     settings : Settings
-        Formulation and tolerance count.
+        Only formulation and tolerance are used.
     begin, end : float
         Since the relay first closed [s].
     points : int
-        Evenly spaced over the stretch, both ends included.
+        Evenly spaced, including both ends.
 
     Returns
     -------
     xarray.Dataset
         Along ``time``: ``displacement`` (u), ``velocity`` (v), ``mole_displacement`` (w),
-        ``mole_velocity`` (x) and ``current`` (i). They are NaN from where the step budget ended,
-        should it ever.
+        ``mole_velocity`` (x) and ``current`` (i). NaN after the step budget runs out, should it
+        ever.
 
     Raises
     ------
@@ -100,32 +100,31 @@ def poincare_section(
     params : Params
         Each field a float.
     settings : Settings
-        Formulation and tolerance count.
+        Only formulation and tolerance are used.
     periods : int
-        Points to be returned.
+        Number of points returned.
     dropped : int
-        Control periods left out before.
+        Control periods dropped before the first.
     starts : array_like, shape (k, 2), optional
-        Initial displacements [m] and velocities [m/s] to be followed, instead of the one in
-        `params`.
+        Initial displacements [m] and velocities [m/s] to follow, instead of those in `params`.
     common : bool
-        Whether to look once in a common period of control and half a mains cycle, and not once in
-        every control period: then a period-1 response is one point.
+        Whether to sample once per common period of control and half a mains cycle instead of once
+        per control period: a period-1 response is then one point.
 
     Returns
     -------
     xarray.Dataset
         Along ``start``, if there are `starts`, and ``period``, which counts control periods since
         the relay first closed: ``displacement``, ``velocity``, ``mole_velocity``, ``current`` and
-        ``voltage`` (u, v, x, i, p) just after the relay has closed, and what happened since the
-        point before: ``peak_contact_force``, ``impacts``, ``advance``. NaN from where a step budget
-        ended.
+        ``voltage`` (u, v, x, i, p) just after the relay has closed, and over the time since the
+        previous point: ``peak_contact_force``, ``impacts``, ``advance``. NaN after a step budget
+        runs out.
 
     Raises
     ------
     ValueError
-        If there is no common period, `periods` is not positive, `dropped` negative, or `starts` not
-        a list of pairs.
+        If there is no common period, `periods` is not positive, `dropped` is negative, or `starts`
+        is not a list of pairs.
     """
     _check_counts(periods=periods, dropped=dropped)
     stride = 1
@@ -159,30 +158,30 @@ def bifurcation_diagram(
 ) -> xr.Dataset:
     """Return how the response of a mole changes with its control frequency.
 
-    Each frequency is followed from the start in `params`, so that the diagram shows the branch
-    which that start leads to.
+    Each frequency is followed from the initial state in `params`, so the diagram shows the branch
+    reached from there.
 
     Parameters
     ----------
     frequencies : array_like, shape (n,)
-        Of control [Hz].
+        Control frequencies [Hz].
     params : Params
-        Each field a float; the control frequency does not count.
+        Each field a float; the control frequency is not used.
     settings : Settings
     dropped, kept : int
-        Control periods left out, and those after them that are looked at.
+        Control periods dropped, and those shown after them.
 
     Returns
     -------
     xarray.Dataset
         Along ``control_frequency`` and ``period`` what `poincare_section` returns; along
         ``control_frequency`` the ``progression_rate`` and the ``regime`` of the settled response,
-        which are outputs of the model.
+        as in the model's outputs.
 
     Raises
     ------
     ValueError
-        If a frequency or `kept` is not positive, or `dropped` negative.
+        If a frequency or `kept` is not positive, or `dropped` is negative.
     """
     _check_counts(kept=kept, dropped=dropped)
     frequencies = np.asarray(frequencies, float)
@@ -200,7 +199,7 @@ def bifurcation_diagram(
             settled["progression_rate"],
             {"units": "m s-1", "long_name": "mean velocity of the mole"},
         ),
-        regime=(along, words, {"long_name": "kind of settled response"}),
+        regime=(along, words, {"long_name": "type of settled response"}),
     ).assign_coords(
         {along: (along, frequencies, {"units": "Hz", "long_name": "control frequency"})}
     )
@@ -223,7 +222,7 @@ def _rows(params: Params, n: int, **varied: Array) -> Rows:
 def _strobed(
     dim: str, p: Rows, settings: Settings, dropped: int, points: int, stride: int
 ) -> xr.Dataset:
-    """Look at n moles every `stride` control periods."""
+    """Sample n moles every `stride` control periods."""
     n = len(p.control_frequency)
     machines = Machines.started(p, settings, dropped + points * stride)
     rows = np.arange(n)

@@ -1,7 +1,7 @@
 """Parameters, settings and outputs of the mole, each declared once.
 
-Nominal values after Ho, Nguyen & Woo (Nonlinear Dyn. 63, 2011). The bar's displacement u is that
-relative to the mole, from the middle of the solenoid, positive forwards.
+Nominal values after Ho, Nguyen & Woo (Nonlinear Dyn. 63, 2011). The bar's displacement u is
+relative to the mole, measured from the middle of the solenoid, positive forwards.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,7 +13,7 @@ from uq.contract import Output, Parameter, Setting
 
 PAPER = "Ho, Nguyen & Woo 2011"
 GIVEN, FITTED, ZERO = f"{PAPER}: given", f"{PAPER}: fitted", f"{PAPER}: zero in the simulations"
-DIFFERENTIATED = f"{GIVEN}, estimated there from displacements differentiated twice"
+DIFFERENTIATED = f"{GIVEN}, estimated there by differentiating displacements twice"
 RMS_GIVEN, MAINS = f"{PAPER}: 58 V RMS given", "assumed: European mains"
 TURN = 2 * pi
 
@@ -48,9 +48,11 @@ class Params(NamedTuple):
     coil_inductance: Annotated[float, Parameter(
         "L_0", "H", "inductance of the coil without bar", (5e-3, 5.0), GIVEN)] = 0.1658
     inductance_coefficient: Annotated[float, Parameter(
-        "A", "H m", "what the bar adds: the area below L - L_0", (8e-4, 0.75), GIVEN)] = 0.02494
+        "A", "H m", "inductance added by the bar: area under L - L_0",
+        (8e-4, 0.75), GIVEN)] = 0.02494
     inductance_width: Annotated[float, Parameter(
-        "sigma", "m", "how far from the middle the bar adds it", (1.6e-3, 1.45), GIVEN)] = 0.0483
+        "sigma", "m", "width of the added inductance about the middle",
+        (1.6e-3, 1.45), GIVEN)] = 0.0483
     resistance: Annotated[float, Parameter(
         "R", "ohm", "resistance of the coil", (0.9, 825.0), GIVEN)] = 27.5
     capacitance: Annotated[float, Parameter(
@@ -60,7 +62,7 @@ class Params(NamedTuple):
     supply_frequency: Annotated[float, Parameter(
         "Omega/(2 pi)", "Hz", "frequency of the supply", (1.6, 1500.0), MAINS)] = 50.0
     control_frequency: Annotated[float, Parameter(
-        "F_ctr", "Hz", "switching cycles a second", (0.08, 400.0), GIVEN)] = 8.0
+        "F_ctr", "Hz", "switching cycles per second", (0.08, 400.0), GIVEN)] = 8.0
     supply_phase: Annotated[float, Parameter(
         "phi", "rad", "phase of the supply when the relay first closes", (-TURN, TURN), ZERO)] = 0.0
     initial_displacement: Annotated[float, Parameter(
@@ -81,21 +83,21 @@ class Settings:
     formulation: Annotated[
         Literal["physical", "paper", "as-printed"],
         Setting(
-            "physical: the voltage jumps when the relay switches; paper: it does not, as (12) and "
-            "(17); as-printed: (20) to the letter, which creates energy",
+            "physical: the voltage jumps when the relay switches; paper: it does not, as in (12) "
+            "and (17); as-printed: (20) to the letter, which creates energy",
             choices=FORMULATIONS,
         ),
     ] = "physical"
     transient: Annotated[
         int,
-        Setting("control periods left out; 0: until the motion repeats", bounds=(0, 100_000)),
+        Setting("control periods dropped; 0: until the motion repeats", bounds=(0, 100_000)),
     ] = 0
     duration: Annotated[
         int,
         Setting(
             "control periods averaged, rounded up to whole periods of the response, or to 20 "
-            "times the common period where it does not repeat; 0: one period, or 200. Where they "
-            "cannot tell the Lyapunov exponent from zero, up to 16 times as many",
+            "times the common period where it does not repeat; 0: one period, or 200. Up to 16 "
+            "times as many where the Lyapunov exponent is indistinguishable from zero",
             bounds=(0, 100_000),
         ),
     ] = 0
@@ -105,7 +107,7 @@ class Settings:
 
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
-    """Return the coordinates of the outputs' dimensions: there are none."""
+    """Return the coordinates of the outputs' dimensions (none)."""
     return {}
 
 
@@ -121,20 +123,20 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "impacts_per_period": Output("1", "contacts per control period"),
     "impact_impulse": Output(
-        "N s", "impulse of the contact force in one contact, mean", may_be_undefined=True
+        "N s", "mean impulse of the contact force per contact", may_be_undefined=True
     ),
     "impact_energy": Output(
-        "J", "work of the contact force on the mole in one contact, mean", may_be_undefined=True
+        "J", "mean work of the contact force on the mole per contact", may_be_undefined=True
     ),
-    "displacement_range": Output("m", "largest less smallest displacement u"),
+    "displacement_range": Output("m", "peak-to-peak displacement u"),
     "electrical_power": Output("W", "mean power drawn from the supply"),
     "efficiency": Output("1", "impact work-rate over electrical power"),
     "lyapunov_exponent": Output(
-        "s-1", "largest Lyapunov exponent, natural logarithm, progression left out"
+        "s-1", "largest Lyapunov exponent, natural logarithm, excluding progression"
     ),
     "lyapunov_exponent_error": Output(
         "s-1", "standard error of the Lyapunov exponent, 0 where the motion repeats"
     ),
-    "regime": Output("1", "kind of settled response", "category", categories=REGIMES),
+    "regime": Output("1", "type of settled response", "category", categories=REGIMES),
     "period": Output("1", "common periods after which the response repeats, 0 if it does not"),
 }

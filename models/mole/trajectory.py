@@ -18,20 +18,20 @@ Array = NDArray[np.float64]
 
 
 def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
-    """Follow one mole from its start, for four seconds or ten control periods if these are longer.
+    """Follow one mole from its start, for four seconds or ten control periods if longer.
 
     Parameters
     ----------
     params : Params
     settings : Settings
-        Formulation and tolerance count.
+        Only formulation and tolerance are used.
     seed : int
         Not used: the mole is deterministic.
 
     Returns
     -------
     Trajectory
-        It ends early where the step budget does.
+        It ends early if the step budget runs out.
     """
     q = mole(params, settings.formulation)
     time = _times(q)
@@ -71,9 +71,9 @@ def _times(q: Mole) -> Array:
 
 
 def _supply(q: Mole, time: Array) -> tuple[Array, Array]:
-    """Return relay and source voltage; at the instant of a switching, those before.
+    """Return relay and source voltage; at a switching instant, those before it.
 
-    Where the voltage does not jump, every switching leaves an offset for good.
+    If the voltage does not jump, every switching leaves a permanent offset.
     """
     due = 0.5 * q.control_period * np.arange(2 + math.floor(2 * time[-1] / q.control_period))
     switched = np.searchsorted(due, time)
@@ -89,9 +89,9 @@ def _supply(q: Mole, time: Array) -> tuple[Array, Array]:
 def _friction(
     q: Mole, u: Array, v: Array, x: Array, i: Array, contact: Array
 ) -> tuple[Array, Array]:
-    """Return T1 and T2 of (17); a velocity that is exactly zero sticks.
+    """Return T1 and T2 of (17); an interface at exactly zero velocity sticks.
 
-    What has just begun to slip, from zero, does so under the force on the limit of sticking.
+    One that has just begun to slip, from zero, does so at the limit of sticking.
     """
     slope = -2 * q.sharpness * u * q.bar_inductance * np.exp(-q.sharpness * u**2)
     spring = q.spring_stiffness * (u - q.spring_rest)

@@ -1,1 +1,1 @@
-"""What two machines share; knows no machine."""
+"""Numerical methods that machines share; nothing here depends on a machine."""

@@ -1,4 +1,4 @@
-"""Means of something that goes up and down for ever, with their errors, from batches of it."""
+"""Time means of a quantity that fluctuates without settling, with their errors, by batch means."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,20 +7,20 @@ from scipy.special import stdtrit
 Array = NDArray[np.float64]
 
 _LENGTHS = (1, 2, 4)
-_FEWEST = 3  # batches that an error is still told from
-_NINE_IN_TEN = 0.95  # quantile, of two sides
+_FEWEST = 3  # batches from which an error is still estimated
+_NINE_IN_TEN = 0.95  # quantile: two-sided 90 %
 
 
 def mean_and_error(batches: Array) -> tuple[Array, Array]:
     """Return time means and their standard errors.
 
-    Neighbouring batches are not independent. Longer batches, made of two and of four, see slower
-    changes: the largest of their errors is the one to believe.
+    Neighbouring batches are not independent. Batches joined by twos and fours capture slower
+    changes, so the largest of the three errors is returned.
 
     Parameters
     ----------
     batches : ndarray, shape (n, b, ...)
-        Means over equal stretches of time, in their order; b a multiple of 4, 8 at least.
+        Means over consecutive intervals of equal length; b a multiple of 4, at least 8.
 
     Returns
     -------
@@ -35,17 +35,17 @@ def mean_and_error(batches: Array) -> tuple[Array, Array]:
 
 
 def mean_and_bound(batches: Array) -> tuple[Array, Array]:
-    """Return time means and the errors within which nine in ten of them lie.
+    """Return time means and the half-widths of their 90 % intervals.
 
-    What changes more slowly than a batch makes neighbouring batches alike, and their error too
-    small. So they are joined by twos, fours and so on while `_FEWEST` are left, and the largest
-    error is taken, each with Student's factor for its number of batches: changes as slow as a third
-    of the whole are seen.
+    Changes slower than a batch correlate neighbouring batches, which makes their error too small.
+    So batches are joined by twos, fours and so on while `_FEWEST` are left, and the largest error
+    is returned, each with Student's factor for its number of batches: changes as slow as a third of
+    the whole are captured.
 
     Parameters
     ----------
     batches : ndarray, shape (n, b, ...)
-        Means over equal stretches of time, in their order; b is `_FEWEST` at least.
+        Means over consecutive intervals of equal length; b is at least `_FEWEST`.
 
     Returns
     -------

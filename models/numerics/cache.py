@@ -1,13 +1,14 @@
-"""Where compiled code is kept: in a folder named by a hash of all that it was made from.
+"""Where compiled code is cached: in a folder named by a hash of everything it was compiled from.
 
-numba looks at the file of a function alone, so that an edit of a file that it calls into would
-leave stale code. What counts here is the whole machine of a function, be it a package or a module
-under ``models``, with `models.numerics` and the versions of what compiles: an edit takes effect at
-once, and compiles this machine alone. A function from elsewhere counts with its package and the
-machines that this names. What a factory makes counts with all that it closes over, such as the
-equations that an integrator was made for.
+numba checks only the file that defines a function, so an edit of a file whose functions it calls
+would leave stale code. Here the hash covers the whole machine of a function (a package or a module
+under ``models``), `models.numerics` and the versions of the compiler: an edit takes effect at once,
+and recompiles that machine only. For a function from outside it covers its package and the machines
+named there; for one made by a factory also everything it closes over, such as the equations for
+which an integrator was made.
 
-A kernel knows no field of a named tuple that another machine declares: it is passed on as it is.
+The hash does not cover a kernel's arguments: a kernel must not read fields of a named tuple that
+another machine declares, but pass it on as it is.
 """
 
 import hashlib
@@ -43,8 +44,8 @@ def folder_of(function: Callable[..., Any]) -> Path | None:
     Returns
     -------
     Path or None
-        It exists. None where a source was edited since this process first asked: what it imported
-        before and what it imports now are of no one state of the sources.
+        It exists. None if a source was edited since this process first asked: modules imported
+        before and after the edit belong to different states of the sources.
     """
     roots = {_NUMERICS}.union(*(_roots(file) for file in _files(function, set())))
     whole = hashlib.sha256(repr(_versions()).encode())
@@ -62,25 +63,25 @@ def folder_of(function: Callable[..., Any]) -> Path | None:
 
 
 def _files(value: Any, seen: set[int]) -> Iterator[Path]:
-    """Yield the files of a function, a named tuple or several, and of what they close over."""
+    """Yield the files of functions and named tuples, and of everything they close over."""
     value = getattr(value, "py_func", value)
     if id(value) in seen:
         return
     seen.add(id(value))
     if inspect.isfunction(value) or hasattr(value, "_fields"):
-        with suppress(TypeError, OSError):  # nobody wrote it into a file
+        with suppress(TypeError, OSError):  # defined in no file
             owner = value if callable(value) else type(value)
             yield Path(inspect.getfile(owner)).resolve(strict=True)
     if isinstance(value, tuple | list):
         for one in value:
             yield from _files(one, seen)
     for cell in getattr(value, "__closure__", None) or ():
-        with suppress(ValueError):  # to be filled later
+        with suppress(ValueError):  # not assigned yet
             yield from _files(cell.cell_contents, seen)
 
 
 def _roots(file: Path) -> set[Path]:
-    """Return the packages and modules in which the functions of a file may find others."""
+    """Return the packages and modules whose functions those of a file may call."""
     if _is_ours(file):
         return {_MODELS / file.relative_to(_MODELS).parts[0]}
     own = _importable(file)
@@ -90,7 +91,7 @@ def _roots(file: Path) -> set[Path]:
 
 
 def _importable(file: Path) -> set[Path]:
-    """Return the package of a source file; if it has none, what it can import beside it."""
+    """Return the package of a source file; without one, the modules and packages beside it."""
     package, folder = file, file.parent
     while (folder / "__init__.py").is_file():
         package, folder = folder, folder.parent
@@ -104,7 +105,7 @@ def _is_ours(path: Path) -> bool:
 
 
 class _Snapshot(NamedTuple):
-    """A source file, or all that lie in a folder, as this process first saw them."""
+    """A source file, or all those in a folder, as this process first saw them."""
 
     digest: bytes
     words: frozenset[bytes]
@@ -124,7 +125,7 @@ def _snapshot(root: Path) -> _Snapshot:
 
 
 def _stamp(path: Path) -> tuple[int, int]:
-    """Return what an edit changes: the time of a file and its size, or zeros if it is gone."""
+    """Return what an edit changes: a file's modification time and size, or zeros if it is gone."""
     try:
         look = os.stat(path)
     except FileNotFoundError:
@@ -134,7 +135,7 @@ def _stamp(path: Path) -> tuple[int, int]:
 
 @cache
 def _versions() -> tuple[str, ...]:
-    """Return the versions of what turns sources and constants into code."""
+    """Return the versions of everything that turns sources and constants into code."""
     import llvmlite
     import numba
     import numpy as np
@@ -144,7 +145,7 @@ def _versions() -> tuple[str, ...]:
 
 @cache
 def _made(base: Path, name: str) -> Path:
-    """Make a folder, if need be; remove those that no process has asked for in a while."""
+    """Make a folder unless it exists; remove those not used for a while."""
     folder = base / name
     folder.mkdir(parents=True, exist_ok=True)
     os.utime(folder)

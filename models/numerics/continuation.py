@@ -1,10 +1,9 @@
 """Pseudo-arclength continuation of F(y, parameter) = 0, through folds.
 
-Four verbs: `begin` on the branch, predict along its tangent, correct at right angles to it, and
-control the step. In the space of u = (y, parameter) the branch has a unit tangent t, also where it
-folds back, and the corrector solves F(u) = 0 with t . (u - u_0) = length of the step (H. B. Keller,
-in P. H. Rabinowitz (ed.), Applications of Bifurcation Theory, Academic Press, 1977). Lengths mean
-something only if y and the parameter are comparable: it is for the caller to scale them.
+In the space of u = (y, parameter) the branch has a unit tangent t even at a fold. The predictor
+follows it, and the corrector solves F(u) = 0 with t . (u - u_0) = length of the step (H. B. Keller,
+in P. H. Rabinowitz (ed.), Applications of Bifurcation Theory, Academic Press, 1977). The caller
+scales y and the parameter so that lengths are meaningful.
 """
 
 from collections.abc import Callable, Iterator
@@ -17,14 +16,14 @@ from models.numerics.newton import Array, Linear, find_root
 Function = Callable[[Array, float], Linear]
 
 _ITERATIONS = 8  # of the corrector
-_EASY = 3  # iterations after which the next step is longer
+_EASY = 3  # iterations up to which the next step is longer
 _LONGER, _SHORTER = 1.6, 0.5
-_BEND = 0.8  # cosine of the largest turn of the tangent in a step
-_STRAY = 0.5  # how far the corrector may go, in steps
+_BEND = 0.8  # cosine of the largest turn of the tangent in one step
+_STRAY = 0.5  # longest correction, in lengths of the step
 
 
 class Steps(NamedTuple):
-    """Lengths of the steps along the branch.
+    """Step lengths along the branch.
 
     Attributes
     ----------
@@ -69,19 +68,19 @@ def begin(
     Parameters
     ----------
     function : callable
-        Gives F and its derivatives at (y, parameter).
+        Returns F and its derivatives at (y, parameter).
     state : ndarray, shape (n,)
         A guess.
     parameter : float
     direction : float
-        Its sign is that of the tangent's last component.
+        Has the sign of the tangent's last component.
     tolerance : float
         For the largest component of F in magnitude.
 
     Returns
     -------
     Point or None
-        None where Newton's method does not converge, or at a fold.
+        None if Newton's method does not converge, or at a fold.
     """
     root = find_root(lambda y: function(y, parameter), state, tolerance)
     if root.outcome != "converged":
@@ -95,7 +94,7 @@ def begin(
 
 
 def step(function: Function, point: Point, length: float, tolerance: float) -> Point | None:
-    """Return the point at some length along the tangent, None if the corrector finds none near it.
+    """Return the point one step along the tangent, None if the corrector finds none near it.
 
     Parameters
     ----------
@@ -130,7 +129,7 @@ def step(function: Function, point: Point, length: float, tolerance: float) -> P
 
 
 def follow(function: Function, first: Point, steps: Steps) -> Iterator[Point]:
-    """Yield the points of a branch after the first, until no step is short enough.
+    """Yield the points of a branch after the first, until even the smallest step fails.
 
     Parameters
     ----------
@@ -170,16 +169,16 @@ def locate(
     before, after : Point
         Neighbours on the branch; only the second has changed.
     has_changed : callable
-        Tells of a point between them.
+        Whether a point between them has changed.
     nearness : float
-        Distance of the two points to be returned.
+        Distance between the two points returned.
     tolerance : float
         For the largest component of F in magnitude.
 
     Returns
     -------
     before, after : Point
-        Farther apart than asked for where the corrector fails between them.
+        Farther apart than `nearness` if the corrector fails between them.
     """
     while True:
         chord = np.append(after.state, after.parameter) - np.append(before.state, before.parameter)

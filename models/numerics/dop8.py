@@ -1,6 +1,6 @@
-"""Runge-Kutta steps of many systems abreast: Dormand and Prince's method of order 8.
+"""Runge-Kutta steps of many systems at a time: Dormand and Prince's method of order 8.
 
-As `models.numerics.tsit5`, with an estimate of each lane's error, after E. Hairer, S. P. Norsett,
+Like `models.numerics.tsit5`, with an error estimate for each lane, after E. Hairer, S. P. Norsett,
 G. Wanner, "Solving Ordinary Differential Equations I", Sec. II.5 and II.10.
 """
 
@@ -18,7 +18,7 @@ STAGES = 12
 
 
 def _at(values, *places):
-    """Return the coefficients at some places; the others are zero."""
+    """Return the coefficients at these places; all others are zero."""
     return tuple(values[i] for i in places)
 
 
@@ -127,14 +127,14 @@ def estimator(quantities: int, measured: int) -> Callable[[Any, Any, Any], None]
     quantities : int
         In a state.
     measured : int
-        The first ones count.
+        Number of leading quantities whose errors count.
 
     Returns
     -------
     kernel
-        ``estimate(block, share, error)`` sets error[lane] to the root mean square over the
-        measured quantities of their errors, each times its entry of share; error has room for
-        (1 + 2 measured) LANES numbers.
+        ``estimate(block, share, error)`` sets error[lane] to the root mean square of the errors of
+        the measured quantities, each times its entry of share; error has room for (1 + 2 measured)
+        LANES numbers.
     """
     _, _, k, _ = layout(quantities)
     n = quantities * LANES

@@ -1,12 +1,12 @@
 """Dormand and Prince's method of order 8(5,3), with dense output and guarded modes.
 
-`integrator` compiles the method for one system. Between two changes of mode a system obeys
-smooth equations, and its guards say how long: functions of the state that are positive while the
-mode lasts. The integrator stops where the first of them becomes negative, located on the dense
-output, and hands back to the machine, which changes the mode and goes on.
+`integrator` compiles the method for one system. Between mode changes a system obeys smooth
+equations; its guards are functions of the state that are positive while the mode lasts. The
+integrator stops where the first of them becomes negative, an event located on the dense output, and
+returns to the machine, which changes the mode and continues.
 
-What is compiled here caches on disk only as part of a kernel that calls it and is itself defined
-at the level of a module: call it from one, never from Python.
+The kernels compiled here are cached on disk only as part of a module-level kernel that calls them:
+call them from such a kernel, never from Python.
 
 The step control is that of E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential
 Equations I", Sec. II.4, as in scipy's ``DOP853``; see `models.numerics.dop853_step`.
@@ -22,7 +22,8 @@ from models.numerics.dop853_step import ALL_STAGES, POWER, STAGES, interpolate, 
 from models.numerics.jit import kernel
 
 REACHED_END, GUARDED, OUT_OF_BUDGET, STUCK = 0, 1, 2, 3
-"""Why an integration stopped. Stuck: the error asks for steps below the resolution of time."""
+"""Why an integration stopped. Stuck: the error control requires steps below the resolution of
+time."""
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 10.0
 _RESOLUTION = 4e-16  # of an event, relative to the time since the step began
@@ -37,13 +38,13 @@ class Outcome(NamedTuple):
     status : int
         `REACHED_END`, `GUARDED`, `OUT_OF_BUDGET` or `STUCK`.
     time : float
-        Reached.
+        Time reached.
     guard : int
-        The guard that became negative, else -1.
+        The guard that became negative, -1 if none.
     step : float
-        To be tried next.
+        To try next.
     steps : int
-        Tried, rejected ones included.
+        Steps tried, including rejected ones.
     sampled : int
         Number of samples taken.
     """
@@ -80,34 +81,34 @@ def integrator(
     rhs : kernel
         ``rhs(t, y, p, dy)`` sets dy to the time derivative of y.
     guards : kernel
-        ``guards(t, y, p, guard)`` sets guard[i], i < guard_count, positive while the mode lasts.
-        A guard may start at zero, if it then opens.
+        ``guards(t, y, p, guard)`` sets guard[i], i < guard_count, positive while the mode lasts. A
+        guard may start at zero if it then becomes positive.
     guard_count : int
     looks : int
-        Instants in each step at which the guards are looked at. A guard that is negative between
-        two looks only, goes unseen.
+        Instants in each step at which the guards are evaluated. A guard that is negative only
+        between two of them goes unnoticed.
     longest : kernel
-        ``longest(t, y, p)`` returns the longest step to be tried from there.
+        ``longest(t, y, p)`` returns the longest step to try from there.
 
     Returns
     -------
     kernel
-        ``integrate(t, end, y, step, p, relative, absolute, budget, times, samples)`` advances y
-        in place from t to end > t or to where a guard becomes negative, and returns an `Outcome`.
-        `step` is tried first, 0 for a guess; p goes to `rhs` and `guards` as it is. The error of
-        a step in y[i] is kept below absolute[i] + relative |y[i]|, root mean square over i. At
-        most `budget` steps are tried. samples[j] is set to the state at times[j], ascending and
-        not before t, as far as the integration gets; a state at a mode's end is the one before
-        the change.
+        ``integrate(t, end, y, step, p, relative, absolute, budget, times, samples)`` advances y in
+        place from t to end > t or to where a guard becomes negative, and returns an `Outcome`.
+        `step` is tried first, 0 for a guess; p is passed to `rhs` and `guards` as it is. The error
+        of a step in y[i], relative to absolute[i] + relative |y[i]|, is kept below 1 in root mean
+        square over i. At most `budget` steps are tried. samples[j] is set to the state at times[j],
+        ascending and not before t, as far as the integration gets; a sample at the end of a mode is
+        the state before the change.
     """
     guess, attempt, densify = stepper(rhs)
 
     @kernel
     def leaving(which, low, high, f_low, f_high, t, h, y, p, dense, trial, guard):
-        """Return where in (low, high] a guard that is negative at high becomes so.
+        """Return where in (low, high] a guard that is negative at high becomes negative.
 
-        A bracket is narrowed by the ITP method of I. F. D. Oliveira and R. H. C. Takahashi, ACM
-        Trans. Math. Softw. 47 (2020) 5: it needs at most one evaluation more than bisection.
+        The bracket is narrowed by the ITP method of I. F. D. Oliveira and R. H. C. Takahashi, ACM
+        Trans. Math. Softw. 47 (2020) 5, which needs at most one evaluation more than bisection.
         """
         start = low
         for _ in range(_HALVINGS):
@@ -159,7 +160,7 @@ def integrator(
         guards(t, y, p, before)
         if step <= 0:
             step = guess(t, end, y, p, relative, absolute, k, trial)
-        held = False  # after a rejection the step may not grow at once
+        held = False  # after a rejection the next step may not grow
         while steps < budget:
             if t >= end:
                 status = REACHED_END
@@ -182,7 +183,7 @@ def integrator(
             factor = _GROW if error == 0 else min(_GROW, _SAFETY * error**-0.125)
             factor = min(factor, 1.0) if held else factor
             held = False
-            # A step cut short by the end says little of the next one.
+            # A step cut short by the end is no guide to the next one.
             step = max(step, h * factor) if last else h * factor
             rhs(t + h, new, p, k[STAGES])
 

@@ -21,7 +21,8 @@ from models.numerics.tableaux import (
 )
 
 STAGES, ALL_STAGES, POWER = 12, 16, 7
-"""Of a step, with those of its dense output, and the number of coefficients of that."""
+"""Stages of a step, including those of its dense output, and number of coefficients of the
+latter."""
 
 _A, _B, _C = DENSE_STAGES.matrix(), np.array(DORMAND_PRINCE_8.b), np.array(DENSE_STAGES.c)
 _E3, _E5, _D = np.array(ERROR_3), np.array(ERROR_5), np.array(DENSE_WEIGHTS)
@@ -128,7 +129,7 @@ def stepper(rhs: Callable[..., None]) -> Step:
 
 @kernel
 def interpolate(theta, y, dense, out):
-    """Set out to the state at the fraction theta of a step."""
+    """Set `out` to the state at the fraction theta of a step."""
     rest = 1 - theta
     for i in range(len(y)):
         value = fma(dense[6, i], theta, dense[5, i])

@@ -1,7 +1,7 @@
-"""Elementary functions of arrays, number by number.
+"""Elementary functions of arrays, element by element.
 
-numpy has its own for the vectors of each processor, which differ in the last bit. Those here are
-the C library's, and sine and cosine are ours.
+numpy's own are vectorised for each processor and differ in the last bit. These are the C library's;
+sine and cosine are our own.
 """
 
 import math
@@ -72,40 +72,40 @@ def _each(function: Any, x: ArrayLike) -> Any:
 
 
 def exp(x: ArrayLike) -> Any:
-    """Return the exponentials of numbers, of their shape."""
+    """Return exp(x), in the shape of x."""
     return _each(_exp, x)
 
 
 def expm1(x: ArrayLike) -> Any:
-    """Return the exponentials less 1."""
+    """Return exp(x) - 1."""
     return _each(_expm1, x)
 
 
 def log(x: ArrayLike) -> Any:
-    """Return the logarithms of numbers that are not negative, of their shape."""
+    """Return log(x) for x >= 0, in the shape of x."""
     return _each(_log, x)
 
 
 def log1p(x: ArrayLike) -> Any:
-    """Return the logarithms of 1 + x, for x not below -1."""
+    """Return log(1 + x) for x >= -1."""
     return _each(_log1p, x)
 
 
 def cos(x: ArrayLike) -> Any:
-    """Return the cosines of angles [rad], of their shape."""
+    """Return the cosines of angles [rad], in the shape of x."""
     return _each(_cos, x)
 
 
 def sin(x: ArrayLike) -> Any:
-    """Return the sines of angles [rad], of their shape."""
+    """Return the sines of angles [rad], in the shape of x."""
     return _each(_sin, x)
 
 
 def tan(x: ArrayLike) -> Any:
-    """Return the tangents of angles [rad], of their shape."""
+    """Return the tangents of angles [rad], in the shape of x."""
     return _each(_tan, x)
 
 
 def arctan(x: ArrayLike) -> Any:
-    """Return the angles [rad] with these tangents, of their shape."""
+    """Return the arctangents [rad], in the shape of x."""
     return _each(_arctan, x)

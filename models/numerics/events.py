@@ -1,7 +1,7 @@
-"""Where a guard falls through zero within a step, from its values and slopes at both ends.
+"""Event location: where a guard falls through zero in a step, from values and slopes at both ends.
 
-A cubic through these is what a propagator tries first; what it then finds at the end of a step cut
-there is exact again. Lengths are in units of the step.
+The root of the Hermite cubic is only a first guess: a propagator cuts its step there and evaluates
+the guard exactly. Lengths are in units of the step.
 """
 
 import math

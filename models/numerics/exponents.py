@@ -1,8 +1,8 @@
 """Lyapunov exponents from tangents that a propagator carries along.
 
-A single tangent turns into the direction that grows most, and its growth over a long time tells the
-largest exponent. On a periodic orbit a full set of tangents through one period tells it at once, by
-the largest multiplier. Either way tangents must be brought back to size now and then.
+A single tangent turns into the direction of fastest growth, and its growth over a long time gives
+the largest exponent. On a periodic orbit a full set of tangents over one period gives it directly,
+as the logarithm of the largest multiplier. Either way the tangents must be rescaled now and then.
 """
 
 import math
@@ -15,21 +15,21 @@ from models.numerics.multipliers import log_radius
 
 Array = NDArray[np.float64]
 
-_LEAST = np.finfo(float).tiny  # whose logarithm is still a number
+_LEAST = np.finfo(float).tiny  # whose logarithm is still finite
 
 
 def grown(tangents: Array) -> Array:
-    """Bring n sets of tangents back to size 1; return the logarithms of their sizes.
+    """Rescale n sets of tangents to size 1; return the logarithms of their former sizes.
 
     Parameters
     ----------
     tangents : ndarray, shape (n, m)
-        All components of a set, scaled in place by one number.
+        All components of a set; scaled in place by one factor.
 
     Returns
     -------
     ndarray, shape (n,)
-        Of the largest component in magnitude.
+        A size is the largest component in magnitude.
     """
     size = np.abs(tangents).max(axis=1)
     tangents /= np.where(size > 0, size, 1.0)[:, None]
@@ -42,7 +42,7 @@ def log_multiplier(flow: Array) -> Array:
     Parameters
     ----------
     flow : ndarray, shape (n, k, k)
-        Tangents after a period that were the unit vectors before, as rows or as columns.
+        Tangents after a period that started as the unit vectors, as rows or as columns.
 
     Returns
     -------

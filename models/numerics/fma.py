@@ -1,9 +1,9 @@
-"""Multiplication and addition with one rounding, wherever it is asked for and nowhere else.
+"""Fused multiply-add, wherever the source says so and nowhere else.
 
-Vectorised algebra runs up to 1.7 times as fast with it. To let the compiler fuse whatever it likes
-(``contract``) is as fast, but then the last bits depend on what it has inlined where. Written out,
-they are a function of source and inputs. A processor without the instruction calls a function of
-the C library instead: the same bits, slowly.
+Vectorised algebra runs up to 1.7 times as fast with it. Letting the compiler fuse at will
+(``contract``) is as fast, but then the last bits depend on what it inlines where. Written out, they
+are a function of source and inputs. A processor without the instruction calls the C library
+instead: the same bits, but slow.
 """
 
 import math
@@ -15,7 +15,7 @@ from numba.extending import intrinsic
 
 
 def exact_fma(a: float, b: float, c: float) -> float:
-    """Return a b + c, rounded once: what `fma` is where nothing is compiled.
+    """Return a b + c, rounded once; this is `fma` when compilation is disabled.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ def exact_fma(a: float, b: float, c: float) -> float:
     Returns
     -------
     float
-        Of IEEE 754, signed zeros, infinities and NaN included.
+        As in IEEE 754, including signed zeros, infinities and NaN.
     """
     a, b, c = float(a), float(b), float(c)
     if not (math.isfinite(a) and math.isfinite(b)):
@@ -37,7 +37,7 @@ def exact_fma(a: float, b: float, c: float) -> float:
     bottom = bottom_a * bottom_b
     top = top_a * top_b * bottom_c + top_c * bottom
     if top == 0:
-        return a * b + c  # exact, with the right sign
+        return a * b + c  # exact, with the correct sign
     try:
         return top / (bottom * bottom_c)
     except OverflowError:
@@ -46,7 +46,7 @@ def exact_fma(a: float, b: float, c: float) -> float:
 
 @intrinsic
 def _instruction(typingctx: Any, a: Any, b: Any, c: Any) -> Any:
-    """Fused multiply-add of the processor, of numbers of any type."""
+    """Emit the processor's fused multiply-add, for arguments of any type."""
 
     def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         kinds = signature.args

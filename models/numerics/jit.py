@@ -1,10 +1,10 @@
 """How kernels are compiled: cached on disk by source, without the GIL, vectorised to full width.
 
-Compiled code is kept by `models.numerics.cache`: an edit takes effect at once, and an unedited
+Compiled code is cached by `models.numerics.cache`: an edit takes effect at once, and an unedited
 machine never compiles twice.
 
-What is compiled gives bits that are a function of source and inputs: they depend neither on what
-was compiled before, nor on the width of the vectors, nor on who calls.
+The bits of a result are a function of source and inputs: they depend neither on what was compiled
+before, nor on the vector width, nor on the caller.
 """
 
 import inspect
@@ -24,8 +24,8 @@ from models.numerics.cache import folder_of
 def _ask_for_full_width_vectors() -> None:
     """Let LLVM use 512-bit vectors, before numba reads its environment.
 
-    LLVM prefers 256-bit ones on CPUs that have both; our kernels gain up to 1.8 times. What this
-    process compiles for stays in its environment, so that worker processes compile alike.
+    LLVM prefers 256-bit vectors on CPUs that have both; with 512 bits our kernels are up to 1.8
+    times as fast. The target is kept in the environment, so that worker processes compile alike.
     """
     if "NUMBA_CPU_FEATURES" in os.environ or "NUMBA_CPU_NAME" in os.environ:
         return
@@ -40,18 +40,18 @@ def _ask_for_full_width_vectors() -> None:
 
 
 _ask_for_full_width_vectors()
-os.environ.setdefault("NUMBA_DISABLE_INTEL_SVML", "1")  # where installed, it has bits of its own
+os.environ.setdefault("NUMBA_DISABLE_INTEL_SVML", "1")  # where installed, its last bits differ
 
 import numba  # noqa: E402  (reads the environment set above)
 from numba.core.bytecode import FunctionIdentity  # noqa: E402
 
 
 def _name_functions_apart() -> None:
-    """Let no two processes give two functions one name.
+    """Prevent two processes from giving two functions the same name.
 
-    numba numbers the functions it compiles, from 1 in every process, and tells those of one factory
-    apart by that number alone. A process that loads one of them from the cache and compiles another
-    under the same number calls the wrong one, without a word: a known fault of numba.
+    numba numbers the functions it compiles, from 1 in every process, and distinguishes those made
+    by one factory by that number alone. A process that loads one of them from the cache and
+    compiles another under the same number silently calls the wrong one: a known bug of numba.
     """
     FunctionIdentity._unique_ids = itertools.count(secrets.randbits(64) << 32)
 
@@ -64,7 +64,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 @contextmanager
 def _cache_folder(folder: Path) -> Iterator[None]:
-    """Point numba at our folder while a function is decorated, and leave the user's be."""
+    """Point numba to our folder while a function is decorated, then restore the user's."""
     config: Any = numba.config
     before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
     try:
@@ -74,33 +74,34 @@ def _cache_folder(folder: Path) -> Iterator[None]:
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function the way every kernel of this package is compiled.
+    """Compile a function as every kernel of this package is compiled.
 
-    ``error_model="numpy"`` drops the division check that blocks vectorisation. There is no fast
-    math: a compiler that may fuse or reorder does so differently in code that it inlines and in
-    code that it loads from the disk, and the last bits would depend on what was compiled before.
-    Products and sums are fused where the source says so, see `models.numerics.fma`.
+    ``error_model="numpy"`` drops the check for division by zero, which blocks vectorisation.
+    Fast-math flags are not used: a compiler that may fuse or reorder does so differently in code
+    that it inlines and in code that it loads from disk, and the last bits would depend on what was
+    compiled before. Products and sums are fused where the source says so; see
+    `models.numerics.fma`.
     """
     return _compiled(function, "never")
 
 
 def lean(function: Function) -> Function:
-    """Compile a kernel that allocates nothing: nobody then counts who holds its arrays.
+    """Compile a kernel that allocates nothing, without reference counting.
 
-    Counting is atomic, and takes a third of the time of kernels that make many short calls. What
-    Python calls is a `kernel`; this is for what it calls in turn.
+    Counting is atomic, and takes a third of the time of kernels that make many short calls. Use it
+    for functions that a `kernel` calls; what Python calls must be a `kernel`.
     """
     return _compiled(function, "never", _nrt=False)
 
 
 def inlined(function: Function) -> Function:
-    """Compile straight-line algebra into every kernel that calls it, where loops are vectorised."""
+    """Compile straight-line algebra into every calling kernel, so that its loops vectorise."""
     return _compiled(function, "always")
 
 
 def _compiled(function: Function, inline: Literal["never", "always"], **more: bool) -> Function:
     decorate: Any = partial(numba.njit, nogil=True, error_model="numpy", inline=inline, **more)
-    typed_in = not Path(inspect.getfile(function)).is_file()  # nothing would show an edit
+    typed_in = not Path(inspect.getfile(function)).is_file()  # an edit would go unnoticed
     folder = None if typed_in else folder_of(function)
     if folder is None:
         return decorate()(function)

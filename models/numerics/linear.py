@@ -1,6 +1,6 @@
-"""Many small systems of linear equations, each on its own: a singular one harms no other.
+"""Many small linear systems, solved independently: a singular one affects no other.
 
-What is compiled here has the same bits everywhere, which no LAPACK has.
+Compiled here, results have the same bits everywhere, which no LAPACK guarantees.
 """
 
 import numpy as np
@@ -11,17 +11,17 @@ from models.numerics.jit import kernel
 
 Array = NDArray[np.float64]
 
-_VECTOR = 8  # rows are padded to a multiple of it: loops over them then leave no remainder
+_VECTOR = 8  # rows are padded to a multiple of it, so that loops over them leave no remainder
 
 
 def solve(matrix: Array, right: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Solve n systems whose equations may be in any units.
+    """Solve n linear systems, whose equations may be in any units.
 
     Parameters
     ----------
     matrix : ndarray, shape (n, k, k)
     right : ndarray, shape (n, k, m)
-        m right-hand sides of each.
+        m right-hand sides for each.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def solve(matrix: Array, right: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def inverse(matrix: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Invert n matrices, for equations that are solved again and again.
+    """Invert n matrices, for systems that are solved repeatedly.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def inverse(matrix: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def product(matrix: Array, right: Array) -> Array:
-    """Multiply n matrices by as many.
+    """Multiply n matrices by n others.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def _multiply(matrix, right, out):
 
 @kernel
 def _eliminate(matrix, right):
-    """Solve in place, by Gauss's elimination with the largest pivot of each column."""
+    """Solve in place by Gaussian elimination with partial pivoting."""
     n, k, width = right.shape
     for system in range(n):
         a, b = matrix[system], right[system]
@@ -128,7 +128,7 @@ def _eliminate(matrix, right):
 
 @kernel
 def _invert(matrix, out, rows, pivots):
-    """Gauss-Jordan elimination in place, with the largest pivot of each column."""
+    """Invert in place by Gauss-Jordan elimination with partial pivoting."""
     n, k, _ = matrix.shape
     for system in range(n):
         rows[:, :k] = matrix[system]
@@ -152,7 +152,7 @@ def _invert(matrix, out, rows, pivots):
                     for j in range(rows.shape[1]):
                         rows[i, j] = fma(-factor, rows[c, j], rows[i, j])
         out[system] = rows[:, :k]
-        for c in range(k - 1, -1, -1):  # rows exchanged before are columns of the inverse
+        for c in range(k - 1, -1, -1):  # row exchanges become column exchanges of the inverse
             for i in range(k if pivots[c] != c else 0):
                 out[system, i, c], out[system, i, pivots[c]] = (
                     out[system, i, pivots[c]],

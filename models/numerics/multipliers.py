@@ -1,8 +1,8 @@
-"""The largest multiplier of many linear maps at once, without all the others.
+"""The largest multiplier of many linear maps at once, without computing the others.
 
-Repeated squaring leaves of a map what grows most: a high power of it has few directions, and the
-largest eigenvalue on the space they span is that power of the largest multiplier. A conjugate pair,
-or several multipliers of one modulus, are no different.
+Repeated squaring leaves only the fastest-growing directions of a map: the range of a high power is
+nearly of low dimension, and the largest eigenvalue on it is that power of the largest multiplier. A
+conjugate pair, or several multipliers of equal modulus, need no special treatment.
 """
 
 import numpy as np
@@ -15,11 +15,11 @@ from models.numerics.jit import kernel
 
 Array = NDArray[np.float64]
 
-_SQUARINGS = 50  # |A^n| may differ from the radius to the n by a factor c: log(c)/2^50 is left
-_DOUBLINGS = 8  # the 256th power: of what is 8 % smaller than the largest multiplier, 1e-9 is left
+_SQUARINGS = 50  # |A^n| may differ from radius^n by a factor c: an error of log(c)/2^50 is left
+_DOUBLINGS = 8  # the 256th power: a multiplier 8 % below the largest fades to 1e-9 of it
 _DIRECTIONS = 8  # kept at most
-_FADED = 1e-9  # of the largest direction
-_VECTOR = 8  # rows are padded to a multiple of it: loops over them then leave no remainder
+_FADED = 1e-9  # relative to the largest direction
+_VECTOR = 8  # rows are padded to a multiple of it, so that loops over them leave no remainder
 
 
 def largest_multiplier(flow: Array) -> Array:
@@ -49,8 +49,8 @@ def largest_multiplier(flow: Array) -> Array:
 def log_radius(matrix: Array) -> Array:
     """Return the logarithm of the largest modulus of the eigenvalues of n matrices.
 
-    By Gelfand's formula it is the limit of log |A^n| / n. Squaring doubles n, and whatever goes
-    wrong in the k-th squaring counts only 2^-k as much.
+    By Gelfand's formula it is the limit of log |A^n| / n. Squaring doubles n, and an error in the
+    k-th squaring is weighted by 2^-k.
 
     Parameters
     ----------
@@ -83,9 +83,9 @@ def _take_logarithms(matrix, out, power, square):
 
 @kernel
 def _raise_to_power(flow, small, scale, room):
-    """Set each small matrix, times exp(scale), to the power of the map on what it does not fade.
+    """Set each small matrix, times exp(scale), to the power of the map on the directions it keeps.
 
-    The scale is NaN where that has too many directions.
+    The scale is NaN if these are too many.
     """
     n, k, _ = flow.shape
     width = room.size // (2 * k + 1 + _DIRECTIONS)
@@ -111,7 +111,7 @@ def _raise_to_power(flow, small, scale, room):
 
 @kernel
 def _square(power, square):
-    """Square a matrix over its largest entry; return the logarithm of that."""
+    """Square a matrix divided by its largest entry; return the logarithm of that entry."""
     k, width = power.shape
     largest = 0.0
     for i in range(k):
@@ -133,7 +133,7 @@ def _square(power, square):
 
 @kernel
 def _span(columns, basis, part):
-    """Set basis to orthonormal rows that span the columns; return how many, -1 if too many."""
+    """Set `basis` to orthonormal rows that span the columns; return how many, -1 if too many."""
     k, width = columns.shape
     first = np.inf
     for r in range(_DIRECTIONS + 1):

@@ -1,4 +1,4 @@
-"""Newton's method for F(y) = 0 with a given Jacobian, damped and kept near its start."""
+"""Damped Newton's method for F(y) = 0 with a given Jacobian and steps of bounded length."""
 
 from collections.abc import Callable
 from typing import Any, Literal, NamedTuple
@@ -21,9 +21,9 @@ class Linear(NamedTuple):
     by_state : ndarray, shape (n, n)
         dF/dy.
     by_parameter : ndarray, shape (n,)
-        dF/dparameter; of no account where the parameter is fixed.
+        dF/dparameter; not used if the parameter is fixed.
     about : Any
-        Whatever else came to light when F was evaluated.
+        Anything else found in evaluating F.
     """
 
     residual: Array
@@ -44,8 +44,8 @@ class Root(NamedTuple):
         Largest component of F in magnitude.
     iterations : int
     outcome : str
-        ``converged``; ``stalled`` where no shorter step helped or the iterations ran out;
-        ``singular`` where there was no step.
+        ``converged``; ``stalled`` if no shorter step reduced the residual or the iterations ran
+        out; ``singular`` if the Jacobian was.
     """
 
     state: Array
@@ -67,14 +67,14 @@ def find_root(
     Parameters
     ----------
     function : callable
-        Gives F and dF/dy at y; values that are not finite say that y is out of bounds.
+        Returns F and dF/dy at y; values that are not finite mean that y is out of bounds.
     start : ndarray, shape (n,)
     tolerance : float
         For the largest component of F in magnitude.
     longest : float
-        Euclidean length of a step.
+        Largest Euclidean length of a step.
     iterations : int
-        At most.
+        Largest number.
 
     Returns
     -------

@@ -1,10 +1,10 @@
-"""Fixed Runge-Kutta steps of sixteen systems q'' = f(q, q') abreast, in Nystrom's form.
+"""Fixed Runge-Kutta steps of sixteen systems q'' = f(q, q') at a time, in Nystrom form.
 
-The slopes of q are themselves sums of accelerations, so only these are kept: with K_l = h f_l,
+The slopes of q are themselves sums of accelerations, so only the latter are kept: with K_l = h f_l,
 
     q_i = q + h (c_i v + sum_l (A A)_il K_l),    v_i = v + sum_l a_il K_l.
 
-It is the method of the same tableau, with half of its memory and with one load where it has two.
+This is the method of the same tableau with half the memory and half the loads.
 """
 
 from collections.abc import Callable
@@ -18,24 +18,24 @@ from models.numerics.jit import kernel
 from models.numerics.tableaux import Tableau
 
 STAGES = 12  # at most
-_ZERO = 1e-15  # what rounding leaves of products of coefficients
+_ZERO = 1e-15  # rounding error of products of coefficients
 
 
 class Layout(NamedTuple):
-    """Where a block of lanes keeps what; quantities of one lane stand LANES apart.
+    """Layout of a block of lanes; the quantities of one lane are LANES apart.
 
     Attributes
     ----------
     position, velocity : int
         Offsets of the state.
     at, speed : int
-        Offsets of the position and the velocity at which the accelerations are asked for.
+        Offsets of the position and velocity at which the accelerations are evaluated.
     rise : int
         Offset of the accelerations there, times the step.
     step : int
         Offset of the step, repeated for each quantity.
     end : int
-        What comes behind.
+        Offset of what follows.
     """
 
     position: int
@@ -48,14 +48,14 @@ class Layout(NamedTuple):
 
 
 def layout(quantities: int) -> Layout:
-    """Return the layout for positions of so many quantities."""
+    """Return the layout for positions of this many quantities."""
     return Layout._make(range(0, 7 * quantities * LANES, quantities * LANES))
 
 
 def _combiner(
     quantities: int, slopes: int, a: Any, b: Any, to: tuple[int, int]
 ) -> Callable[[Any], None]:
-    """Return the kernel that keeps the newest slope and weights all of them into `to`."""
+    """Return the kernel that stores the newest slope and sets `to` to the weighted sums of all."""
     position, velocity, _, _, rise, step, _ = layout(quantities)
     whole, c, (to_position, to_velocity) = quantities * LANES, float(sum(a)), to
     newest = slopes + (len(a) - 1) * whole
@@ -68,8 +68,8 @@ def _combiner(
         slopes + i * whole for i in used
     ] + padding
 
-    # What lies behind the n-th term is cut off in compilation. Two chains of sums, so that the
-    # additions do not all wait for each other.
+    # Terms after the n-th are removed at compile time. Two chains of sums, so that the additions do
+    # not all wait for each other.
     @kernel
     def combine(w):
         for j in range(whole):
@@ -124,17 +124,17 @@ def stepper(
     quantities : int
         In a position.
     slopes : int
-        Where in the block there is room for the slopes of all stages.
+        Offset in the block of the room for the slopes of all stages.
     method : Tableau
-        Of s <= 12 stages.
+        With s <= 12 stages.
     accelerate : kernel
         ``accelerate(block)`` sets the accelerations, times the step, at `Layout.rise`.
 
     Returns
     -------
     kernel
-        ``step(block)`` advances the state by one step. Call it from a module's kernel: only so
-        it is cached.
+        ``step(block)`` advances the state by one step. Call it from a module-level kernel, or it is
+        not cached.
     """
     at, whole = layout(quantities), 2 * quantities * LANES
     position, arguments = at.position, at.at

@@ -1,9 +1,9 @@
-"""What takes machines through time, and what each such thing promises.
+"""The interface of everything that advances machines in time.
 
-A `Propagator` takes many machines along at once: `models.beam.lanes`, `models.beam.exact`,
-`models.vibrator.lanes`, `models.mole.lanes`. A `Yardstick` follows one machine as closely as asked:
+A `Propagator` advances many machines at once: `models.beam.lanes`, `models.beam.exact`,
+`models.vibrator.lanes`, `models.mole.lanes`. A `Yardstick` follows one machine to any tolerance:
 `models.vibrator.exact`, `models.mole.exact`. Any package or module with these functions is one.
-`tests/models/test_propagators.py` holds all of them to these promises.
+`tests/models/test_propagators.py` checks what is stated here for all of them.
 """
 
 from collections.abc import Iterator
@@ -17,46 +17,45 @@ Array = NDArray[np.float64]
 
 @runtime_checkable
 class Propagator(Protocol):
-    """Takes n machines along at once, over whole periods of what drives them.
+    """Advances n machines at once, over whole periods of their drive.
 
-    What a machine does depends on its parameters, its state and its own arguments alone, to the
-    bit: not on the other machines, nor on their number or order, nor on earlier calls. A machine
-    that cannot be followed affects no other and raises nothing.
+    The motion of a machine depends only on its parameters, its state and its own arguments, to the
+    bit: not on the other machines, their number or order, nor on earlier calls. A machine that
+    cannot be followed affects no other and raises no exception.
 
-    Arguments of one machine only, such as gaps that grow, follow those named here.
+    Arguments particular to a machine, such as growing gaps, follow those named here.
     """
 
     def groups(self, machines: Any, settings: Any, /) -> Iterator[tuple[NDArray[np.intp], Any]]:
-        """Prepare n machines, in groups that can be propagated together.
+        """Prepare n machines in groups that can be propagated together.
 
         Parameters
         ----------
         machines
             Their parameters, each field of shape (n, ...).
         settings
-            Those of the model.
+            The model's settings.
 
         Yields
         ------
         rows : ndarray of int
-            Which of the n machines are in the group. Each is in one group at most; one that the
+            Indices of the machines in the group. Each is in at most one group; one that the
             propagator cannot follow is in none.
         system
-            These machines, prepared. It is never changed; ``system.take(rows)`` returns some of
-            them.
+            These machines, prepared. Never modified; ``system.take(rows)`` selects some of them.
         """
 
     def start(self, system: Any, /, *args: Any) -> Array:
-        """Return the initial state, shape (n, k), a new array that belongs to the caller.
+        """Return the initial state, shape (n, k), a new array owned by the caller.
 
-        Row by row it is all that the future of a machine depends on.
+        A row holds everything on which the future of its machine depends.
         """
 
     def advance(self, system: Any, state: Array, /, *args: Any, **kwargs: Any) -> Any:
-        """Advance n machines, and return a record of the way.
+        """Advance n machines, and return a record of their motion.
 
-        Two calls lead where one call over the same periods leads: to the bit for fixed steps and
-        for exact propagation, to the tolerance where steps are chosen anew.
+        Two calls reach the same state as one call over the same periods: to the bit for fixed steps
+        and for exact propagation, to the tolerance for adaptive steps.
 
         Parameters
         ----------
@@ -66,7 +65,7 @@ class Propagator(Protocol):
         """
 
     def monodromy(self, system: Any, state: Array, /, *args: Any, **kwargs: Any) -> Array:
-        """Return the derivative of the state that `advance` reaches, by the state now.
+        """Return the derivative of the state reached by `advance` with respect to this one.
 
         Parameters
         ----------
@@ -77,14 +76,14 @@ class Propagator(Protocol):
         Returns
         -------
         ndarray, shape (n, f, f)
-            Of each of the first f components after (rows) by each before (columns); zero by a
-            component that cannot vary.
+            Derivatives of the first f components after (rows) with respect to those before
+            (columns); zero for a component that cannot vary.
         """
 
 
 @runtime_checkable
 class Yardstick(Protocol):
-    """Follows one machine over any time; its error shrinks with the tolerance."""
+    """Follows one machine over any time, with an error that shrinks with the tolerance."""
 
     def start(self, params: Any, system: Any, /) -> Any:
         """Return the initial state of a machine.
@@ -108,16 +107,16 @@ class Yardstick(Protocol):
         state
             Not changed.
         end : float
-            When to stop [s]. A state that does not hold its time stands at 0.
+            When to stop [s]. A state that does not contain its time is at time 0.
         tolerance : float
-            Error allowed in a step, relative to the sizes of the machine's motion.
+            Allowed error of a step, relative to the scales of the machine's motion.
         times : array_like, shape (k,)
-            Ascending, when to sample the state [s].
+            When to sample the state [s], ascending.
 
         Returns
         -------
         motion
             Its `status` is one of `models.numerics.dop853`, its `state` the last one; `samples`,
-            shape (k, m), are NaN from where the motion ended. Followed on from its last state, a
+            shape (k, m), are NaN after the end of the motion. Continued from its last state, a
             machine moves as if it had never stopped, to the tolerance.
         """

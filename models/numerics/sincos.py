@@ -1,20 +1,21 @@
-"""Sine and cosine without branches: a loop over lanes that calls them is vectorised."""
+"""Sine and cosine without branches, so that loops over lanes that call them vectorise."""
 
 from models.numerics.fma import fma
 from models.numerics.jit import inlined
 
 _TWO_OVER_PI = 0.6366197723675814
-# Pi/2 in three parts: the first two have bits to spare for exact products with whole numbers.
+# Pi/2 in three parts; the first two have spare bits, so that their products with integers are
+# exact.
 _PART_1 = 1.5707963267341256
 _PART_2 = 6.077100506303966e-11
 _PART_3 = 2.0222662487959506e-21
-# Adding and taking away 1.5 * 2^52 rounds to the nearest whole number.
+# Adding and subtracting 1.5 * 2^52 rounds to the nearest integer.
 _ROUNDER = 6755399441055744.0
 
 
 @inlined
 def nearest(x):
-    """Return the whole number nearest to x, for abs(x) < 2^51."""
+    """Return the integer nearest to x, for abs(x) < 2^51."""
     return (x + _ROUNDER) - _ROUNDER
 
 
@@ -22,8 +23,8 @@ def nearest(x):
 def cosine_sine(x):
     """Return cos x and sin x.
 
-    The argument is reduced to a quarter turn about 0, where two polynomials (of the Cephes kind)
-    are exact to the last bit or two; measured, the error is at most 3e-16 for abs(x) < 1e5.
+    The argument is reduced to a quarter turn about 0, where two polynomials (as in Cephes) are
+    accurate to the last bit or two; the measured error is at most 3e-16 for abs(x) < 1e5.
 
     Parameters
     ----------

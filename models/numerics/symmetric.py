@@ -1,8 +1,8 @@
-"""Eigenvalues of many symmetric matrices, and what one row makes of their eigenvectors.
+"""Eigenvalues of many symmetric matrices, and products of one row with their eigenvectors.
 
-Householder's reflections leave a tridiagonal matrix, implicit QL steps its eigenvalues (Golub and
-Van Loan, Matrix Computations, Sec. 8.3). Of the eigenvectors only products with one row are formed,
-which costs little beside the values. Compiled here, the bits do not depend on whose LAPACK it is.
+Householder reflections give a tridiagonal matrix, implicit QL steps its eigenvalues (Golub and Van
+Loan, Matrix Computations, Sec. 8.3). Of the eigenvectors only their products with one row are
+formed, at little extra cost. Compiled here, the bits do not depend on the LAPACK installed.
 """
 
 import math
@@ -14,7 +14,7 @@ from models.numerics.jit import kernel
 
 Array = NDArray[np.float64]
 
-_STEPS = 50  # of QL for one eigenvalue, at most
+_STEPS = 50  # QL steps for one eigenvalue, at most
 _EPSILON = float(np.finfo(float).eps)
 
 
@@ -24,13 +24,13 @@ def eigenvalues(matrix: Array, row: Array) -> tuple[Array, Array]:
     Parameters
     ----------
     matrix : ndarray, shape (n, k, k)
-        Only what is on and below the diagonal counts.
+        Only the diagonal and what is below it are read.
     row : ndarray, shape (k,)
 
     Returns
     -------
     values, products : ndarray, shape (n, k)
-        Eigenvalues, and the row times their eigenvectors of length 1, of either sign.
+        Eigenvalues, and products of the row with the unit eigenvectors, of either sign.
     """
     n, k, _ = matrix.shape
     values, products = np.empty((n, k)), np.empty((n, k))
@@ -51,7 +51,7 @@ def _solve(matrix, row, values, products, work, room):
 
 @kernel
 def _tridiagonalise(a, row, diagonal, off, v, p):
-    """Reflect column by column until nothing is left but two diagonals; reflect the row, too."""
+    """Reflect column by column until only two diagonals are left; reflect the row, too."""
     k = len(diagonal)
     for c in range(k - 2):
         head, rest = a[c + 1, c], 0.0
@@ -94,7 +94,7 @@ def _tridiagonalise(a, row, diagonal, off, v, p):
 
 @kernel
 def _diagonalise(d, e, row):
-    """Turn the diagonal d into eigenvalues, and the row with them, until nothing is beside it."""
+    """Turn the diagonal d into eigenvalues until nothing is left beside it; rotate the row."""
     k = len(d)
     for first in range(k):
         for _ in range(_STEPS):

@@ -1,7 +1,6 @@
-"""Coefficients of the Runge-Kutta methods, with the digits that their authors published.
+"""Coefficients of the Runge-Kutta methods, with the digits published by their authors.
 
-The tests check them against the order conditions of the step, the error estimates and the dense
-output.
+The tests check the order conditions of the steps, the error estimates and the dense output.
 """
 
 from typing import NamedTuple
@@ -18,7 +17,7 @@ class Tableau(NamedTuple):
     Attributes
     ----------
     a : tuple of s tuples
-        Row i has the coefficients a_ij of the i stages before it.
+        Row i holds the coefficients a_ij of the i stages before it.
     b : tuple of s floats
         Weights of the k_i in the new state.
     c : tuple of s floats
@@ -38,8 +37,8 @@ BOGACKI_SHAMPINE_3 = Tableau(
     b=(2 / 9, 1 / 3, 4 / 9, 0.0),
     c=(0.0, 1 / 2, 3 / 4, 1.0),
 )
-"""Order 3; the last stage is at the new state: P. Bogacki, L. F. Shampine, Appl. Math. Lett. 2
-(1989) 321."""
+"""Order 3; the last stage is evaluated at the new state: P. Bogacki, L. F. Shampine, Appl. Math.
+Lett. 2 (1989) 321."""
 
 ERROR_2 = (-5 / 72, 1 / 12, 1 / 9, -1 / 8)
 """Weights of its k_i in the difference between the step and one of order 2."""
@@ -134,8 +133,8 @@ DORMAND_PRINCE_8 = Tableau(
     ),
 )
 """Order 8 in twelve stages, by Dormand and Prince: E. Hairer, S. P. Norsett, G. Wanner, "Solving
-Ordinary Differential Equations I", Sec. II.5 and II.10. These digits, and all below, are those of
-the authors' code DOP853."""
+Ordinary Differential Equations I", Sec. II.5 and II.10. The digits here and below are those of the
+authors' code DOP853."""
 
 ERROR_3 = (
     DORMAND_PRINCE_8.b[0] - 0.244094488188976377952755905512,
@@ -217,6 +216,6 @@ DENSE_WEIGHTS = (
         -39.177261675615439165231486172, -149.72683625798562581422125276,
     ),
 )
-"""Weights of these stages in the last four of the seven coefficients of the dense output, which is
-of order 7; the first three follow from both ends of the step."""
+"""Weights of these stages in the last four of the seven coefficients of the dense output, of order
+7; the first three follow from both ends of the step."""
 # fmt: on

@@ -1,7 +1,7 @@
-"""Fixed Runge-Kutta steps of sixteen systems abreast: Tsitouras' method of order 5.
+"""Fixed Runge-Kutta steps of sixteen systems at a time: Tsitouras' method of order 5.
 
-Ch. Tsitouras, Comput. Math. Appl. 62 (2011) 770. A block of lanes lives in one flat array, all its
-offsets known to the compiler: only then is a sum over seven arrays vectorised.
+Ch. Tsitouras, Comput. Math. Appl. 62 (2011) 770. A block of lanes is one flat array with offsets
+known to the compiler: otherwise a sum over seven arrays is not vectorised.
 """
 
 from collections.abc import Callable
@@ -20,13 +20,13 @@ _B1, _B2, _B3, _B4, _B5, _B6 = TSITOURAS_5.b
 
 
 class Layout(NamedTuple):
-    """Where a block of lanes keeps what; quantities of one lane stand LANES apart.
+    """Layout of a block of lanes; the quantities of one lane are LANES apart.
 
     Attributes
     ----------
     state, argument, slopes, size : int
         Offsets of the state, the argument of the next stage (after the last stage: the new state)
-        and the slopes of the stages, times the step; and the length of the whole.
+        and the slopes of the stages, times the step; and the total length.
     """
 
     state: int
@@ -36,7 +36,7 @@ class Layout(NamedTuple):
 
 
 def layout(quantities: int) -> Layout:
-    """Return the layout for states of so many quantities."""
+    """Return the layout for states of this many quantities."""
     whole = quantities * LANES
     return Layout(0, whole, 2 * whole, (2 + STAGES) * whole)
 
@@ -52,7 +52,7 @@ def combiner(quantities: int) -> Callable[[int, Any], None]:
     Returns
     -------
     kernel
-        ``combine(stage, block)`` with the slopes of the first `stage` stages known.
+        ``combine(stage, block)``, given the slopes of the first `stage` stages.
     """
     y, out, k_1, _ = layout(quantities)
     whole = quantities * LANES

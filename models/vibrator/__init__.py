@@ -1,19 +1,19 @@
-"""The vibrator: two unbalanced motors on one body, which must synchronise by themselves.
+"""The vibrator: two unbalanced motors on one body, which must self-synchronise.
 
 After J. Michalczyk and G. Cieplok, "Disturbances in self-synchronisation of vibrators in vibratory
 machines", Arch. Min. Sci. 59 (2014).
 
-Reading order; a storey imports only those above it:
+Reading order; each part imports only those above it:
 
     parameters    inputs, settings and outputs
-    theory        synchronous running on paper
+    theory        the averaged theory of synchronous running
     equations     the equations of motion
     exact         one propagator: any machine, one at a time
-    lanes         the other: sixteen rigid machines abreast, what studies run on
+    lanes         the other: sixteen rigid machines at a time
     start         from standstill to the steady state
     batch         from rows of a study to outputs
     trajectory    one labelled run
-    paper         the paper's claims beside ours
+    paper         the paper's claims compared with the model
 """
 
 from typing import Any
@@ -23,7 +23,7 @@ from uq.contract import Model, Trajectory
 
 
 def _batch(x: Any, seed: Any, settings: Settings) -> Any:
-    from models.vibrator.batch import batch  # numba only when something is computed
+    from models.vibrator.batch import batch  # imports numba only when needed
 
     return batch(x, seed, settings)
 

@@ -30,14 +30,14 @@ def batch(
     Returns
     -------
     outputs : dict of str to ndarray, shape (n,)
-        As `models.vibrator.parameters.OUTPUTS` says, and ``synchronisation_time_censored``.
+        Those of `models.vibrator.parameters.OUTPUTS`, and ``synchronisation_time_censored``.
     status : ndarray of int8, shape (n,)
     """
     p: Rows = Params._make(np.ascontiguousarray(x.T))
     quick = follows(p, settings) & (settings.propagator == "fast")
     outcome, status = Outcome.nothing(len(x)), np.full(len(x), Status.OK, np.int8)
     _run(fast.outcomes, p, np.flatnonzero(quick), settings, outcome, status)
-    # The exact propagator also follows what is too stiff for fixed steps.
+    # The exact propagator also follows machines too stiff for fixed steps.
     slow = ~quick | (status == Status.NON_FINITE)
     _run(exact.outcomes, p, np.flatnonzero(slow), settings, outcome, status)
     return {
@@ -60,7 +60,7 @@ def batch(
 def theory_batch(
     x: NDArray[np.float64], seed: NDArray[np.uint64], settings: Settings
 ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8]]:
-    """Compute the angle of the averaged theory alone, a thousand times faster; see `batch`."""
+    """Compute only the angle of the averaged theory, a thousand times faster; see `batch`."""
     p: Rows = Params._make(np.ascontiguousarray(x.T))
     return {"theory_disphasing_angle": _theory_angle(p)}, np.full(len(x), Status.OK, np.int8)
 

@@ -1,8 +1,8 @@
 """Parameters, settings and outputs of the vibrator, each declared once.
 
-Nominal values after Michalczyk & Cieplok (Arch. Min. Sci. 59, 2014), whose digits are known to us
-only in part: a source says "given" where the number is legible, "inferred" where it was recovered
-from the paper's results, "assumed" where the paper has none.
+Nominal values after Michalczyk & Cieplok (Arch. Min. Sci. 59, 2014), not all of whose digits are
+legible: a source is "given" where the number is legible, "inferred" where it was recovered from the
+paper's results, "assumed" where the paper has none.
 
 C is the mass centre of the bare body, xi the working axis through C at the working angle from the
 horizontal x, eta perpendicular to it, a quarter turn counter-clockwise of xi.
@@ -116,7 +116,7 @@ class Params(NamedTuple):
     feed_mass: Annotated[float, Parameter(
         "m_n", "kg", "mass of the feed thrown by the deck", (0.0, 6e3), "assumed: empty")] = 0.0
     throw_coefficient: Annotated[float, Parameter(
-        "k_p", "1", "vertical acceleration amplitude of the deck over gravity, which it sets",
+        "k_p", "1", "vertical acceleration amplitude of the deck over gravity; sets the gravity",
         (0.05, 60.0), f"assumed: within single-stroke motion, as studied in {PAPER}")] = 2.0
     feed_position: Annotated[float, Parameter(
         "x_n", "m", "position of the feed from C along x", (-30.0, 30.0), "assumed: at C")] = 0.0
@@ -158,7 +158,7 @@ class Settings:
     steps_per_turn: Annotated[
         int,
         Setting(
-            "steps of the fast propagator in one revolution, then of order 8; 0: of order 5, "
+            "steps of the fast propagator per revolution, of order 8; 0: of order 5, "
             "as many as each row needs",
             bounds=(0, 1000),
         ),
@@ -166,8 +166,8 @@ class Settings:
     body_points: Annotated[
         tuple[tuple[float, float], ...],
         Setting(
-            "points of the body, [along the deck, above it] from C at rest, whose motion the "
-            "trajectory of a single run shows; rows of a study do not depend on them",
+            "points of the body, [along the deck, above it] from C at rest, whose motion is "
+            "included in the trajectory of a single run; rows of a study do not depend on them",
             "m",
             bounds=(-30.0, 30.0),
         ),
@@ -175,7 +175,7 @@ class Settings:
 
 
 def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
-    """Return the coordinates of the outputs' dimensions: there are none."""
+    """Return the coordinates of the outputs' dimensions (none)."""
     return {}
 
 
@@ -191,7 +191,7 @@ OUTPUTS: Mapping[str, Output] = {
     ),
     "angular_amplitude": Output(
         "rad",
-        "amplitude of the body's rotation: its first harmonic in time, one cycle a turn; half "
+        "amplitude of the body's rotation: first harmonic, one cycle per turn; half "
         "peak-to-peak where unlocked",
     ),
     "stroke_left": Output("m", "half peak-to-peak displacement along xi of the left deck end"),
@@ -201,19 +201,19 @@ OUTPUTS: Mapping[str, Output] = {
     "power_2": Output("W", "mean power of motor 2 before bearing loss"),
     "floquet_multiplier": Output(
         "1",
-        "largest modulus of a multiplier over one revolution but for the trivial 1",
+        "largest modulus of the Floquet multipliers over one revolution, except the trivial 1",
         may_be_undefined=True,
     ),
     "synchronisation_time": Output(
         "s",
         "time until the disphasing angle stays within 0.05 rad of its mean",
         "lifetime",
-        never_known_at_once=False,  # steps may be used up before motors have locked or not
+        never_known_at_once=False,  # the step budget may end before the motors lock
     ),
     "max_excursion": Output(
-        "m", "largest displacement of C from standstill until its free vibration has died away"
+        "m", "largest displacement of C during start-up, until its free vibration has died away"
     ),
     "regime": Output(
-        "1", "kind of steady state reached from the start", "category", categories=REGIMES
+        "1", "type of steady state reached from the start", "category", categories=REGIMES
     ),
 }

@@ -24,7 +24,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     ----------
     params : Params
     settings : Settings
-        The tolerance is kept whichever propagator is chosen for a batch. Each of the
+        The tolerance applies whichever propagator is chosen for a batch. The first of the
         `body_points` adds ``point_1_x`` and ``point_1_y``, the next ``point_2_x``, and so on.
     seed : int
         Not used: the vibrator is deterministic.
@@ -32,7 +32,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     Returns
     -------
     Trajectory
-        It ends early where the step budget does.
+        It ends early if the step budget runs out.
     """
     m = system(params, settings.kinematics)
     duration = min(LONGEST, settings.run_up)
@@ -48,7 +48,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
     x, y, alpha, psi_1, psi_2 = q[: rigid_motion.DEGREES]
 
     def displacement(along: float, above: float) -> tuple[Series, Series]:
-        """Of a point of the body, by where it is at rest, from C."""
+        """Return the displacement of a point of the body, given its rest position from C."""
         if not m.exact:
             return x - above * alpha, y + along * alpha
         lift, shrink = np.sin(alpha), np.cos(alpha) - 1

@@ -82,7 +82,7 @@ def test_a_journal_that_was_cut_loses_its_last_record_only(
     rows = sum(stop - start for start, stop in blocks)
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(f"{OUT}: {rows} of 1500 rows were done already\n")
+    assert said.startswith(f"{OUT}: {rows} of 1500 rows were already done\n")
     assert OUT.read_bytes() == undisturbed
 
 
@@ -115,7 +115,7 @@ def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call,
     assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(f"{OUT}: 1500 of 1500 rows were done already\n")
+    assert said.startswith(f"{OUT}: 1500 of 1500 rows were already done\n")
     assert OUT.read_bytes() == undisturbed
 
 

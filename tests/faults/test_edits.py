@@ -37,7 +37,7 @@ def test_comments_and_analysis_may_change(study, undisturbed, under_way, call, i
     study.write_text(study.read_text() + "# a comment\nquantiles = [0.5]\n")
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert "rows were done already" in said
+    assert "rows were already done" in said
     assert OUT.read_bytes() != undisturbed  # it holds the new text
     study.write_text(study.read_text().removesuffix("# a comment\nquantiles = [0.5]\n"))
     assert "complete already" in call("run", study, *MODEL[:-1])[1]

@@ -66,7 +66,7 @@ def test_kills_during_the_merge(write_study, start, call, injected, kills):
     shutil.copytree(ROWS, "copy")
     code, said = call("run", study, *options[:2])
     assert code == 0
-    assert f"{OUT}: 200000 of 200000 rows were done already" in said
+    assert f"{OUT}: 200000 of 200000 rows were already done" in said
     assert OUT.read_bytes() == (OUT.parents[1] / "undisturbed.nc").read_bytes()
     # Killed just before the rows are removed: they are of no use any more.
     shutil.copytree("copy", ROWS)
@@ -134,7 +134,7 @@ def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     assert json.loads(call("status", OUT, "--json")[1])["done"] == int(told[1])
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(f"{OUT}: {told[1]} of 1500 rows were done already\n")
+    assert said.startswith(f"{OUT}: {told[1]} of 1500 rows were already done\n")
     assert OUT.read_bytes() == undisturbed
 
 

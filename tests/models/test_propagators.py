@@ -66,10 +66,11 @@ def test_bits_depend_neither_on_company_nor_on_order(carried):
         assert same_bits(part, [together[i] for i in places[half]])
 
 
-def test_a_machine_that_cannot_be_followed_harms_no_other(carried):
+@pytest.mark.parametrize("broken", [np.inf, np.nan])
+def test_a_machine_that_cannot_be_followed_harms_no_other(carried, broken):
     for _, system, state in begun(carried, carried.rows):
         spoilt = state.copy()
-        spoilt[0, 0] = np.inf
+        spoilt[0, 0] = broken
         carried.advance(system, state, PERIODS)
         carried.advance(system, spoilt, PERIODS)
         assert same_bits(spoilt[1:], state[1:])

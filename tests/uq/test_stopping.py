@@ -15,7 +15,7 @@ from uq.rows.workload import workload_of
 from uq.running import local_cluster, runner
 from uq.running.options import RunOptions
 from uq.study.definition import study_from_text
-from uq.upkeep import extending
+from uq.upkeep import amending
 from uq.upkeep.status import run_status
 
 
@@ -126,7 +126,7 @@ def test_extending_gives_as_many_as_are_asked_for_whatever_is_known(folder):
     of = study(0.2, samples=1000)
     stopped = runner.run(of, "out.nc").attrs["samples"]
     assert stopped == 500
-    assert extending.extend(folder / "out.nc", 700).attrs["samples"] == 700
+    assert amending.extend(folder / "out.nc", 700).attrs["samples"] == 700
     (note,) = summarised(open_result(folder / "out.nc"))["notes"]
     assert "with the first 500 of 700 samples" in note
     again = runner.run(of, "out.nc", progress=pytest.fail)

@@ -61,7 +61,7 @@ def test_a_grown_study_extends_its_result(uq, write_study):
     uq("run", write_study(samples=40), "-o", "out.nc", "--quiet")
     path = write_study(samples=100)
     ended = uq("run", path, "-o", "out.nc")
-    assert ended.err == "out.nc: 40 of 100 rows were done already\n"
+    assert ended.err == "out.nc: 40 of 100 rows were already done\n"
     words = " ".join(ended.out.split())
     assert re.search(r"out.nc: 60 rows computed in [0-9.]+ s; 40 were there already", words)
     uq("run", path, "-o", "once.nc", "--quiet")
@@ -233,7 +233,7 @@ def test_rows_of_other_versions_are_named_in_the_result(uq, write_study):
     ended = uq("extend", "out.nc", "--samples", 20)
     assert ended.code == 0
     assert ended.err == (
-        "out.nc: 12 of 20 rows were done already\n"
+        "out.nc: 12 of 20 rows were already done\n"
         f"out.nc: some rows were computed with numpy 0.9 (here {np.__version__})\n"
     )
     assert api.open_result("out.nc").attrs["numpy"] == f"0.9; {np.__version__}"

@@ -12,8 +12,7 @@ from uq.compilation import compilation
 from uq.errors import InputError
 from uq.rows import results
 from uq.running.options import RunOptions
-from uq.upkeep import extending, verification
-from uq.upkeep.rerunning import rerun_failed
+from uq.upkeep import amending, verification
 from uq.upkeep.status import RunStatus, run_status
 from uq.upkeep.stored_study import study_of
 
@@ -47,7 +46,7 @@ def _show_status(found: RunStatus) -> None:
 def extend(path: Path, samples: int, model: str | None, quiet: bool, options: RunOptions) -> int:
     """Give a result more samples and show it; return the exit code."""
     ds, note = carried_out(
-        path, quiet, options, lambda chosen: extending.extend(path, samples, model, chosen)
+        path, quiet, options, lambda chosen: amending.extend(path, samples, model, chosen)
     )
     return end(study_of(path, model), ds, path, quiet, note, options.mixed)
 
@@ -65,7 +64,7 @@ def rerun(
         raise InputError("uq rerun: say which rows: --failed")
     changes = dict(literal(text) for text in settings)
     ds, note = carried_out(
-        path, quiet, options, lambda chosen: rerun_failed(path, changes, model, chosen)
+        path, quiet, options, lambda chosen: amending.rerun_failed(path, changes, model, chosen)
     )
     return end(study_of(path, model), ds, path, quiet, note, options.mixed)
 

@@ -1,5 +1,7 @@
 """How far rows of a study lie beyond a threshold, as a function on standard normal space."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -9,15 +11,52 @@ from scipy.special import ndtr
 
 from uq.contract import Output, Status
 from uq.errors import InputError, nearest
-from uq.exploring.evaluator import Evaluator
+from uq.exploring.subset_simulation import Floats
 from uq.inputs.values import unknown_name
 from uq.rows.columns import censored_name
 from uq.rows.evaluate import Chunk
 from uq.rows.results import elements
-from uq.rows.sampling import physical, row_seeds
+from uq.rows.sampling import Rows, physical, row_seeds
+from uq.rows.workload import Workload
+from uq.running.dispatch import Dispatcher
+from uq.running.executor import Executor
+from uq.running.options import RunOptions
+from uq.store import MemoryStore
 from uq.study.definition import Study
 
-Floats = NDArray[np.float64]
+Evaluator = Callable[[Floats, NDArray[np.uint64]], Chunk]
+"""``evaluator(x, seed)`` -> outputs of rows x (n, d), in declared order, with seeds (n,): the same
+bits wherever they are computed."""
+
+_NONE = Rows(np.empty((0, 0)), *(np.empty(0, kind) for kind in ("u8", "i4", "i8", "i2")))
+
+
+@contextmanager
+def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Evaluator]:
+    """Yield a function that runs the model of a study.
+
+    Parameters
+    ----------
+    study : Study
+    output : str
+        The output that is wanted: computed alone if the model can do so.
+    options : RunOptions
+    """
+    cheap = output in study.model.cheap
+    model = study.model.alone(output) if cheap else study.model
+    work = Workload(model, study.model_reference, study.settings, 0, 1, _NONE.part)
+    work = work._replace(output=output if cheap else "")
+    with Executor(work, options) as executor:
+
+        def evaluator(x: Floats, seed: NDArray[np.uint64]) -> Chunk:
+            zeros = np.zeros(len(x), np.int64)
+            rows = Rows(x, seed, zeros.astype(np.int32), zeros, zeros.astype(np.int16))
+            batch = work._replace(total=len(x), block=rows.part)
+            store = MemoryStore(batch)
+            executor.finish(Dispatcher(batch, options, store, executor.evaluate))
+            return store.chunk()
+
+        yield evaluator
 
 
 class LimitState:

@@ -10,8 +10,7 @@ from scipy.special import ndtr
 
 from uq.errors import InputError, nearest
 from uq.exploring.design_points import design_points, drawn_around
-from uq.exploring.evaluator import evaluator_of
-from uq.exploring.limit_state import LimitState
+from uq.exploring.limit_state import LimitState, evaluator_of
 from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
 from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, Floats, subset_simulation
 from uq.intervals import Ends, binomial_interval
@@ -182,17 +181,14 @@ METHODS = {"subset": _subset, "importance": _importance}
 
 
 def _check(threshold: float, method: str, samples: int, replicates: int) -> None:
-    faults = []
-    if not isfinite(threshold):
-        faults.append(f"threshold must be finite: {threshold!r}")
-    if method not in METHODS:
-        allowed = ", ".join(METHODS)
-        faults.append(f"method '{method}': no such method{nearest(method, METHODS)} ({allowed})")
-    if samples < _FEWEST:
-        faults.append(f"samples must be at least {_FEWEST}: {samples}")
-    if replicates < 1:
-        faults.append(f"replicates must be at least 1: {replicates}")
-    if faults:
+    allowed = f"no such method{nearest(method, METHODS)} ({', '.join(METHODS)})"
+    demands = {
+        f"threshold must be finite: {threshold!r}": isfinite(threshold),
+        f"method '{method}': {allowed}": method in METHODS,
+        f"samples must be at least {_FEWEST}: {samples}": samples >= _FEWEST,
+        f"replicates must be at least 1: {replicates}": replicates >= 1,
+    }
+    if faults := [line for line, met in demands.items() if not met]:
         raise InputError(*faults)
 
 

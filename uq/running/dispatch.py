@@ -162,15 +162,12 @@ class Dispatcher:
         self._options.progress(Progress(*counts, *seen, self._dashboard))
 
     def _chunk_rows(self) -> int:
+        limit, wish = self._options.row_limit, self._options.chunk_rows
         most = _CHUNK_BYTES // row_bytes(self.workload)
-        if (
-            self._options.row_limit and self._row_seconds
-        ):  # chunks of sound rows must not be stopped
-            most = max(
-                1, min(most, int(_LIMIT_SHARE * self._options.row_limit / self._row_seconds))
-            )
-        if wish := self._options.chunk_rows:
-            return whole_groups(self.workload, min(wish, most) if self._options.row_limit else wish)
+        if limit and self._row_seconds:  # chunks of sound rows must not be stopped
+            most = max(1, min(most, int(_LIMIT_SHARE * limit / self._row_seconds)))
+        if wish:
+            return whole_groups(self.workload, min(wish, most) if limit else wish)
         good = chunk_rows(self.workload, self._row_seconds)
         return min(whole_groups(self.workload, most), good)
 

@@ -84,7 +84,9 @@ class Executor:
             return
         if not workers and self._crew is None:
             dispatcher.pilot(share=1)
-        if workers == 0 or (workers is None and self._short(dispatcher)):
+        # Not worth starting workers, together with the rows before.
+        short = self._crew is None and self._seconds + dispatcher.seconds_left < SHORT_SECONDS
+        if workers == 0 or (workers is None and short):
             dispatcher.finish_here()
         elif not dispatcher.complete:
             known = workers is None and self._crew is None
@@ -93,10 +95,6 @@ class Executor:
                 dispatcher.pilot(share=1 / 8)  # while they start
             dispatcher.finish_on(crew)
         self._seconds += dispatcher.seconds
-
-    def _short(self, dispatcher: Dispatcher) -> bool:
-        """Return whether these rows and those before are not worth starting workers."""
-        return self._crew is None and self._seconds + dispatcher.seconds_left < SHORT_SECONDS
 
     def _started(self, dispatcher: Dispatcher) -> "Workers":
         from uq.running.local_cluster import CORES, local_workers

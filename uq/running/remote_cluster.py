@@ -34,31 +34,30 @@ def remote_workers(address: str) -> Iterator[Workers]:
     InputError
         When nothing answers there, or no worker can be used.
     """
+    where = f"--scheduler {address}"
     with ExitStack() as stack:
         stack.enter_context(quiet())
-        _check_certificates(address)
+        _check_certificates(where, encrypted=address.startswith("tls:"))
         try:
             client = Client(address, set_as_default=False, timeout=_REMOTE_SECONDS)
         except (OSError, ValueError) as error:
             reason = " ".join(str(error).split())
             raise InputError(
-                f"--scheduler {address}: cannot connect: {reason}; is a dask scheduler running"
-                " there?"
+                f"{where}: cannot connect: {reason}; is a dask scheduler running there?"
             ) from None
         stack.enter_context(client)
-        _check_versions(client, f"--scheduler {address}")
+        _check_versions(client, where)
         last_seen = time.monotonic()
 
         def watch(threads: int, progress: bool) -> None:
             nonlocal last_seen
             if client.status in ("closing", "closed"):
-                raise RunError(f"--scheduler {address}: the scheduler is gone")
+                raise RunError(f"{where}: the scheduler is gone")
             if threads or progress:
                 last_seen = time.monotonic()
             elif time.monotonic() > last_seen + _WORKERLESS_SECONDS:
                 raise RunError(
-                    f"--scheduler {address}: the cluster has had no workers for "
-                    f"{_WORKERLESS_SECONDS:g} s"
+                    f"{where}: the cluster has had no workers for {_WORKERLESS_SECONDS:g} s"
                 )
 
         try:
@@ -68,17 +67,15 @@ def remote_workers(address: str) -> Iterator[Workers]:
                 client.run(end_children, on_error="ignore")
 
 
-def _check_certificates(address: str) -> None:
+def _check_certificates(where: str, encrypted: bool) -> None:
     """Refuse an encrypted connection without certificates."""
     try:
         context = Security().get_connection_args("client")["ssl_context"]
     except OSError as error:
+        raise InputError(f"{where}: the certificates cannot be used: {error}") from None
+    if encrypted and context is None:
         raise InputError(
-            f"--scheduler {address}: the certificates cannot be used: {error}"
-        ) from None
-    if address.startswith("tls:") and context is None:
-        raise InputError(
-            f"--scheduler {address}: cannot connect without certificates: set "
+            f"{where}: cannot connect without certificates: set "
             "DASK_DISTRIBUTED__COMM__TLS__CA_FILE, ..__TLS__CLIENT__CERT and ..__TLS__CLIENT__KEY"
         )
 

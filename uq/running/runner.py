@@ -148,11 +148,12 @@ def carry_out(
             if there.found:
                 dispatcher.report_progress()
             executor.finish(dispatcher)
-            if study and part:
-                if stopping.interim_estimate(study.design, there.first(part)).reached:
-                    there.cut(part)
-                    dispatcher.report_progress()
-                    break
+            if not (study and part):
+                break
+            if stopping.interim_estimate(study.design, there.first(part)).reached:
+                there.cut(part)
+                dispatcher.report_progress()
+                break
     return there.dataset()
 
 

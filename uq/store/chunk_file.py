@@ -9,18 +9,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.rows.columns import Column
+from uq.rows.columns import columns_of
 from uq.rows.sampling import Rows
+from uq.rows.workload import Workload
 from uq.store.files import flush
 
 Block = tuple[int, int]
 """Number of the first row, and of the row after the last."""
 
 
-def row_type(parameters: int, columns: Mapping[str, Column]) -> np.dtype[Any]:
+def row_type(workload: Workload) -> np.dtype[Any]:
     """Return the type of one row: its place in the design, its inputs, outputs and status."""
+    columns = columns_of(workload.model, workload.settings)
     rows = [
-        ("x", np.float64, (parameters,)),
+        ("x", np.float64, (len(workload.model.parameter_names),)),
         ("seed", np.uint64),
         ("replicate", np.int32),
         ("group", np.int64),
@@ -31,10 +33,7 @@ def row_type(parameters: int, columns: Mapping[str, Column]) -> np.dtype[Any]:
 
 
 def pack(
-    kind: np.dtype[Any],
-    rows: Rows,
-    columns: Mapping[str, NDArray[Any]],
-    status: NDArray[np.int8],
+    kind: np.dtype[Any], rows: Rows, columns: Mapping[str, NDArray[Any]], status: NDArray[np.int8]
 ) -> NDArray[Any]:
     """Return rows as one structured array."""
     data = np.empty(len(status), kind)

@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 
 from uq.errors import RunError
 from uq.rows import results
-from uq.rows.columns import columns_of
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
 from uq.rows.workload import workload_of
-from uq.store.chunk_file import Block, joined, load, pack, row_type, save, unpack
+from uq.store.chunk_file import Block, joined, load, pack, save, unpack
 from uq.store.files import reason
 from uq.store.folder import JOURNAL, clear, folder_of
 from uq.store.journal import Journal
@@ -53,8 +52,6 @@ class DiskStore(Tally):
         self.settings: dict[str, Any] = {}
         self._study = study
         self._path = path
-        model = study.model
-        self.row_type = row_type(len(model.parameter_names), columns_of(model, study.settings))
         self._journal = Journal(self.folder / JOURNAL)
         self._records: list[RowsRecord] = []
         self._pending: list[tuple[int, NDArray[Any]]] = []

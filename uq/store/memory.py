@@ -4,11 +4,10 @@ import numpy as np
 import xarray as xr
 
 from uq.rows import results
-from uq.rows.columns import columns_of
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
 from uq.rows.workload import Workload, workload_of
-from uq.store.chunk_file import pack, row_type, unpack
+from uq.store.chunk_file import pack, unpack
 from uq.store.tally import Tally
 from uq.study.definition import Study
 
@@ -30,9 +29,7 @@ class MemoryStore(Tally):
 
     def __init__(self, workload: Workload) -> None:
         super().__init__(workload)
-        model = workload.model
-        kind = row_type(len(model.parameter_names), columns_of(model, workload.settings))
-        self._data = np.empty(self.total, kind)
+        self._data = np.empty(self.total, self.row_type)
 
     @property
     def missing(self) -> list[tuple[int, int]]:
@@ -48,7 +45,7 @@ class MemoryStore(Tally):
         rows : Rows
         chunk : Chunk
         """
-        data = pack(self._data.dtype, rows, chunk.columns, chunk.status)
+        data = pack(self.row_type, rows, chunk.columns, chunk.status)
         self._data[start : start + len(data)] = data
         self.count(*self.counts(chunk.columns, chunk.status), chunk.failures)
 

@@ -81,7 +81,7 @@ def keep(
             store.note(_run_record(study, store, again is not None))
             store.settings = dict(again or {})
             if store.found:
-                say(f"{path}: {store.found} of {store.total} rows were done already")
+                say(f"{path}: {store.found} of {store.total} rows were already done")
             for line in _other_versions(study, store):
                 say(f"{path}: {line}")
             yield store

@@ -12,6 +12,7 @@ from uq.contract import Status
 from uq.rows.columns import columns_of, failed_rows
 from uq.rows.preview import Preview
 from uq.rows.workload import Workload
+from uq.store.chunk_file import row_type
 from uq.study.definition import Study
 
 Failures = dict[str, tuple[int, str]]
@@ -40,6 +41,8 @@ class Tally:
         Status label -> rows.
     preview : Preview
         Of the rows that arrived in this process.
+    row_type : numpy.dtype
+        See `uq.store.chunk_file.row_type`.
     """
 
     def __init__(self, workload: Workload) -> None:
@@ -49,6 +52,7 @@ class Tally:
         self.failures: Failures = {}
         self.status: Counter[str] = Counter()
         self.preview = Preview(workload)
+        self.row_type = row_type(workload)
 
     def count(self, rows: int, failed: int, status: dict[str, int], failures: Failures) -> None:
         """Count some rows."""

@@ -1,1 +1,1 @@
-"""After a run: its status, more samples, failed rows again, verification."""
+"""After a run: its `status`, `verification`, and `amending`: more samples, failed rows again."""

@@ -91,21 +91,11 @@ def _under_way(
     began, since = (latest[0].time, latest[1:]) if latest[1:] else (found.run.time, latest)
     seconds = since[-1].time - began if since else 0.0
     rate = sum(record.rows for record in since) / seconds if seconds > 0 else None
-    done = sum(record.rows for record in kept)
-    left = found.run.rows - done
+    total, done = found.run.rows, sum(record.rows for record in kept)
+    failed, left = sum(record.failed for record in kept), total - done
     status: Counter[str] = Counter()
     for record in kept:
         status.update(record.status)
-    return RunStatus(
-        output=str(path),
-        state="running" if process else "interrupted",
-        rows=found.run.rows,
-        done=done,
-        failed=sum(record.failed for record in kept),
-        left=left,
-        status=dict(status),
-        rate=rate,
-        seconds_left=left / rate if rate else None,
-        process=process,
-        complete_rows=complete_rows,
-    )
+    state, seconds_left = "running" if process else "interrupted", left / rate if rate else None
+    counts = total, done, failed, left, dict(status)
+    return RunStatus(str(path), state, *counts, rate, seconds_left, process, complete_rows)

@@ -1,9 +1,9 @@
-"""What can happen to a periodic orbit as a parameter changes, by the orbits on either side.
+"""Bifurcations and grazing of a periodic orbit, identified from the orbits on either side.
 
-Folds, period doublings, Neimark-Sacker and symmetry-breaking bifurcations show in a multiplier that
-crosses the unit circle. Grazing, where a contact is born or dies, shows in the trajectory alone:
-there the Jacobian of the period map is continuous, but it leaves its value like the square root of
-the distance, so that a fold can follow at once, without any warning by the multipliers before.
+At folds, period doublings, Neimark-Sacker and symmetry-breaking bifurcations a multiplier crosses
+the unit circle. Grazing, where a contact appears or disappears, shows only in the trajectory: there
+the Jacobian of the period map is continuous, but changes like the square root of the distance, so
+that a fold can follow at once, without a warning by the multipliers before.
 """
 
 from collections.abc import Sequence
@@ -16,22 +16,22 @@ from models.beam.branches.orbits import Orbit
 Kind = Literal["fold", "period-doubling", "neimark-sacker", "symmetry-breaking", "grazing"]
 
 _MERGED = 1e-2  # difference of the sites' work, relative to their sum, next to a symmetric orbit
-_SHALLOW = 0.05  # depth of a contact just born, relative to the deepest
+_SHALLOW = 0.05  # depth of a new contact, relative to the deepest
 _REAL = 1e-9  # largest imaginary part of a real multiplier
 
 
 class Event(NamedTuple):
-    """Something that happens between two points of a branch.
+    """An event between two points of a branch.
 
     Attributes
     ----------
     kind : str
-        ``fold``, ``period-doubling``, ``neimark-sacker``, ``symmetry-breaking`` (a branch of
-        symmetric orbits parts from, or meets, those of two asymmetric ones) or ``grazing``.
+        ``fold``, ``period-doubling``, ``neimark-sacker``, ``symmetry-breaking`` (the branch of
+        symmetric orbits meets those of two asymmetric ones) or ``grazing``.
     value : float
         Of the parameter.
     before, after : Orbit
-        On either side, as near as was asked for; None where there is no orbit beyond.
+        On either side, within the tolerance; None where there is no orbit beyond.
     """
 
     kind: Kind
@@ -41,13 +41,13 @@ class Event(NamedTuple):
 
     @property
     def loses_stability(self) -> bool:
-        """Whether the orbit is stable before and not after."""
+        """Whether the orbit is stable before the event and not after it."""
         beyond = self.after is not None and self.after.is_stable
         return self.before.is_stable and not beyond
 
 
 def kind_of(before: Orbit, after: Orbit, turns: bool) -> Kind:
-    """Return what happens between two orbits that are neighbours to within rounding of the search.
+    """Return the kind of event between two orbits that enclose it within the tolerance.
 
     Parameters
     ----------
@@ -73,18 +73,18 @@ def kind_of(before: Orbit, after: Orbit, turns: bool) -> Kind:
 
 
 def cause_of_loss(events: Sequence[Event]) -> Kind | None:
-    """Return what makes an orbit lose its stability, None if it does not.
+    """Return the event by which an orbit loses its stability, None if it does not.
 
     Parameters
     ----------
     events : sequence of Event
-        On the way, in order.
+        Along the branch, in order.
 
     Returns
     -------
     str or None
-        Grazing, where the multipliers cross the unit circle while the contact that it gave birth to
-        is still shallow; else the kind of the event itself.
+        Grazing, if the multipliers cross the unit circle while the contact that appeared there is
+        still shallow; else the kind of the event itself.
     """
     grazed = False
     for event in events:

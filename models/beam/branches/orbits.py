@@ -2,7 +2,7 @@
 
 An orbit of period k is a fixed point of the stroboscopic map over k forcing periods. Its Floquet
 multipliers, the eigenvalues of the map's Jacobian, are also those of the return map at the section
-x = +x_1, v > 0 (eqs 2 to 4 of Knudsen & Massih 2002). One at modulus 1 ends its stability.
+x = +x_1, v > 0 (eqs 2 to 4 of Knudsen & Massih 2002). Stability ends where one reaches modulus 1.
 """
 
 from typing import Literal, NamedTuple
@@ -18,24 +18,24 @@ from models.numerics.newton import Linear, find_root
 
 TOLERANCE = 1e-11  # of the state after a period, relative to the state
 SYMMETRIC = 1e-6  # difference of the sites' work, relative to their sum
-_ROUNDING = 1e-7  # of a multiplier that meets another
-_SAME = 1e-6  # of states a divisor of the period apart, relative to the state
+_ROUNDING = 1e-7  # of a double multiplier
+_SAME = 1e-6  # between states a divisor of the period apart, relative to the state
 
-_CLOSE = 0.1  # how near, relative to the state, a beam that settles must have come to its orbit
-_ROUND, _ROUNDS = 128, 16  # forcing periods between two looks, and looks
+_CLOSE = 0.1  # farthest a settled beam may be from its orbit, relative to the state
+_ROUND, _ROUNDS = 128, 16  # forcing periods between two checks, and checks
 
 Outcome = Literal["converged", "stalled", "singular", "unstable", "far"]
 
 
 class Orbit(NamedTuple):
-    """A periodic orbit, or what the search for one came to.
+    """A periodic orbit, or the outcome of a failed search for one.
 
     Attributes
     ----------
     state : ndarray, shape (2 m,)
         z and dz/d(Omega t) of each mode at phase 0 of the force, in initial gaps.
     period : int
-        In forcing periods: the shortest, where the orbit was sought with a multiple of it.
+        In forcing periods: the smallest period, even if a multiple of it was requested.
     gaps : ndarray, shape (2,)
         Right and left, in initial gaps.
     multipliers : ndarray, shape (2 m,), complex
@@ -49,16 +49,17 @@ class Orbit(NamedTuple):
     contacts : ndarray of int, shape (2,)
         Contacts begun at each site in a period.
     clearance : float
-        How near to a stop's face the tip turns, on either side, in initial gaps: 0 when it grazes.
+        Smallest distance from a stop's face at which the tip turns, on either side, in initial
+        gaps: 0 at grazing.
     residual : float
-        Largest component of what the state misses itself by after the period.
+        Largest component of the state's change over the period.
     iterations : int
         Of Newton's method.
     distance : float
         From the guess to the state, relative to the state (Euclidean).
     outcome : str
-        ``converged``; ``stalled`` or ``singular`` where Newton's method failed; ``unstable`` or
-        ``far`` where it found an orbit that was not asked for.
+        ``converged``; ``stalled`` or ``singular`` if Newton's method failed; ``unstable`` or
+        ``far`` if it found an orbit other than requested.
     """
 
     state: Array
@@ -82,12 +83,12 @@ class Orbit(NamedTuple):
 
     @property
     def unstable_directions(self) -> int:
-        """How many multipliers are outside the unit circle, by more than rounding."""
+        """Number of multipliers outside the unit circle by more than rounding."""
         return int((np.abs(self.multipliers) > 1 + _ROUNDING).sum())
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether both sites take the same work."""
+        """Whether the work is equal at both sites."""
         return bool(abs(self.work[RIGHT] - self.work[LEFT]) <= SYMMETRIC * self.work.sum())
 
 
@@ -111,10 +112,10 @@ def find_orbit(
     period : int
         In forcing periods.
     stable_only : bool
-        Whether an unstable orbit is one that was not asked for.
+        Whether to reject an unstable orbit.
     farthest : float
-        Distance from the guess, relative to the orbit's state, beyond which an orbit is another
-        than the one asked for. Newton's steps are no longer.
+        Distance from the guess, relative to the orbit's state, beyond which an orbit is rejected;
+        also the longest step of Newton's method.
 
     Returns
     -------
@@ -146,7 +147,7 @@ def find_orbit(
 
 
 def settled_orbit(beam: Beam, state: Array, gaps: Array, period: int = 1) -> Orbit:
-    """Let a beam settle and find the stable orbit that it settles on.
+    """Let a beam settle and find the stable orbit that it approaches.
 
     Parameters
     ----------
@@ -181,7 +182,7 @@ def settled_orbit(beam: Beam, state: Array, gaps: Array, period: int = 1) -> Orb
 
 
 def defect(found: Passage, state: Array, by_parameter: Array | None = None) -> Linear:
-    """Return by what a state misses itself after a passage, and the derivatives of that."""
+    """Return the change of a state over a passage, and its derivatives."""
     size = len(state)
     by_state = found.tangents[:, :size] - np.eye(size)
     along = np.zeros(size) if by_parameter is None else by_parameter
@@ -189,7 +190,7 @@ def defect(found: Passage, state: Array, by_parameter: Array | None = None) -> L
 
 
 def orbit_of(found: Passage, state: Array, gaps: Array, period: int) -> Orbit:
-    """Describe the orbit that a passage over its period belongs to."""
+    """Describe the orbit of a passage over one period."""
     flow = found.tangents[:, : len(state)]
     finite = np.isfinite(flow).all()
     multipliers = np.linalg.eigvals(flow) if finite else np.full(len(state), np.nan)

@@ -1,4 +1,4 @@
-"""Branches of periodic orbits along a parameter, and what happens on the way."""
+"""Branches of periodic orbits along a parameter, with their events."""
 
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
@@ -46,12 +46,12 @@ class Branch(NamedTuple):
     orbits : tuple of Orbit
         One at each.
     events : tuple of Event
-        In the order in which they happen.
+        In order along the branch.
     end : str
-        What lost stability, where that ends the branch; ``symmetry-breaking`` where asymmetric
-        orbits become symmetric, beyond which there are only their mirror images; ``stop`` or
-        ``start`` where it left the range; ``stalled`` where no step was short enough; ``budget``
-        after `POINTS` points.
+        The event at which stability was lost, if that ends the branch; ``symmetry-breaking`` if
+        asymmetric orbits become symmetric, beyond which there are only their mirror images;
+        ``stop`` or ``start`` if it left the range; ``stalled`` if even the smallest step failed;
+        ``budget`` after `POINTS` points.
     """
 
     values: Array
@@ -63,19 +63,19 @@ class Branch(NamedTuple):
 class Path:
     """The periodic orbits of a beam in the variables of a continuation.
 
-    The parameter of the continuation runs from 0 to `size` while that of the beam goes through its
-    range, so that the one is comparable to the state.
+    The parameter of the continuation runs from 0 to `size` while that of the beam covers its range,
+    so that it is comparable to the state.
 
     Parameters
     ----------
     setting : callable
-        Gives the `Setting` at a value of the beam's parameter.
+        Returns the `Setting` at a value of the beam's parameter.
     orbit : Orbit
         At the first value.
     start, stop : float
-        Range of values; the branch sets out from the first towards the second.
+        Range of values; the branch starts at the first towards the second.
     tolerance : float
-        Within which events are located, relative to the range and to the state.
+        Of event location, relative to the range and to the state.
     """
 
     def __init__(
@@ -99,7 +99,7 @@ class Path:
         return self._start + self._slope * parameter
 
     def function(self, state: Array, parameter: float) -> Linear:
-        """Return by what a state misses itself after the period, with its derivatives."""
+        """Return the change of a state over the period, with its derivatives."""
         at = self._setting(self.value(parameter))
         found = passage(at.beam, state, at.gaps, periods=self._period)
         n = len(state)
@@ -117,7 +117,7 @@ class Path:
         return begin(self.function, state, parameter, direction, self._tolerance)
 
     def points(self, first: Point, largest: float) -> Iterator[Point]:
-        """Yield the points of the branch in its range, the last of them at its end."""
+        """Yield the points of the branch in its range, the last one at its end."""
         before = first
         steps = (_FIRST * self.size, _SMALLEST * self.size, largest * self.size)
         for point in follow(self.function, first, Steps(*steps, self._tolerance)):
@@ -134,7 +134,7 @@ class Path:
             return
 
     def events(self, a: Point, b: Point, before: Orbit, after: Orbit) -> list[Event]:
-        """Return what happens between two neighbours, in order."""
+        """Return the events between two neighbours, in order."""
         tests: list[Callable[[Point], bool]] = []
         if _turns(a, b):
             tests.append(lambda p: _turns(a, p))
@@ -162,7 +162,7 @@ def trace(path: Path, orbit: Orbit, stable_only: bool, largest: float) -> Branch
     orbit : Orbit
         At the first value.
     stable_only : bool
-        Whether the branch ends where stability is lost.
+        Whether to end the branch where stability is lost.
     largest : float
         Largest step, relative to the range and to the state.
 

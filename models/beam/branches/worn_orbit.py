@@ -1,12 +1,12 @@
-"""Wear in the limit of infinite slowness, along one stable orbit (eqs 9 to 12).
+"""Wear in the infinitely slow limit, along one stable orbit (eqs 9 to 12).
 
-With the sum s of both gap growths as control, and r_i the work-rate of a site times its share of
-the wear coefficient,
+With the sum s of both gap growths as the independent variable, and r_i the work-rate of a site
+times its share of the wear coefficient,
 
     dx_i/ds = r_i/(r_1 + r_2),    dT/ds = 1/(r_1 + r_2),
 
-which is regular also where one site is not worn at all; x_1 as control is the paper's choice. Steps
-are those of the pair of orders 3 and 2 by Bogacki and Shampine.
+which is regular even if one site does not wear; the paper uses x_1 instead. Steps are those of the
+pair of orders 3 and 2 by Bogacki and Shampine.
 """
 
 from typing import NamedTuple
@@ -23,10 +23,10 @@ from models.numerics.newton import find_root
 from models.numerics.tableaux import BOGACKI_SHAMPINE_3, ERROR_2
 
 ATTEMPTS = 5000  # steps, at most
-NEARNESS = 1e-6  # in initial gaps: how well the end and every grazing are located
+NEARNESS = 1e-6  # in initial gaps: tolerance in locating the end and every grazing
 _NEAR = 0.05  # an orbit farther from its prediction, relative to its state, is another one
 _LARGEST = 0.1  # step, relative to the gaps
-_EXTINCT = 1e-6  # of the first work-rate: what is left when the gaps approach the free amplitude
+_EXTINCT = 1e-6  # of the first work-rate: wear ends below it, near the free amplitude
 _ARRIVED = 1e-9  # in initial gaps
 _FIRST = 0.01  # step, in initial gaps
 _SAFETY, _GROWTH = 0.9, 3.0
@@ -42,15 +42,15 @@ class WornOrbit(NamedTuple):
     gaps : ndarray, shape (p, 2)
         Right and left, in initial gaps.
     time : ndarray, shape (p,)
-        Slow time since the first: forcing periods times the wear of a site of share 1 per work
-        [X0 per dimensionless work].
+        Slow time since the first point: forcing periods times the wear per work of a site of share
+        1 [X0 per dimensionless work].
     orbits : tuple of Orbit
         One at each.
     events : tuple of Event
         Their `value` is the right gap.
     end : str
-        What lost stability; ``stop`` where a gap grew as far as asked for; ``no-impact`` where
-        contact fades away and wear with it; ``budget`` after `ATTEMPTS` steps.
+        The event at which stability was lost; ``stop`` where a gap reached the value requested;
+        ``no-impact`` where contact fades away and wear with it; ``budget`` after `ATTEMPTS` steps.
     """
 
     gaps: Array
@@ -61,7 +61,7 @@ class WornOrbit(NamedTuple):
 
 
 class _Place(NamedTuple):
-    """A place on the way.
+    """A place on the path.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class _Place(NamedTuple):
     rate : float
         ds/dT.
     slope : ndarray, shape (3,)
-        Of `at`, with s.
+        d(`at`)/ds.
     """
 
     at: Array
@@ -85,13 +85,13 @@ class _Place(NamedTuple):
 
 
 class _Way:
-    """The differential equation, whose right-hand side is an orbit to be found."""
+    """The differential equation, whose right-hand side requires finding an orbit."""
 
     def __init__(self, beam: Beam, period: int, share: Array):
         self._beam, self._period, self._share = beam, period, share
 
     def place(self, at: Array, state: Array) -> _Place | None:
-        """Return the place where the orbit is near a state, None if there is none."""
+        """Return the place at these gaps, with the orbit near a state, None if there is none."""
         gaps, size = at[:2], float(np.linalg.norm(state))
         root = find_root(
             lambda y: defect(passage(self._beam, y, gaps, periods=self._period), y),
@@ -111,7 +111,7 @@ class _Way:
         return orbit_of(place.found, place.state, place.at[:2], self._period)
 
     def step(self, here: _Place, h: float) -> tuple[_Place, Array] | None:
-        """Return the place a step on and the error of `at` there, None without an orbit."""
+        """Return the place after a step and the error of `at` there, None without an orbit."""
         n = len(here.state)
         linear = here.found.tangents
         drift = np.linalg.solve(np.eye(n) - linear[:, :n], linear[:, n : n + 2])
@@ -139,7 +139,7 @@ class _Way:
 
 
 def wear_along(beam: Beam, orbit: Orbit, share: Array, stop: float, accuracy: float) -> WornOrbit:
-    """Let the gaps grow with the work of a stable orbit, as long as it exists and stays stable.
+    """Let the gaps grow with the work of a stable orbit, for as long as it exists and is stable.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def wear_along(beam: Beam, orbit: Orbit, share: Array, stop: float, accuracy: fl
     stop : float
         Gap at which the wider site ends the path, in initial gaps.
     accuracy : float
-        Error of each step: of the gaps in initial gaps, of the time relative.
+        Error of each step: of the gaps in initial gaps, of the time relative to it.
 
     Returns
     -------
@@ -204,7 +204,7 @@ def wear_along(beam: Beam, orbit: Orbit, share: Array, stop: float, accuracy: fl
 
 
 def _contacts(place: _Place) -> list[int]:
-    """Return how often each site is met."""
+    """Return the number of contacts at each site."""
     return place.found.contacts.tolist()
 
 
@@ -216,6 +216,6 @@ def _end(here: _Place, stop: float, last_rate: float) -> str:
 
 
 def _loss(before: Orbit, beyond: Orbit | None) -> Event:
-    """Return how stability is lost; without an orbit beyond, the branch turns back."""
+    """Return the event at which stability is lost: without an orbit beyond, a fold."""
     kind = kind_of(before, before, True) if beyond is None else kind_of(before, beyond, False)
     return Event(kind, float(before.gaps[RIGHT]), before, beyond)

@@ -4,7 +4,7 @@ Reading order; a module imports only those above it:
 
     phases          free flight and contact, where the stop's spring couples the modes
     within_phase    motion within one of them
-    tip_bounds      how long the tip is certain to keep its distance from a stop
+    tip_bounds      how long the tip is certain to stay away from a stop
     events          where contacts begin, turn and end
     one_beam        one beam over whole forcing periods
     tuning          one beam at any forcing frequency

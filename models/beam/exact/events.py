@@ -1,9 +1,9 @@
 """Events of the exact propagator: where contacts begin, turn and end.
 
-Each step of the search goes just as far as the next event is certain to stay away, by the bounds of
-`models.beam.exact.tip_bounds`. So it misses no event, however brief the contact, and close to one
-it converges like Newton's method. Just after leaving a site the distance is zero to rounding, but
-it is opening, and the same bounds carry the search beyond the turning point, or to it.
+Each step of the search goes only as far as the bounds of `models.beam.exact.tip_bounds` exclude an
+event. So it misses no event, however brief the contact, and close to one it converges like Newton's
+method. Just after leaving a site the distance is zero to rounding, but it is opening, and the same
+bounds carry the search beyond the turning point, or to it.
 """
 
 import math
@@ -19,7 +19,7 @@ from models.numerics.jit import kernel
 EVALUATIONS_PER_PERIOD = 100_000
 NOWHERE, RIGHT, LEFT = -1, 0, 1
 _ROUNDING = 16 * float(np.finfo(float).eps)
-_SHORTEST = 1e-14  # no step of the search is shorter: time must pass
+_SHORTEST = 1e-14  # no step of the search is shorter, so that it proceeds
 
 
 @kernel
@@ -30,7 +30,7 @@ def _is_here(distance, closing, gathering, rounding):
 
 @kernel
 def _fly(phase, weight, power, gaps, near, to_end):
-    """Fly until a site is met or the time is up; return the time, the site and the effort."""
+    """Fly until a site is met or the time ends; return the time, the site and the effort."""
     s = 0.0
     evaluations = 1
     tip = tip_after(phase, weight, len(phase.speed), s, power)
@@ -54,7 +54,7 @@ def _fly(phase, weight, power, gaps, near, to_end):
 
 @kernel
 def _touch(phase, weight, power, side, gap, near, slow, to_end):
-    """Stay in contact until it ends or the time is up.
+    """Stay in contact until it or the time ends.
 
     Return the time, whether contact has ended, the work, the deepest penetration and the effort.
     The work between two extrema of the penetration d is half the change of d^2.
@@ -97,7 +97,7 @@ def _touch(phase, weight, power, side, gap, near, slow, to_end):
 
 
 class Scratch(NamedTuple):
-    """Room for the terms of one phase: as `split`, `weigh` and `exponentials` fill it.
+    """Room for the terms of one phase, filled by `split`, `weigh` and `exponentials`.
 
     Attributes
     ----------
@@ -110,14 +110,14 @@ class Scratch(NamedTuple):
 
 
 class Event(NamedTuple):
-    """What ends a phase.
+    """The end of a phase.
 
     Attributes
     ----------
     after : float
         Time since the phase began.
     site : int
-        Where the tip is from then on: `RIGHT`, `LEFT` or `NOWHERE`.
+        In contact from then on: `RIGHT`, `LEFT` or `NOWHERE`.
     has_left : bool
         Whether the event is the end of a contact.
     work, deepest : float
@@ -149,7 +149,7 @@ def site_of(x, gaps):
 
 @kernel
 def next_event(phase, y, gaps, site, theta, to_end, room):
-    """Find what ends the phase that begins with y at force phase theta, within the time to_end."""
+    """Find the end of the phase that begins with y at force phase theta, within `to_end`."""
     coefficient, weight, power = room
     side = -1.0 if site == LEFT else 1.0
     gap = 0.0 if site == NOWHERE else gaps[site]
@@ -165,9 +165,9 @@ def next_event(phase, y, gaps, site, theta, to_end, room):
 
 @kernel
 def nearest_turn(phase, gaps, until, room):
-    """Return how near to a stop's face the tip turns in a phase, before the time `until`.
+    """Return the smallest distance from a stop's face at which the tip turns before `until`.
 
-    The room is as `next_event` leaves it.
+    `room` is as left by `next_event`.
     """
     slow = 0.0
     for k in range(len(phase.speed)):

@@ -16,7 +16,7 @@ from models.numerics.jit import kernel
 
 @kernel
 def _sample(phase, weight, power, theta, until, trace):
-    """Set what of a period's trace falls after theta, up to `until`."""
+    """Set the part of a period's trace after theta, up to `until`."""
     step = 2 * math.pi / len(trace)
     for k in range(len(trace)):
         at = min((k + 1) * step, 2 * math.pi)

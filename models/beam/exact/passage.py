@@ -1,16 +1,16 @@
-"""The variational flow of the exact propagator: an orbit, its tangents, and what it meets.
+"""The variational flow of the exact propagator: an orbit, its tangents and its contacts.
 
 Contact is elastic, so the vector field is continuous where phases meet, the saltation matrices are
-the identity, and tangents cross events as they are. Within a phase they are exact: see
-`models.beam.exact.phases.carry`. A gap shifts the rest position of a contact, so its tangent, less
-that shift, is carried like any other.
+the identity, and tangents cross events unchanged. Within a phase they are exact: see
+`models.beam.exact.within_phase.carry`. A gap shifts the rest position of a contact, so its tangent,
+less that shift, is carried like any other.
 
-The forcing frequency is hidden in the time Omega t. In real time t only the steady response Z
+The forcing frequency enters through the time Omega t. In real time t only the steady response Z
 depends on it, and with D = diag(1, Omega) the state Y = D y obeys
 
     Y(t) = gap + Re(Z exp(i theta)) + Phi(t - t_0) (Y_0 - gap - Re(Z exp(i theta_0))),
 
-which is differentiated at constant phases theta of the force.
+which is differentiated at constant phase theta of the force.
 """
 
 import math
@@ -33,12 +33,12 @@ from models.beam.exact.within_phase import carry, join
 from models.beam.structure.modal import Array
 from models.numerics.jit import kernel
 
-_SECTION = 1e-9  # a point as near to the section, relative to the gap, is on it
-IMPACTS = 64  # right-site impacts of a passage whose velocities are kept
+_SECTION = 1e-9  # distance from the section, relative to the gap, within which a point is on it
+IMPACTS = 64  # right-site impacts of a passage whose velocities are recorded, at most
 
 
 class Passage(NamedTuple):
-    """What a beam does between two phases of the force, at constant gaps.
+    """The motion of a beam between two phases of the force, at constant gaps.
 
     Attributes
     ----------
@@ -54,9 +54,10 @@ class Passage(NamedTuple):
     contacts : ndarray of int, shape (2,)
         Contacts begun at each site.
     impacts : ndarray, shape (min(contacts[0], IMPACTS),)
-        dx/d(Omega t) at the crossings of the right stop's face, inwards.
+        dx/d(Omega t) at the inward crossings of the right stop's face.
     clearance : float
-        How near to a stop's face the tip turns, on either side of it: zero when it grazes.
+        Smallest distance from a stop's face at which the tip turns, on either side of it: zero at
+        grazing.
     """
 
     state: Array
@@ -89,9 +90,9 @@ def passage(
     phase : float
         Of the force, in [0, 2 pi).
     periods : int
-        How many whole periods of the force end the passage, counted from its phase 0.
+        Whole periods of the force, counted from its phase 0, after which the passage ends.
     to_section : bool
-        Whether the passage ends already at the next crossing x = +x_1, v > 0.
+        Whether to end the passage at the next crossing x = +x_1, v > 0.
 
     Returns
     -------
@@ -172,7 +173,7 @@ def _follow(
 
 @kernel
 def _shift(sign, phase, detuning, site, theta, tangents):
-    """Add what of the tangents to gap and frequency does not decay, or take it away."""
+    """Add, or subtract, the part of the tangents to gap and frequency that does not decay."""
     size = len(tangents)
     c, e = math.cos(theta), math.sin(theta)
     for i in range(size):
@@ -184,7 +185,7 @@ def _shift(sign, phase, detuning, site, theta, tangents):
 
 @kernel
 def _stretch(phase, room, s, tangents):
-    """Take account of the real time s/Omega that a phase lasts: less at a higher frequency."""
+    """Account for the real time s/Omega of a phase, which is shorter at a higher frequency."""
     size = len(tangents)
     for k in range(2, len(phase.speed)):
         c, e = room.coefficient[0, k], room.coefficient[1, k]

@@ -4,12 +4,12 @@ With y = [z, z'] of all modes and the time s since the phase began,
 
     y(s) = Re sum_k c_k shape_k exp(rate_k s),
 
-where one term is what the gap holds (rate 0), one the response to the force (rate i), J more those
-to the lines of a random force, if there is one, and the others are the decaying modes of the phase,
-one for each conjugate pair. Damping is proportional in free flight but not in contact, whose modes
-are complex. Time is the phase of the forcing, Omega t; lengths are in initial gaps. Complex arrays
-are split into real and imaginary parts, axis 0 or 1, so that the compiler can vectorise over the
-last axis.
+where one term is the displacement due to the gap (rate 0), one the response to the force (rate i),
+J more are those to the lines of a random force, if there is one, and the others are the decaying
+modes of the phase, one for each conjugate pair. Damping is proportional in free flight but not in
+contact, whose modes are complex. Time is the phase of the forcing, Omega t; lengths are in initial
+gaps. Complex arrays are split into real and imaginary parts, axis 0 or 1, so that the compiler can
+vectorise over the last axis.
 """
 
 from typing import NamedTuple
@@ -29,16 +29,15 @@ class Phase(NamedTuple):
     Attributes
     ----------
     rate : ndarray, shape (2, T)
-        Real and imaginary part; the modes after gap, force and lines, slowest decay first.
+        Real and imaginary part; modes follow gap, force and lines, slowest decay first.
     speed : ndarray, shape (T,)
         Moduli of the rates.
     tip : ndarray, shape (2, T)
         Sum of the displacements in `shape`.
     shape : ndarray, shape (T, 2, 2 m)
-        Per unit gap, per unit phasor of the force and of each line, per unit coefficient of each
-        mode.
+        Per unit gap, phasor of the force and of each line, and coefficient of each mode.
     dual : ndarray, shape (2 m, 2, K)
-        Takes y, less what gap, force and lines hold, to the modes' coefficients.
+        Maps y, less the terms of gap, force and lines, to the modes' coefficients.
     phasor : ndarray, shape (2, J)
         Of the lines, at phase 0 of the force in the present period; see `set_lines`.
     """
@@ -81,7 +80,7 @@ def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
 
 
 def set_lines(free: Phase, contact: Phase, beams: Beams, row: int, lines: Array) -> None:
-    """Put the lines of an epoch into both phases of one beam.
+    """Set the lines of an epoch in both phases of one beam.
 
     Parameters
     ----------
@@ -110,7 +109,7 @@ def set_lines(free: Phase, contact: Phase, beams: Beams, row: int, lines: Array)
 def _free_modes(w: Array, d: Array) -> tuple[Complex, Complex, Complex]:
     """Return rates, shapes and duals of uncoupled modes.
 
-    At critical damping the two solutions of a mode coincide. Parting their rates by a fraction e
+    At critical damping the two solutions of a mode coincide. Separating their rates by a fraction e
     of w changes w^2 by e^2 and costs eps/e in rounding: both stay below 1e-10.
     """
     split = np.sqrt((d**2 - w**2).astype(complex))
@@ -148,7 +147,7 @@ def _phase(
     per_force: Complex,
     phasor: Array,
 ) -> Phase:
-    """Put the parts together, one term for each conjugate pair of modes."""
+    """Assemble a phase, with one term for each conjugate pair of modes."""
     keep = np.flatnonzero(rate.imag >= 0)
     keep = keep[np.argsort(-rate[keep].real)]
     twice = np.where(rate[keep].imag > 0, 2.0, 1.0)

@@ -1,8 +1,8 @@
 """Exact propagation from event to event: the yardstick of the beam.
 
 Free flight and contact are linear, see `models.beam.exact.phases`, and the instants between them
-are found to rounding, see `models.beam.exact.events`. One beam at a time, at some twenty times the
-cost of `models.beam.lanes`. A `models.beam.structure.propagation.Propagator`, as that is.
+are found to rounding, see `models.beam.exact.events`. One beam at a time, at about twenty times the
+cost of `models.beam.lanes`. Like that, a `models.beam.structure.propagation.Propagator`.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ CLOCK = -3
 def start(system: System, displacement: Array, velocity: Array) -> Array:
     """Return z and dz/d(Omega t) of each mode, the clock, and the work of unfinished contacts.
 
-    The shape is (n, 2 m + 3): the last two are those of the right and the left site.
+    The shape is (n, 2 m + 3); the last two are the work at the right and the left site.
     """
     n, m = system.modal.shape
     state = np.zeros((n, 2 * m + 3))
@@ -36,7 +36,7 @@ def advance(
 ) -> Record:
     """Advance n beams; gaps grow at the end of each contact.
 
-    The record is NaN from the period on in which a beam needs more than
+    The record is NaN from the period in which a beam exceeds
     `models.beam.exact.events.EVALUATIONS_PER_PERIOD`.
     """
     record = Record.empty(len(state), periods, system.steps if trace else 0)
@@ -52,7 +52,7 @@ def advance(
 def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
     """Return the derivative; zero for the clock and the work of unfinished contacts.
 
-    NaN where `advance` gives NaN.
+    NaN where `advance` returns NaN.
     """
     out = np.zeros((*state.shape, state.shape[1]))
     size = 2 * system.modal.shape[1]
@@ -65,7 +65,7 @@ def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
 def _advance_random(
     system: System, row: int, state: Array, gaps: Array, growth: Array, record: Record
 ) -> None:
-    """Advance one beam under a random load, whose phasors are set anew in each period."""
+    """Advance one beam under a random load, whose phasors are reset in each period."""
     free, contact = system.phases[row]
     load = system.beams.load[row]
     lines = np.empty((COUNT, 3))
@@ -73,7 +73,7 @@ def _advance_random(
     periods = len(record.work)
     steps = len(record.trace) // periods
     for period in range(periods):
-        if np.isnan(state[0]):  # the budget ended
+        if np.isnan(state[0]):  # out of budget
             record.work[period:] = record.strobe[period:] = np.nan
             record.trace[period * steps :] = np.nan
             return

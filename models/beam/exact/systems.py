@@ -15,7 +15,7 @@ TRACE_STEPS = 200
 
 
 class System(NamedTuple):
-    """n beams with their phases, see `models.beam.structure.propagation.System`.
+    """n beams with their phases; see `models.beam.structure.propagation.System`.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class System(NamedTuple):
     modal : ndarray, shape (n, m), complex
         Steady amplitude of each mode without contact.
     reach, beams, steps
-        As there; the steps are those of a trace.
+        As there; steps are those of a trace.
     """
 
     phases: tuple[tuple[Phase, Phase], ...]
@@ -35,17 +35,17 @@ class System(NamedTuple):
 
     @property
     def longest(self) -> int:
-        """As the budget of events allows any number: `LONGEST`."""
+        """`LONGEST`: the budget of events sets no limit."""
         return LONGEST
 
     def take(self, rows: NDArray[np.intp]) -> "System":
-        """Return the systems of some rows."""
+        """Return some of the beams."""
         chosen = tuple(self.phases[i] for i in rows)
         return System(chosen, self.modal[rows], self.reach[rows], self.beams.take(rows), self.steps)
 
 
 def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
-    """Find the modes of n beams out of contact and in contact, in one group of them all."""
+    """Find the modes of n beams out of contact and in contact, all in one group."""
     rows = np.arange(len(beams.forcing))
     each = tuple(phases(beams, i) for i in range(len(rows)))
     steps = settings.steps_per_period or TRACE_STEPS
@@ -54,5 +54,5 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
 
 
 def finer(system: System, state: Array) -> Iterator[tuple[NDArray[np.intp], System, Array]]:
-    """Return nothing: there are no steps to be made smaller."""
+    """Yield nothing: there are no steps to refine."""
     return iter(())

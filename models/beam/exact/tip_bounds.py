@@ -1,11 +1,11 @@
-"""The tip within a phase, and how long it is certain to keep its distance.
+"""The tip within a phase, and how long it is certain to stay away from a stop.
 
 Between events the beam is linear and the tip a sum of exponentials, none of which grows:
 
     x(s) = Re sum_k a_k exp(r_k s),    |d^p x/ds^p (s')| <= sum_k |a_k| |r_k|^p |exp(r_k s)|
 
-for all s' >= s. These bounds of the second and third derivative show how long the next event is
-certain to stay away.
+for all s' >= s. These bounds of the second and third derivatives give a time before which no event
+can occur.
 """
 
 import math
@@ -14,11 +14,11 @@ from typing import NamedTuple
 from models.beam.exact.within_phase import exponentials
 from models.numerics.jit import kernel
 
-_FADED = 1e-18  # a velocity too small to matter
+_FADED = 1e-18  # a negligible velocity
 
 
 class Tip(NamedTuple):
-    """The tip at one instant, and what bounds it ever after.
+    """The tip at one instant, and bounds of its motion from then on.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Tip(NamedTuple):
     bound_a, bound_j : float
         No later acceleration or jerk is larger.
     live : int
-        Number of terms that have not faded.
+        Number of terms that have not faded yet.
     """
 
     x: float
@@ -40,7 +40,7 @@ class Tip(NamedTuple):
 
 @kernel
 def weigh(phase, coefficient, weight):
-    """Set weight (9, T) to what each term brings to the tip; return the sizes of x and v.
+    """Set `weight` (9, T) to the terms' contributions to the tip; return the sizes of x and v.
 
     Rows: real and imaginary part for x, v, a, then the moduli for v, a and the jerk.
     """
@@ -86,7 +86,7 @@ def tip_at(phase, weight, s, power):
 
 @kernel
 def parabola(distance, closing, bound):
-    """First time at which distance - closing h - bound h^2/2 is zero."""
+    """Return the first time h at which distance - closing h - bound h^2/2 is zero."""
     square = closing * closing + 2 * bound * distance
     if square < 0 or (closing <= 0 and bound <= 0):
         return math.inf
@@ -97,10 +97,10 @@ def parabola(distance, closing, bound):
 
 @kernel
 def reach(distance, closing, gathering, bound, bound_next):
-    """Time for which a distance is certain to stay positive.
+    """Return a time for which a distance is certain to stay positive.
 
-    It closes with the given speed, gathering speed at a rate that never exceeds `bound` and
-    itself grows at most by `bound_next` in unit time.
+    It closes at the speed `closing`, with an acceleration `gathering` that never exceeds `bound`
+    and grows by at most `bound_next` per unit time.
     """
     distance = max(distance, 0.0)
     sure = parabola(distance, closing, bound)

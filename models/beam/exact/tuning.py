@@ -1,7 +1,7 @@
 """One beam at any forcing frequency, from modes that are found once.
 
-In real time the modes, free and in contact, do not know the force. In the time Omega t their rates
-and velocities scale with 1/Omega, and only the steady response must be found anew.
+In real time the modes, free and in contact, do not depend on the force. In the time Omega t their
+rates and velocities scale with 1/Omega, and only the steady response must be recomputed.
 """
 
 from typing import NamedTuple
@@ -14,14 +14,14 @@ from models.beam.structure.modal import Array, Beams
 
 
 class Beam(NamedTuple):
-    """One beam as the exact propagator sees it.
+    """One beam of the exact propagator.
 
     Attributes
     ----------
     free, contact : Phase
     detuning : ndarray, shape (2, 2, 2 m)
-        How the steady response to the force grows with log Omega, free and in contact, real and
-        imaginary part: displacements, and velocities at constant scale of time.
+        Derivative of the steady response to the force with respect to log Omega, free and in
+        contact, real and imaginary part: displacements, and velocities at constant time scale.
     """
 
     free: Phase
@@ -35,7 +35,7 @@ class Beam(NamedTuple):
 
 
 class Tuning:
-    """One beam, to be forced at any frequency.
+    """One beam that can be forced at any frequency.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Tuning:
 
 
 def _scaled(phase: Phase, ratio: float, steady: NDArray[np.complex128]) -> Phase:
-    """Return a phase in a time 1/ratio as long."""
+    """Return a phase in a time scaled by 1/ratio."""
     rate, shape, dual = phase.rate.copy(), phase.shape.copy(), phase.dual.copy()
     m = len(steady)
     rate[:, 2:] *= ratio

@@ -1,4 +1,4 @@
-"""Motion within one phase: its terms at the start, their sum later on, and tangents."""
+"""Motion within one phase: its terms at the start, their sum later, and tangents."""
 
 import math
 
@@ -7,10 +7,10 @@ from models.numerics.jit import kernel
 
 @kernel
 def exponentials(phase, terms, s, power):
-    """Set power (3, T) to the parts of exp(rate s) - 1 and the modulus of exp(rate s).
+    """Set `power` (3, T) to the parts of exp(rate s) - 1 and the modulus of exp(rate s).
 
-    Ten terms of the Taylor series at s/2^n, then the doubling (1 + e)^2 - 1 = e (2 + e): exact to
-    the rounding of the argument, and free of calls that would not vectorise.
+    Ten terms of the Taylor series at s/2^n, then the doubling (1 + e)^2 - 1 = e (2 + e): accurate
+    to the rounding of the argument, and free of calls that would not vectorise.
     """
     fastest = 0.0
     for k in range(terms):
@@ -37,7 +37,7 @@ def exponentials(phase, terms, s, power):
 
 @kernel
 def split(phase, y, gap, theta, coefficient):
-    """Set coefficient (2, T) to the terms of a phase that begins with y at force phase theta."""
+    """Set `coefficient` (2, T) to the terms of a phase that begins with y at force phase theta."""
     coefficient[:] = 0.0
     for j in range(phase.phasor.shape[1]):
         angle = theta * phase.speed[2 + j]
@@ -82,7 +82,7 @@ def carry(phase, power, tangents, modal):
     for i in range(size):
         for k in range(2, terms):
             a, b = phase.dual[i, 0, k], phase.dual[i, 1, k]
-            if a == 0 and b == 0:  # modes are uncoupled in free flight
+            if a == 0 and b == 0:  # modes are not coupled in free flight
                 continue
             for j in range(columns):
                 modal[0, k, j] += a * tangents[i, j]

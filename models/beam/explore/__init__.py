@@ -1,18 +1,18 @@
-"""What notebooks draw of the beam: histories, portraits, diagrams and branches, labelled.
+"""Labelled data of the beam for notebooks: histories, phase portraits, diagrams and branches.
 
 Reading order; a module imports only those above it:
 
-    sweeps          settled responses of many beams, alone or one after the other
-    labels          units and words of what is returned
+    sweeps          settled responses of many beams, independent or in a sweep
+    labels          units and names of the results
     settled         work-rates and phase portraits at constant gaps
     diagram         bifurcation diagrams over the forcing frequency
     history         one life: gaps, work-rates and regimes
     lyapunov        the largest Lyapunov exponent
-    orbit_labels    units and words of periodic orbits
+    orbit_labels    units and names of periodic orbits
     branches        periodic orbits followed over frequency, gap and wear
 
-Among them are the Figures 3 to 6 of Knudsen & Massih 2002 and the bifurcation diagram of their
-journal paper. Basins of attraction, of this model or any other, come from ``uq.basins``.
+They include Figures 3 to 6 of Knudsen & Massih 2002 and the bifurcation diagram of their journal
+paper. Basins of attraction, of this model or any other, come from ``uq.basins``.
 """
 
 from models.beam.explore.branches import continue_orbit, follow_wear

@@ -43,25 +43,25 @@ def continue_orbit(
     params : Params
         Each field a float.
     settings : Settings, optional
-        Its `elements` and `modes` count.
+        Only `elements` and `modes` are used.
     parameter : {"forcing_frequency", "gap"}
-        Under ``gap`` both gaps grow in proportion, everything else being held.
+        With ``gap`` both gaps grow in proportion, everything else being constant.
     stop : float
-        Value of the parameter where the branch ends [Hz or m]; it also ends where it comes back to
-        its start.
+        Value of the parameter where the branch ends [Hz or m]; it also ends if it returns to its
+        start.
     start : float, optional
-        Value where it begins; that of `params` unless given.
+        Value where it begins; by default that of `params`.
     period : int
         Of the orbit, in periods of the force.
     state : array_like, shape (2 m,), optional
-        A guess of the orbit at `start`, as ``state`` of the result; unless given, a stable orbit
-        is sought by letting the beam settle from the initial state in `params`.
+        A guess of the orbit at `start`, such as a ``state`` of a result; by default a stable orbit
+        is found by letting the beam settle from the initial state in `params`.
     stable_only : bool
-        Whether the branch ends where stability is lost.
+        Whether to end the branch where stability is lost.
     largest_step : float
-        Of the range and of the state, both relative.
+        Relative to the range and to the state.
     tolerance : float
-        Within which events are located, relative to the same.
+        Of event location, relative to the same.
 
     Returns
     -------
@@ -70,12 +70,12 @@ def continue_orbit(
         ``dimensionless_work_rate`` <u_i> (eqs 6 to 8), the mean of k_c X0^2 w0;
         ``peak_contact_force`` [N]; ``impact_velocity`` [m s-1] at x_c = +x_1, v > 0, along
         ``impact``; ``multiplier_real`` and ``multiplier_imag``, the largest modulus first;
-        ``stable``; ``clearance`` [m], how near to a stop's face the tip turns; ``state``. Along
-        ``event``: ``event`` (fold, period-doubling, neimark-sacker, symmetry-breaking, grazing),
-        ``event_value`` of the parameter, ``event_gaps`` [m], ``event_stable_before`` and
-        ``event_stable_after``, ``event_multiplier``, the largest modulus before. Attribute ``end``:
-        the cause of lost stability, or ``stop``, ``start``, ``stalled``, ``budget``, see
-        `models.beam.branches.path.Branch`.
+        ``stable``; ``clearance`` [m], the smallest distance from a stop's face at which the tip
+        turns; ``state``. Along ``event``: ``event`` (fold, period-doubling, neimark-sacker,
+        symmetry-breaking, grazing), ``event_value`` of the parameter, ``event_gaps`` [m],
+        ``event_stable_before`` and ``event_stable_after``, ``event_multiplier``, the largest
+        modulus before. Attribute ``end``: the cause of lost stability, or ``stop``, ``start``,
+        ``stalled``, ``budget``; see `models.beam.branches.path.Branch`.
 
     Raises
     ------
@@ -134,20 +134,20 @@ def follow_wear(
     params : Params
         Each field a float.
     settings : Settings, optional
-        Its `elements` and `modes` count.
+        Only `elements` and `modes` are used.
     stop : float
-        Gap of the wider site where the path ends, if stability lasts so long [m].
+        Gap of the wider site where the path ends, if still stable [m].
     period : int
         Of the orbit, in periods of the force.
     state : array_like, shape (2 m,), optional
         As in `continue_orbit`.
     accuracy : float
-        Error of a step, of the gaps in initial gaps and of the time relative.
+        Error of a step, of the gaps in initial gaps and of the time relative to it.
 
     Returns
     -------
     xarray.Dataset
-        As that of `continue_orbit`, with ``time`` [s] and ``dimensionless_time`` T in place of the
+        As from `continue_orbit`, with ``time`` [s] and ``dimensionless_time`` T in place of the
         parameter. ``event_value`` is the right gap [m]. Attribute ``end``: the cause of lost
         stability, ``stop``, or ``no-impact`` where contact fades away.
 
@@ -187,7 +187,7 @@ def _tuning(params: Params, settings: Settings) -> Tuning:
 
 
 def _first_state(params: Params, tuning: Tuning, state: ArrayLike | None) -> Array:
-    """Return the state given, or that of the parameters."""
+    """Return the given state, or that of the parameters."""
     if state is not None:
         given = np.asarray(state, float)
         if given.shape != (tuning.size,):

@@ -21,30 +21,30 @@ def bifurcation_diagram(
 ) -> xr.Dataset:
     """Return the velocities with which the tip meets the right stop, against the frequency.
 
-    They are the points of the settled response in the Poincare section x = x_1, v > 0 (eq 2),
-    interpolated between the propagator's samples: to 0.3 % by the fast one's own steps, to 0.05 %
-    by the exact one, as measured on periodic responses. A contact briefer than a sample may be
-    missing.
+    They are the points of the settled response in the Poincaré section x = x_1, v > 0 (eq 2),
+    interpolated between the propagator's samples: to 0.3 % at the steps chosen by the fast one, to
+    0.05 % for the exact one, as measured on periodic responses. A contact briefer than a sample may
+    be missed.
 
     Parameters
     ----------
     params : Params
-        Each field a float; the forcing frequency does not count.
+        Each field a float; the forcing frequency is not used.
     settings : Settings
     forcing_frequency : array_like, shape (n,)
-        [Hz], in the order in which it is swept up.
+        [Hz], in the order of an upward sweep.
     periods : int
-        Forcing periods that are recorded.
+        Number of forcing periods recorded.
     sweep : {"none", "up", "down"}
-        Whether each frequency is met in the initial state of `params`, many at once, or, by the
-        exact propagator, in the state left by the frequency before it or after it.
+        Start each frequency from the initial state of `params`, many at once, or, with the exact
+        propagator, from the final state of the frequency before it or after it.
 
     Returns
     -------
     xarray.Dataset
         Along ``forcing_frequency``: ``frequency_ratio`` (omega), ``work_rate`` of each ``site``,
-        ``regime`` and ``period``; and along ``impact`` too, NaN beyond the last one,
-        ``impact_velocity`` and the same dimensionless.
+        ``regime`` and ``period``; along ``impact``, too, NaN beyond the last one,
+        ``impact_velocity`` and ``dimensionless_impact_velocity``.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def bifurcation_diagram(
 def upcrossing_rates(trace: Array, level: float) -> Array:
     """Return the slopes, per sample, with which a trace rises through a level.
 
-    By the cubic through the two samples before and the two after.
+    From the cubic through the two samples before and the two after.
     """
     below = trace[1:-2] < level
     k = 1 + np.flatnonzero(below & (trace[2:-1] >= level))

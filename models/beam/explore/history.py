@@ -1,4 +1,4 @@
-"""One life of a beam: its gaps, work-rates and regimes while it wears."""
+"""One life of a beam: its gaps, work-rates and regimes during wear."""
 
 import numpy as np
 import xarray as xr
@@ -18,8 +18,8 @@ def wear_history(
 ) -> xr.Dataset:
     """Follow one beam while its gaps wear to the last of the settings' depths.
 
-    This is one accelerated life. Its times come near those of infinitely slow wear as `periods`
-    grow; the model's outputs extrapolate them.
+    This is one accelerated life. Its times approach those of infinitely slow wear as `periods`
+    grows; the model's outputs are extrapolated to this limit.
 
     Parameters
     ----------
@@ -29,28 +29,27 @@ def wear_history(
     periods : int
         Forcing periods in which the site that wears faster reaches the last depth.
     looks : int
-        Into which these periods are divided, at least 32 periods in each. A regime counts if it
-        lasts a tenth of them.
+        Number of intervals into which these periods are divided, of at least 32 periods each. A
+        regime counts if it lasts a tenth of them.
 
     Returns
     -------
     xarray.Dataset
         Along ``look``, the first of which is the settled response at the initial gaps: ``time``,
-        ``dimensionless_time`` (T), ``gap_ratio`` and ``regime``; and for each ``site`` the
-        ``gap``, the ``work_rate`` and its dimensionless ``mean_work`` (<u_i>). Along
-        ``regime_change`` what happened on the way: ``change_time``, ``change_gap``,
-        ``change_from`` and ``change_to``.
+        ``dimensionless_time`` (T), ``gap_ratio`` and ``regime``; and for each ``site`` the ``gap``,
+        the ``work_rate`` and its dimensionless ``mean_work`` (<u_i>). Along ``regime_change``:
+        ``change_time``, ``change_gap``, ``change_from`` and ``change_to``.
 
     Raises
     ------
     ValueError
-        If a look would be too short to tell a regime, or the load is random.
+        If a look would be too short to identify a regime, or the load is random.
     """
     check_counts(periods=periods, looks=looks)
     if periods < looks * WINDOW:
         raise ValueError(
             f"{looks} looks of {WINDOW} periods need more than {periods} periods: the regime "
-            "could not be told"
+            "could not be identified"
         )
     p = equal_rows(params, 1)
     propagator, system = one_system(beams(p, settings), settings)

@@ -1,4 +1,4 @@
-"""Units and words of what `models.beam.explore` returns."""
+"""Units and names of the results of `models.beam.explore`."""
 
 from typing import Any
 
@@ -19,24 +19,24 @@ _ABOUT = {
     "gap_ratio": ("1", "left gap over right gap, x_2/x_1"),
     "work_rate": ("W", "impact work-rate"),
     "mean_work": ("1", "<u_i>: work-rate over k_c X0^2 w0"),
-    "regime": ("1", "kind of response"),
+    "regime": ("1", "type of response"),
     "period": ("1", "period of the response in forcing periods, 0 if aperiodic"),
-    "change_time": ("s", "time at which the regime has changed"),
-    "change_gap": ("m", "gap at which the regime has changed"),
+    "change_time": ("s", "time at which the regime changes"),
+    "change_gap": ("m", "gap at which the regime changes"),
     "change_from": ("1", "regime before the change"),
     "change_to": ("1", "regime after the change"),
     "displacement": ("m", "tip displacement"),
     "velocity": ("m s-1", "tip velocity"),
     "phase": ("1", "forcing periods"),
     "forcing_frequency": ("Hz", "frequency of the force"),
-    "frequency_ratio": ("1", "omega: forcing frequency over the fundamental one"),
-    "impact_velocity": ("m s-1", "tip velocity on meeting the right stop"),
-    "dimensionless_impact_velocity": ("1", "tip velocity on meeting the right stop, over X0 w0"),
+    "frequency_ratio": ("1", "omega: forcing frequency over fundamental frequency"),
+    "impact_velocity": ("m s-1", "tip velocity at impact on the right stop"),
+    "dimensionless_impact_velocity": ("1", "tip velocity at impact on the right stop, over X0 w0"),
 }
 
 
 def check_counts(**counts: int) -> None:
-    """Refuse what is no positive whole number."""
+    """Refuse counts that are not positive integers."""
     for name, count in counts.items():
         if not isinstance(count, int) or count < 1:
             raise ValueError(f"{name} must be a positive whole number, not {count!r}")
@@ -45,12 +45,12 @@ def check_counts(**counts: int) -> None:
 def equal_rows(params: Params, n: int) -> Rows:
     """Return the parameters of n equal beams, each field of shape (n,)."""
     if params.random_force_level > 0:
-        raise ValueError("these are pictures of the harmonic force alone: random_force_level > 0")
+        raise ValueError("random_force_level must be 0: these are results of the harmonic force")
     return Params._make(np.full(n, float(value)) for value in params)
 
 
 def blank(n: int) -> tuple[Array, NDArray[np.int8], Array]:
-    """Return work, regime and period of n beams that no propagator could follow."""
+    """Return the work, regime and period of n beams that no propagator could follow."""
     return np.full((n, 2), np.nan), np.full(n, -1, np.int8), np.full(n, np.nan)
 
 

@@ -1,4 +1,4 @@
-"""The largest Lyapunov exponent of a response: how fast two neighbouring ones part."""
+"""The largest Lyapunov exponent of a response: how fast neighbouring ones diverge."""
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from models.numerics.batch_means import mean_and_error
 from models.numerics.exponents import grown
 
 BATCHES = 32
-_TURN = 64  # periods in which a tangent turns into the direction that grows most
-_STRETCH = 4  # periods between two looks at a tangent's size
+_TURN = 64  # periods in which a tangent turns into the direction of fastest growth
+_STRETCH = 4  # periods between two rescalings of a tangent
 
 
 def lyapunov_exponent(
@@ -42,11 +42,11 @@ def lyapunov_exponent(
         If the load is random, the propagator exact, or contact too stiff for the fast one.
     """
     if params.random_force_level > 0:
-        raise ValueError("what a random load does has no Lyapunov exponent")
+        raise ValueError("a response to a random load has no Lyapunov exponent")
     p: Rows = Params._make(np.full(1, float(value)) for value in params)
     _, system = one_system(beams(p, settings), settings)
     if not isinstance(system, System):
-        raise ValueError("the fast propagator is needed, and contact that its steps can follow")
+        raise ValueError("this requires the fast propagator, and contact that its steps can follow")
     state = initial_state(lanes, system, p)
     gaps = initial_gaps(p)
     settle(lanes, system, state, gaps)
@@ -65,7 +65,7 @@ def exponents(
     Parameters
     ----------
     system : System
-        What `models.beam.lanes` prepared.
+        Prepared by `models.beam.lanes`.
     state : ndarray, shape (n, 2 m + 4)
         Settled; updated in place.
     gaps : ndarray, shape (n, 2)
@@ -79,7 +79,7 @@ def exponents(
         [s-1], and the standard error of the time mean.
     """
     n, size = state.shape
-    tangents = np.ones((n, size - 1, 1)) / size  # the clock has none
+    tangents = np.ones((n, size - 1, 1)) / size  # the clock has no tangent
     gaps = gaps.copy()
     still = np.zeros_like(gaps)
 

@@ -1,4 +1,4 @@
-"""Units and words of periodic orbits along a branch, and of what happens on the way."""
+"""Units and names of periodic orbits along a branch, and of the events between them."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -17,7 +17,7 @@ from models.beam.units import joule, newton
 def labelled_orbits(
     params: Params, tuning: Tuning, orbits: Sequence[Orbit], frequency: Array
 ) -> xr.Dataset:
-    """Give the orbits of a branch their units."""
+    """Return the orbits of a branch with their units."""
     x0 = params.initial_gap
     work = np.array([orbit.work for orbit in orbits])
     impacts = np.full((len(orbits), max(len(o.impact_velocities) for o in orbits)), np.nan)
@@ -45,16 +45,16 @@ def labelled_orbits(
             ("point", "impact"),
             x0 * 2 * np.pi * f * impacts,
             "m s-1",
-            "velocity at which the right stop is met",
+            "tip velocity at impact on the right stop",
         ),
         "multiplier_real": (multiplied, multipliers.real, "1", "real part of the multipliers"),
         "multiplier_imag": (multiplied, multipliers.imag, "1", "imaginary part of the multipliers"),
-        "stable": ("point", np.array([o.is_stable for o in orbits]), "1", "whether it is stable"),
+        "stable": ("point", np.array([o.is_stable for o in orbits]), "1", "whether stable"),
         "clearance": (
             "point",
             x0 * np.array([o.clearance for o in orbits]),
             "m",
-            "how near to a stop's face the tip turns",
+            "smallest distance from a stop's face at which the tip turns",
         ),
         "state": (
             ("point", "component"),
@@ -74,7 +74,7 @@ def labelled_orbits(
 
 
 def labelled_events(params: Params, events: Sequence[Event], about: dict[str, str]) -> xr.Dataset:
-    """Give what happened on a branch its units."""
+    """Return the events on a branch with their units."""
     before = [event.before for event in events]
     after = [event.after is not None and event.after.is_stable for event in events]
     gaps = params.initial_gap * np.array([o.gaps for o in before]).reshape(-1, 2)
@@ -84,7 +84,7 @@ def labelled_events(params: Params, events: Sequence[Event], about: dict[str, st
         {
             "event_value": ("event", np.array([event.value for event in events], float), about),
             "event_gaps": (("event", "site"), gaps, named("m", "gap of each site at the event")),
-            "event_multiplier": ("event", multipliers, named("1", "largest multiplier before")),
+            "event_multiplier": ("event", multipliers, named("1", "largest multiplier before it")),
             "event_stable_before": ("event", stable_before, named("1", "stable before it")),
             "event_stable_after": ("event", np.array(after, bool), named("1", "stable after it")),
         },

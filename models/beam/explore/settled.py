@@ -1,4 +1,4 @@
-"""Settled responses at gaps that do not wear: work-rates and phase portraits."""
+"""Settled responses at constant gaps: work-rates and phase portraits."""
 
 import numpy as np
 import xarray as xr
@@ -14,18 +14,18 @@ from models.beam.units import watt
 def work_rate_against_gap(
     params: Params, settings: Settings, gaps: ArrayLike, sweep: Sweep = "none"
 ) -> xr.Dataset:
-    """Return the work-rates of the settled response at gaps that do not wear.
+    """Return the work-rates of the settled response at constant gaps.
 
     Parameters
     ----------
     params : Params
-        Each field a float; the gap asymmetry does not count.
+        Each field a float; the gap asymmetry is not used.
     settings : Settings
     gaps : array_like, shape (n,) or (n, 2)
-        Of both sites, or of the right and the left one [m].
+        Of both sites, or of the right and the left [m].
     sweep : {"none", "up", "down"}
-        Whether each gap is met in the initial state of `params`, or, by the exact propagator, in
-        the state left by the one before it or after it.
+        Start each gap from the initial state of `params`, or, with the exact propagator, from the
+        final state of the one before it or after it.
 
     Returns
     -------
@@ -69,14 +69,14 @@ def phase_portrait(
     Parameters
     ----------
     params : Params
-        Each field a float; the gap asymmetry does not count.
+        Each field a float; the gap asymmetry is not used.
     settings : Settings
-        Its `steps_per_period` are the points of a portrait in a period.
+        Its `steps_per_period` is the number of points per period.
     gaps, sweep
-        As in `work_rate_against_gap`. To look at a branch far from where it begins, sweep through
-        the gaps on the way.
+        As in `work_rate_against_gap`. To follow a branch far from its beginning, sweep through the
+        gaps in between.
     periods : int
-        Forcing periods that are shown.
+        Number of forcing periods.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def phase_portrait(
         steps = record.trace.shape[1] // (periods + 2)
         if not x.size:
             x, v = np.full((2, len(apart), periods * steps), np.nan)
-        # The periods at the ends are there for the sake of the differences.
+        # The periods at both ends are only for the differences.
         kept = slice(steps - 1, -steps - 1)
         rate = np.gradient(record.trace, 1 / (params.forcing_frequency * steps), axis=1)
         x[rows], v[rows] = x0 * record.trace[:, kept], x0 * rate[:, kept]

@@ -1,4 +1,4 @@
-"""Settled responses of many beams, each from its own start or from its neighbour's response."""
+"""Settled responses of many beams, each from its own start or from its neighbour's final state."""
 
 from collections.abc import Iterator
 from typing import Any, Literal
@@ -21,12 +21,12 @@ Settled = tuple[NDArray[np.intp], Response, Record]
 def settled_rows(
     p: Rows, gaps: Array, settings: Settings, sweep: Sweep, periods: int
 ) -> Iterator[Settled]:
-    """Settle n beams at their gaps [X0], and trace them over some periods more.
+    """Settle n beams at their gaps [X0], and trace them over further periods.
 
     Yields
     ------
     rows : ndarray of int
-        Which of the n beams these are.
+        Indices of these among the n beams.
     settled : Response
     record : Record
         Of the further periods.
@@ -34,7 +34,7 @@ def settled_rows(
     if sweep not in ("none", "up", "down"):
         raise ValueError(f"sweep must be 'none', 'up' or 'down', not {sweep!r}")
     if sweep != "none" and settings.residual_flexibility:
-        raise ValueError("a sweep is by the exact propagator, without residual_flexibility")
+        raise ValueError("a sweep requires the exact propagator, without residual_flexibility")
     b = beams(p, settings)
     propagator = PROPAGATORS[settings.propagator] if sweep == "none" else exact
 
@@ -54,9 +54,9 @@ def settled_rows(
         for row in order:
             one = np.array([row])
             if np.isfinite(now).all():
-                # The state holds velocities per radian of the force.
+                # The state contains velocities per radian of the force.
                 now[:, m : 2 * m] *= b.forcing[before] / b.forcing[row]
-            else:  # the neighbour was lost
+            else:  # the neighbour could not be followed
                 now = state[one]
             yield one, *look(system.take(one), now, gaps[one])
             before = row

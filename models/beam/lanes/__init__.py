@@ -1,13 +1,13 @@
-"""The fast propagator: sixteen beams abreast, in fixed steps.
+"""The fast propagator: sixteen beams at a time, in fixed steps.
 
 Reading order; a module imports only those above it:
 
     recurrence    one mode over one step
-    systems       beams that share the size of the step
-    states        where they start
+    systems       beams that share a step size
+    states        initial states, and states in half steps
     lines         the random load at each step
     steps         the hot loop: modes, contact force, impact work
-    tangents      what a small change of the state grows to
+    tangents      the tangent flow along a known trajectory
     propagator    many beams over whole forcing periods
 """
 

@@ -1,12 +1,12 @@
-"""The random load of the fast propagator: what its lines add to the tip at each step.
+"""The random load of the fast propagator: the contribution of its lines to the tip at each step.
 
-A line of amplitude a, at the phase theta as a period begins and turning by delta in a step, is
-summed by a recurrence that stays accurate however small delta is,
+A line of amplitude a, of phase theta at the start of a period and turning by delta per step, is
+summed by a recurrence that is accurate for arbitrarily small delta,
 
     u <- u + e,    e <- e - 4 sin^2(delta/2) u,    u = a cos(theta),  e = first change of u,
 
-anew from the exact phase in each period. Where an epoch ends the steady response jumps, and the
-modes take the opposite jump, so that the beam moves on as it was.
+restarted from the exact phase in each period. At the end of an epoch the steady response jumps, and
+the modes take the opposite jump, so that the motion of the beam is continuous.
 """
 
 from typing import NamedTuple
@@ -24,11 +24,11 @@ from models.numerics.sincos import cosine_sine
 
 _LINE = 8  # slots of a line:
 _U, _E, _SLOW, _SIZE, _SINE, _COSINE, _SPEED, _TURN = range(_LINE)
-_STEPS = 4  # taken together, as are four lines
+_STEPS = 4  # at a time, and four lines at a time
 
 
 class Load(NamedTuple):
-    """The random load of n beams, and what responds to it."""
+    """The random load of n beams, and the oscillators that respond to it."""
 
     load: NDArray[np.void]
     oscillators: Array
@@ -42,12 +42,12 @@ class Lines(NamedTuple):
     Attributes
     ----------
     slots : ndarray, shape (COUNT * 8 * LANES,)
-        u, e, 4 sin^2(delta/2), a, sin(delta/2), cos(delta/2), turns in a period, and the turn at
-        which the epoch begins, of each line.
+        u, e, 4 sin^2(delta/2), a, sin(delta/2), cos(delta/2), turns per period, and the turn at the
+        start of the epoch, of each line.
     total : ndarray, shape (steps * LANES,)
-        Their sum at each step of a period; some steps more.
+        Their sum at each step of a period, and a few steps more.
     drawn : ndarray, shape (COUNT, 3)
-        Those of one lane.
+        The lines of one lane.
     modes : ndarray, shape (2, all modes)
         Steady response of one lane.
     """
@@ -73,7 +73,7 @@ class Lines(NamedTuple):
 
 @kernel
 def draw_lines(load, state, first, steps, lines):
-    """Bring the lines of up to LANES rows from `first` on into lanes; return whether there are any.
+    """Draw the lines of up to LANES rows from `first` on; return whether there are any.
 
     Spare lanes repeat the last row.
     """
@@ -111,7 +111,7 @@ def _draw_lane(load, n, epoch, steps, lines, lane):
 
 @kernel
 def redraw_lines(load, state, first, period, steps, lines, w, stride):
-    """Redraw the lines of the lanes whose epoch ends as a period of the call begins.
+    """Redraw the lines of the lanes whose epoch ends at the start of a period of the call.
 
     `w` holds y and r of each mode, `stride` slots apart from those of the next one.
     """
@@ -141,7 +141,7 @@ def redraw_lines(load, state, first, period, steps, lines, w, stride):
 
 @kernel
 def sum_lines(load, state, first, period, lines):
-    """Sum the lines at each step of the call's given period."""
+    """Sum the lines at each step of a period of the call."""
     slots, total, _, _ = lines
     last = state.shape[0] - 1
     since = np.empty(LANES)
@@ -169,7 +169,7 @@ def sum_lines(load, state, first, period, lines):
 
 @inlined
 def _turn(u, e, slow):
-    """Turn a line by four steps."""
+    """Advance a line by four steps."""
     u0 = u + e
     e = fma(-slow, u0, e)
     u1 = u0 + e
@@ -183,7 +183,7 @@ def _turn(u, e, slow):
 
 @kernel
 def _turn_four(slots, total):
-    """Add what four lines do in four steps."""
+    """Add the contributions of four lines to four steps."""
     for lane in range(LANES):
         k = lane
         a0, a1, a2, a3, e = _turn(slots[k], slots[k + LANES], slots[k + 2 * LANES])

@@ -1,4 +1,4 @@
-"""The fast propagator: many beams abreast over whole forcing periods, and their tangents."""
+"""The fast propagator: many beams at a time over whole forcing periods, and their tangents."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from models.numerics.elementary import cos, sin
 
 CLOCK = -1
 
-_NOWHERE = 1e6  # displacement, over the gap and what the tip reaches without contact
+_NOWHERE = 1e6  # displacement, relative to the gap plus the reach of the tip without contact
 
 
 def advance(
@@ -20,7 +20,7 @@ def advance(
 ) -> Record:
     """Advance n beams; gaps grow at the end of each period.
 
-    Record and state are NaN of a beam that is thrown out of all bounds.
+    Record and state are NaN for a beam whose motion diverges.
     """
     n, _, m = system.modes.shape
     beams = system.beams
@@ -40,7 +40,7 @@ def advance(
         Lines.room(bool(beams.is_random.any()), system.steps, system.oscillators.shape[2]),
         tuple(record),
     )
-    # Steps too long for a beam that long contacts make ring feed it: that is no motion of the beam.
+    # Steps too long for the ringing of a long contact amplify it: this is no motion of the beam.
     lost = np.flatnonzero(~(np.abs(state[:, 2 * m + 1]) <= _NOWHERE * (1 + system.reach)))
     for field in (state, *record):
         field[lost] = np.nan
@@ -48,9 +48,9 @@ def advance(
 
 
 def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
-    """Return the derivative, zero for the clock.
+    """Return the derivative; zero for the clock.
 
-    It is that of the scheme itself, not of the beam that the scheme approximates.
+    It is that of the numerical scheme, not of the beam that it approximates.
     """
     record = advance(system, state.copy(), gaps.copy(), np.zeros_like(gaps), periods, trace=True)
     n, size = state.shape

@@ -1,4 +1,4 @@
-"""One mode over one step, exact under a force that is linear within it."""
+"""One mode over one step, exact for a force that is linear within it."""
 
 import numpy as np
 
@@ -9,8 +9,8 @@ from models.numerics.jit import kernel
 def mode_step(w, d, h):
     """Propagate z'' + 2 d z' + w^2 z = g over h, with g linear from g0 to g1.
 
-    Returns P11, P12, P21, P22, A1, A2, B1, B2 of s1 = P s0 + A g0 + B g1 for s = (z, z'/w): a
-    Taylor series over a small fraction of h, then doubled, accurate for any damping.
+    Return P11, P12, P21, P22, A1, A2, B1, B2 of s1 = P s0 + A g0 + B g1 for s = (z, z'/w): a Taylor
+    series over a small fraction of h, then repeated doubling, accurate for any damping.
     """
     small = h
     doublings = 0

@@ -1,4 +1,4 @@
-"""The state of beams in lanes: at the start, and the same in steps of half the size."""
+"""The state of beams in lanes: at the start, and converted to half steps."""
 
 from collections.abc import Iterator
 
@@ -27,8 +27,8 @@ def _open(load, forcing, oscillators, opening):
 def start(system: System, displacement: Array, velocity: Array) -> Array:
     """Return y and r of each mode, penetration, two displacements a step apart, and the clock.
 
-    The shape is (n, 2 m + 4), the newer displacement first. A contact that exists at the start acts
-    from the end of the first step.
+    The shape is (n, 2 m + 4), the newer displacement first. A contact present at the start acts
+    from the end of the first step on.
     """
     n, _, m = system.modes.shape
     to_displacement, to_velocity, moving = system.begin.transpose(1, 0, 2)
@@ -51,7 +51,7 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
 
 
 def finer(system: System, state: Array) -> Iterator[tuple[NDArray[np.intp], System, Array]]:
-    """Halve the steps; the displacement a step before is interpolated, with the tip's velocity."""
+    """Halve the steps; the displacement half a step before is interpolated."""
     for rows, fine in systems(system.beams, 2 * system.steps):
         yield rows, fine, _in_half_steps(system.take(rows), state[rows], fine)
 
@@ -68,7 +68,7 @@ def _in_half_steps(system: System, state: Array, fine: System) -> Array:
 
 @kernel
 def _refine(frequency, decay, gain, moving, step, velocity, state, out):
-    """Set out to state in half steps; velocity is that of the tip without contact."""
+    """Set `out` to the state in half steps; `velocity` is that of the tip without contact."""
     m, size = (state.shape[1] - 4) // 2, (out.shape[1] - 4) // 2
     for n in range(len(state)):
         p, x1, x2 = state[n, 2 * m], state[n, 2 * m + 1], state[n, 2 * m + 2]

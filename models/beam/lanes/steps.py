@@ -1,21 +1,20 @@
-"""The hot loop: sixteen beams abreast, fixed steps, exact between the samples of the force.
+"""The hot loop: sixteen beams at a time, fixed steps, exact between the samples of the force.
 
 Each mode is propagated exactly under a contact force that is linear within a step; the harmonic
-force enters through the exact steady response, so modes carry only what contact does to them, and
-so does a random one, see `models.beam.lanes.lines`. A damped mode under a sampled force obeys a
-two-term recurrence, kept here in transposed direct form:
+force enters through the exact steady response, so modes carry only the effect of contact, and so
+does a random force, see `models.beam.lanes.lines`. A damped mode under a sampled force obeys a
+two-term recurrence, here in transposed direct form:
 
     y_i <- t_i y_i + r_i + alpha_i p,    r_i <- beta_i p - d_i y_i,
 
-where t_i and d_i are trace and determinant of its propagator. The new penetration enters at once
-(sigma = sum of the modes' share of it), so that x = X + sigma p(x) is solved for x without
-iteration: p is piecewise linear. Everything is free of branches, so lanes never diverge, and a
-row's bits do not depend on its neighbours.
+where t_i and d_i are trace and determinant of its propagator. The new penetration acts within the
+same step (sigma = sum of the modes' share of it), so x = X + sigma p(x) is solved for x, without
+iteration because p is piecewise linear. There are no branches, so lanes never diverge, and a row's
+bits do not depend on its neighbours.
 
-A force that is linear within a step misses part of the impulse where it is curved, and where it
-has its kink at the beginning and the end of a contact. Both parts are known to leading order and
-are added to the sampled penetration; measured, that makes the error of a work-rate four to ten
-times smaller.
+A force that is linear within a step misses part of the impulse where it is curved, and at its kinks
+at the beginning and the end of a contact. Both parts are known to leading order and are added to
+the sampled penetration; this reduces the measured error of a work-rate by a factor of four to ten.
 """
 
 import numpy as np
@@ -29,20 +28,20 @@ from models.numerics.jit import kernel
 _NOTHING = 1e-150  # of the gap
 _UNROLL = 4  # modes in the straight-line body of the inner loop
 _MODE = 6  # slots of a mode: y, r, t, d, alpha, beta
-# slots of a lane beside its modes
+# slots of a lane besides its modes
 _P, _RIGHT, _LEFT, _RE, _IM, _STIFF, _SIGMA, _X1, _X2 = range(9)
 _WORK_R, _WORK_L, _PEAK_R, _PEAK_L, _SUM, _RANDOM, _HEAD = range(9, 16)
 
 
 def room(modes: int) -> tuple[Array, Array]:
-    """Return room for the modes of a block of lanes, and for what else a lane holds."""
+    """Return room for the modes of a block of lanes, and for its other slots."""
     padded = -(-modes // _UNROLL) * _UNROLL
     return aligned(padded * _MODE * LANES), aligned(_HEAD * LANES)
 
 
 @kernel
 def _load(system_modes, sigma, response, state, gaps, first, w, head):
-    """Bring up to LANES rows from `first` on into lanes; spare lanes repeat the last row."""
+    """Load up to LANES rows from `first` on into lanes; spare lanes repeat the last row."""
     last = state.shape[0] - 1
     m = system_modes.shape[2]
     w[:] = 0.0
@@ -68,7 +67,7 @@ def _load(system_modes, sigma, response, state, gaps, first, w, head):
 
 @kernel
 def _store(w, head, first, state, gaps, peak):
-    """Bring lanes back into their rows."""
+    """Store lanes back into their rows."""
     m = (state.shape[1] - 4) // 2
     for n in range(first, min(first + LANES, state.shape[0])):
         lane = n - first
@@ -126,9 +125,10 @@ def _step(w, head, groups, cosine, sine):
         x = fma(head[_SIGMA * LANES + lane], p, free)
         x1 = head[_X1 * LANES + lane]
         before, after = x1 - head[_X2 * LANES + lane], x - x1
-        # The corrections below leave something in p after contact: p does not indicate contact.
+        # The corrections below make p non-zero just after contact: p does not indicate contact.
         in_right, in_left = x1 > right, x1 < -left
-        # Two divisions in one: of the turning point's parabola, and of the crossing's position.
+        # Two divisions in one: for the parabola at the turning point, and for the crossing's
+        # position.
         turned = (before * after < 0.0) & (in_right | in_left)
         side, gap = (1.0, right) if x > 0.0 else (-1.0, left)
         d0, d = fma(side, x1, -gap), fma(side, x, -gap)
@@ -147,7 +147,7 @@ def _step(w, head, groups, cosine, sine):
         peak_r, peak_l = head[_PEAK_R * LANES + lane], head[_PEAK_L * LANES + lane]
         head[_PEAK_R * LANES + lane] = d_right if d_right > peak_r else peak_r
         head[_PEAK_L * LANES + lane] = d_left if d_left > peak_l else peak_l
-        # The impulse of a force with a kink inside the step, and that of a curved one.
+        # The missed impulse of a force with a kink inside the step, and of a curved one.
         p += 0.5 * side * d0 * d * (inverse * curvature) if crossed else 0.0
         p -= (after - before) / 12 if d > 0.0 else 0.0
         head[_X2 * LANES + lane] = x1
@@ -157,7 +157,7 @@ def _step(w, head, groups, cosine, sine):
 
 @kernel
 def _forget(w):
-    """Let motion that has died out be zero: numbers next to zero are slow."""
+    """Set motion that has died out to zero: numbers near underflow are slow."""
     for k in range(0, w.size, _MODE * LANES):
         for slot in range(2 * LANES):
             w[k + slot] = 0.0 if abs(w[k + slot]) <= _NOTHING else w[k + slot]

@@ -1,4 +1,4 @@
-"""Beams prepared for the fast propagator, in groups that share the size of the step."""
+"""Beams prepared for the fast propagator, in groups that share a step size."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -14,14 +14,14 @@ from models.numerics.jit import kernel
 
 LADDER = tuple(base << k for k in range(8) for base in (64, 96))
 COMPLIANCE = 0.01
-UNSTABLE = 0.03  # compliance from which on the corrections below may feed themselves
-RESOLVED = 16  # least steps in a turn of the random load's fastest line
-MOST_UNDER_RANDOM = 1024  # steps in a forcing period
+UNSTABLE = 0.03  # compliance above which the impulse corrections may become unstable
+RESOLVED = 16  # steps per turn of the random load's fastest line, at least
+MOST_UNDER_RANDOM = 1024  # steps per forcing period
 _MOST = 2**20  # steps in a time mean
 
 
 class System(NamedTuple):
-    """n beams with steps of one size, see `models.beam.structure.propagation.System`.
+    """n beams with one step size; see `models.beam.structure.propagation.System`.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class System(NamedTuple):
     modal : ndarray, shape (n, all modes), complex
         Steady amplitude of each mode.
     oscillators : ndarray, shape (n, 3, all modes)
-        w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode: how it responds to the random load.
+        w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode, for the response to a random load.
     reach, beams, steps
         As there.
     """
@@ -50,17 +50,17 @@ class System(NamedTuple):
 
     @property
     def longest(self) -> int:
-        """The fewer the more steps there are in a period."""
+        """Fewer, the more steps there are per period."""
         return min(LONGEST, _MOST // self.steps)
 
     def take(self, rows: NDArray[np.intp]) -> "System":
-        """Return the systems of some rows."""
+        """Return some of the beams."""
         return System._make([*(a[rows] for a in self[:-2]), self.beams.take(rows), self.steps])
 
 
 @kernel
 def _compliance(frequency, decay, gain, moving, h):
-    """Return what the modes that move, and what the others, bring to sigma of one beam."""
+    """Return the contributions of moving and of static modes to sigma of one beam."""
     total = residual = 0.0
     for i in range(frequency.size):
         w, d = frequency[i], decay[i]
@@ -108,11 +108,11 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     """Prepare n beams, in groups that share a number of steps and, by fours, of moving modes.
 
     Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
-    gives way by no more than `COMPLIANCE` of its penetration, residual flexibility left out; the
-    error of a work-rate is then about 0.1 %. A turn of the fastest line of a random load takes
-    `RESOLVED` steps at least. A row whose step stays too long, because contact is too stiff or the
-    load too fast for the longest of the ladder or for the steps that are set, is in no group; nor
-    is one under a random load, whose averages are long, that takes more than `MOST_UNDER_RANDOM`.
+    gives way by no more than `COMPLIANCE` of its penetration, without residual flexibility; the
+    error of a work-rate is then about 0.1 %. A turn of the fastest line of a random load takes at
+    least `RESOLVED` steps. A row is in no group if contact is too stiff, or the load too fast, for
+    the last of the ladder or for the steps set; nor if, under a random load, whose averages are
+    long, it takes more than `MOST_UNDER_RANDOM` steps.
     """
     steps = np.full(len(beams.forcing), settings.steps_per_period)
     if not settings.steps_per_period:
@@ -127,7 +127,7 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
 
 
 def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
-    """Prepare n beams for so many steps, in groups of one number of modes."""
+    """Prepare n beams for this many steps, in groups with equal numbers of modes."""
     n, m = b.frequency.shape
     modes, begin = np.zeros((n, 4, m)), np.zeros((n, 3, m))
     sigma, residual = np.empty((2, n))
@@ -164,16 +164,16 @@ def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
 
 
 def gains(b: Beams) -> Array:
-    """Return what each mode does per unit penetration, shape (n, m)."""
+    """Return the acceleration of each mode per unit penetration, shape (n, m)."""
     return -b.stiffness[:, None] * b.mobility
 
 
 def _least_steps(b: Beams) -> Array:
-    """Return how many steps the fastest line of a random load needs, shape (n,)."""
+    """Return the number of steps required by the fastest line of a random load, shape (n,)."""
     return RESOLVED * b.load["edges"][:, -1]
 
 
 def _widths(moving: Array) -> NDArray[np.int64]:
-    """Return how many modes to keep of each row: up to the last that moves, in whole fours."""
+    """Return the number of modes kept per row: up to the last moving one, in multiples of four."""
     last = np.where(moving > 0, 1 + np.arange(moving.shape[1]), 1).max(axis=1)
     return -(-last // 4) * 4

@@ -1,12 +1,12 @@
-"""The tangent of the fast propagator: what a small change of the state grows to.
+"""The tangent flow of the fast propagator: the evolution of small changes of the state.
 
-The scheme of `models.beam.lanes` is linear but for its contact force, a function of the newest
-three displacements of the tip. Along a known trace of the tip it is therefore linear altogether,
+The scheme of `models.beam.lanes` is linear except for its contact force, a function of the newest
+three displacements of the tip. Its linearisation along a known trace of the tip is
 
     dx = reply dX,    dp = now dX + then_1 dx_1 + then_2 dx_2,    X = sum y_i,
 
-with coefficients that all columns of a tangent share. So the lanes here are columns, of one row at
-a time.
+with coefficients shared by all columns of a tangent. So the lanes here are columns, of one row at a
+time.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
 _UNROLL = 4  # modes in the straight-line body of the inner loop
-_P, _X1, _X2, _SUM, _HEAD = range(5)  # slots of a block beside its modes
+_P, _X1, _X2, _SUM, _HEAD = range(5)  # slots of a block besides its modes
 
 
 @kernel
@@ -42,7 +42,7 @@ def _linearise(x, x1, x2, right, left, sigma):
 
 @kernel
 def _step(modes, w, head, coefficients):
-    """Carry all columns through one step: the hot loop."""
+    """Take all columns through one step: the hot loop."""
     reply, now, then_1, then_2 = coefficients
     groups = modes.shape[0] // (4 * _UNROLL)
     for block in range(w.shape[0]):
@@ -85,7 +85,7 @@ def _step(modes, w, head, coefficients):
 
 @kernel
 def _load(tangents, w, head):
-    """Bring the columns (k, c) of one row into lanes; spare lanes and modes are zero."""
+    """Load the columns (k, c) of one row into lanes; spare lanes and modes are zero."""
     m = (tangents.shape[0] - 3) // 2
     w[:] = 0.0
     head[:] = 0.0
@@ -100,7 +100,7 @@ def _load(tangents, w, head):
 
 @kernel
 def _store(w, head, tangents):
-    """Bring lanes back into their columns."""
+    """Store lanes back into their columns."""
     m = (tangents.shape[0] - 3) // 2
     for c in range(tangents.shape[1]):
         block, lane = c // LANES, c % LANES
@@ -128,19 +128,19 @@ def _carry(modes, sigma, state, gaps, trace, tangents, packed, w, head):
 
 
 def carry(system: System, state: Array, gaps: Array, trace: Array, tangents: Array) -> None:
-    """Carry tangents of n beams along the known traces of their tips.
+    """Carry tangents of n beams along known traces of their tips.
 
     Parameters
     ----------
     system : System
     state : ndarray, shape (n, 2 m + 4)
-        Where the traces begin.
+        At the start of the traces.
     gaps : ndarray, shape (n, 2)
         Constant.
     trace : ndarray, shape (n, steps)
-        Tip displacement at every step, as `models.beam.lanes.advance` gives it.
+        Tip displacement at every step, as recorded by `models.beam.lanes.advance`.
     tangents : ndarray, shape (n, 2 m + 3, c)
-        c changes of the state but for its clock; updated in place.
+        c changes of the state without its clock; updated in place.
     """
     m = system.modes.shape[2]
     blocks = -(-tangents.shape[2] // LANES)

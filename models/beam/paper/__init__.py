@@ -1,4 +1,4 @@
-"""What reproduces the paper; nothing else needs it.
+"""Code that reproduces the paper; nothing else needs it.
 
-``facts`` prints its statements beside ours: ``python -m models.beam.paper.facts``.
+``facts`` compares its statements with the model: ``python -m models.beam.paper.facts``.
 """

@@ -1,7 +1,7 @@
-"""The published facts of the beam and the model: ``python -m models.beam.paper.facts`` prints both.
+"""Published facts of the beam against the model: ``python -m models.beam.paper.facts`` prints both.
 
-Facts of J. Knudsen and A. R. Massih, ASME IMECE 2002, as far as our copy lets them be read, beside
-what the nominal parameters give. No parameter is chosen here to meet one of them.
+Facts of J. Knudsen and A. R. Massih, ASME IMECE 2002, as far as our copy is legible, and the
+results of the nominal parameters. No parameter is chosen here to meet one of them.
 """
 
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from models.beam.explore import continue_orbit, follow_wear, wear_history, work_
 from models.beam.parameters import Params, Settings
 
 LOW, HIGH = 5.61, 9.9
-_RANGE = 0.2  # of omega, over which a branch is followed
+_RANGE = 0.2  # of omega over which a branch is followed
 
 INTRODUCTION = """\
 Frequencies are relative to the first natural frequency of the rod, gaps x_1 and x_2 to the initial
@@ -24,7 +24,7 @@ reproduces both published factors."""
 
 
 class Fact(NamedTuple):
-    """A statement of the paper, and the model's answer."""
+    """A statement of the paper, and the model's result."""
 
     published: str
     model: str
@@ -42,7 +42,7 @@ def _fundamental(beam: Params) -> float:
 
 
 def window(omega: float) -> tuple[float, float]:
-    """Return between which omega the stable orbit at one omega exists."""
+    """Return the range of omega in which the stable orbit at one omega exists."""
     beam = nominal(omega)
     first = beam.forcing_frequency / omega
     ends = [
@@ -53,7 +53,7 @@ def window(omega: float) -> tuple[float, float]:
 
 
 def lifetime_ratios(omega: float) -> tuple[Any, Any]:
-    """Return linear over incremental life until the gap has doubled, and trebled."""
+    """Return linear over incremental life until the gap has doubled, and until it has trebled."""
     beam = nominal(omega)
     depths = (beam.initial_gap, 2 * beam.initial_gap)
     settings = Settings(depths=depths, accuracy=0.002)
@@ -62,7 +62,7 @@ def lifetime_ratios(omega: float) -> tuple[Any, Any]:
 
 
 def facts() -> list[Fact]:
-    """Look at every fact."""
+    """Compute every fact."""
     low, high = nominal(LOW), nominal(HIGH)
     x_0 = low.initial_gap
     windows = window(LOW), window(HIGH)

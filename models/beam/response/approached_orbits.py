@@ -1,8 +1,8 @@
 """The stable orbits that many beams approach at once, by Newton's method on the map of k periods.
 
-A beam's state is near an orbit where steps with the Jacobian of its first point shrink fast: the
-map is nearly linear between the two, and a stable orbit is then also the one that the beam comes
-to in time. A step that is long, or not much shorter than the one before, ends the search.
+A beam's state is near an orbit if steps with the Jacobian at its first point shrink fast: the map
+is then nearly linear between the two, and a stable orbit is the one that the beam approaches. A
+step that is long, or not much shorter than the one before, ends the search.
 """
 
 from typing import NamedTuple
@@ -16,10 +16,10 @@ from models.numerics.linear import inverse, product
 from models.numerics.multipliers import largest_multiplier
 
 _FARTHEST = 0.3  # longest first step, relative to the response
-_FASTER = 0.3  # each step over the one before, at most
-_LAST = 1e-6  # a step so short, relative to the response, is the last one
+_FASTER = 0.3  # largest ratio of a step to the one before
+_LAST = 1e-6  # last step, relative to the response
 _STEPS = 12
-_SAME = 1e-5  # of strobe points, relative to the response
+_SAME = 1e-5  # distance of equal strobe points, relative to the response
 
 
 class Approached(NamedTuple):
@@ -28,7 +28,7 @@ class Approached(NamedTuple):
     Attributes
     ----------
     found : ndarray of bool, shape (n,)
-        Where there is a stable orbit near the state; the other fields are undefined elsewhere.
+        Where there is a stable orbit near the state; elsewhere the other fields are undefined.
     state : ndarray, shape (n, k)
         On the orbit.
     work : ndarray, shape (n, 2)
@@ -36,7 +36,7 @@ class Approached(NamedTuple):
     peak : ndarray, shape (n, 2)
         Largest penetration, in initial gaps.
     period : ndarray of int, shape (n,)
-        In forcing periods, the shortest.
+        The smallest, in forcing periods.
     multiplier : ndarray, shape (n,)
         Largest modulus of the Floquet multipliers over that period.
     """
@@ -61,12 +61,12 @@ class _Map(NamedTuple):
         return self._replace(system=self.system.take(rows), gaps=self.gaps[rows])
 
     def advance(self, state: Array) -> tuple[Array, Record]:
-        """Return the image of the state, and the record of the way there."""
+        """Return the image of the state, and the record of the motion."""
         image, gaps = state.copy(), self.gaps.copy()
         still = np.zeros_like(gaps)
         record = self.propagator.advance(self.system, image, gaps, still, self.periods)
         clock = self.propagator.CLOCK
-        image[:, clock] = state[:, clock]  # it never comes back
+        image[:, clock] = state[:, clock]  # the clock is not periodic
         return image, record
 
     def derivative(self, state: Array) -> Array:
@@ -82,13 +82,13 @@ def approached(
     ----------
     propagator : Propagator
     system : System
-        What it prepared.
+        Prepared by it.
     state : ndarray, shape (n, k)
         Not changed.
     gaps : ndarray, shape (n, 2)
         In initial gaps.
     size : ndarray, shape (n,)
-        Of the response: its largest displacement and velocity, in initial gaps.
+        Size of the response: its largest displacement and velocity, in initial gaps.
     periods : int
 
     Returns
@@ -123,7 +123,7 @@ def approached(
 
 
 def _fixed_points(strobed: _Map, state: Array, size: Array) -> NDArray[np.intp]:
-    """Move states to fixed points of the map near them; return the rows where there is one."""
+    """Move states to nearby fixed points of the map; return the rows where there is one."""
     by_residual, regular = inverse(np.eye(state.shape[1]) - strobed.derivative(state))
     found = np.zeros(len(state), bool)
     left, longest = np.flatnonzero(regular), _FARTHEST * size

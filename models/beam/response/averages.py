@@ -1,7 +1,7 @@
-"""Time means of a response that never settles, taken as long as it needs.
+"""Time means of a response that never settles, over as long a run as required.
 
-The run is doubled until it is long enough; its first quarter is left out, the rest cut into
-batches that grow with it. It lasts `MEMORIES` times what the beam remembers at least.
+The run is doubled until it is long enough; its first quarter is dropped, the rest divided into
+batches that grow with it. It lasts at least `MEMORIES` times the memory of the beam.
 """
 
 from typing import NamedTuple
@@ -14,8 +14,8 @@ from models.numerics.batch_means import mean_and_error
 
 SHORTEST = 1024  # periods
 MEMORIES = 20
-_PIECE = 32  # periods in one call, and in the shortest batch
-_BATCHES = 24  # cut from what is kept
+_PIECE = 32  # periods per call, and of the shortest batch
+_BATCHES = 24  # of the part that is kept
 
 
 class Mean(NamedTuple):
@@ -37,23 +37,24 @@ class Mean(NamedTuple):
 def time_mean(
     propagator: Propagator, system: System, state: Array, gaps: Array, accuracy: float, least: int
 ) -> Mean:
-    """Average the work of n beams until both sites' errors are small, or the budget ends.
+    """Average the work of n beams until the errors of both sites are small, or the budget ends.
 
-    A beam that has not met a stop it can reach is followed on: its work is not known to be zero.
+    A beam that has not yet met a stop within its reach is followed further: its work is not known
+    to be zero.
 
     Parameters
     ----------
     propagator : Propagator
     system : System
-        What it prepared.
+        Prepared by it.
     state : ndarray, shape (n, k)
         Updated in place: the state at the end.
     gaps : ndarray, shape (n, 2)
         In initial gaps; not changed.
     accuracy : float
-        Relative standard error that is good enough.
+        Relative standard error that suffices.
     least : int
-        Forcing periods that each run lasts at least.
+        Forcing periods of each run, at least.
 
     Returns
     -------

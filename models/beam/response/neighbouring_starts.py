@@ -1,10 +1,10 @@
-"""Whether a response that did not settle is the same from next to the same start.
+"""Whether a response that did not settle is the same from nearly the same start.
 
-One look, however its mean scatters, does not show that a response dwells in one state for longer
-than the look, nor that the start decides by a hair between several. Others begin a thousandth of a
-gap away, and last until the beam has forgotten that: chaos takes them along other paths. Where they
-differ from the first by more than their errors, the largest difference, of either site, is the
-error of its mean: their responses may be each other's mirror images.
+One run, however its mean scatters, does not show that a response dwells in one state for longer
+than the run, or that a tiny change of the start decides between several. Further runs start a
+thousandth of a gap away, and last until the beam has forgotten this: chaos takes them along other
+paths. Where they differ from the first by more than their errors, the largest difference, of either
+site, is the error of its mean: the responses may be mirror images of each other.
 """
 
 import numpy as np
@@ -15,22 +15,22 @@ from models.beam.response.settling import MEMORIES, SEGMENT, look
 from models.beam.structure.modal import Array
 from models.beam.structure.propagation import Propagator, System
 
-_SHORTEST = 16  # segments of a further look
-_AWAY = (-1e-3, 1e-3, 2e-3)  # where they begin, in the first mode and in initial gaps
+_SHORTEST = 16  # segments of a further run
+_AWAY = (-1e-3, 1e-3, 2e-3)  # offsets of their starts, in the first mode and in initial gaps
 
 
 def add_neighbour_error(
     propagator: Propagator, system: System, begin: Array, gaps: Array, out: Response
 ) -> None:
-    """Look at aperiodic responses again, from starts close to the first.
+    """Run aperiodic responses again, from starts close to the first.
 
     Parameters
     ----------
     propagator : Propagator
     system : System
-        What it prepared.
+        Prepared by it.
     begin : ndarray, shape (n, k)
-        Where `models.beam.response.settling.settle` began; not changed.
+        State from which `models.beam.response.settling.settle` started; not changed.
     gaps : ndarray, shape (n, 2)
         In initial gaps.
     out : Response
@@ -56,6 +56,6 @@ def add_neighbour_error(
 
 
 def _segments(memory: Array) -> NDArray[np.int64]:
-    """Return of how many segments further looks are, after which a beam has forgotten its start."""
+    """Return the number of segments after which a beam has forgotten its start."""
     looks = np.maximum(1.0, MEMORIES * memory / (_SHORTEST * SEGMENT))
     return _SHORTEST * 2 ** np.ceil(np.log2(looks)).astype(np.int64)

@@ -1,4 +1,4 @@
-"""What is known of a settled response, and the numbers of its regimes."""
+"""The settled response, and the indices of its regimes."""
 
 from typing import Any, NamedTuple
 
@@ -19,7 +19,7 @@ class Response(NamedTuple):
     work : ndarray, shape (n, 2)
         Mean dimensionless work per forcing period at the right and the left site.
     error : ndarray, shape (n, 2)
-        Within which nine in ten means lie, 0 if periodic.
+        Half-width of the 90 % interval, 0 if periodic.
     peak : ndarray, shape (n, 2)
         Largest penetration, in initial gaps.
     regime : ndarray of int8, shape (n,)
@@ -40,13 +40,13 @@ class Response(NamedTuple):
 
     @staticmethod
     def settling(n: int) -> "Response":
-        """Return a response of n beams to be filled in: aperiodic, at rest."""
+        """Return a response of n beams to fill in: aperiodic, at rest."""
         regime = np.full(n, APERIODIC, np.int8)
         return Response._make([*np.zeros((3, n, 2)), regime, np.zeros(n), np.full(n, np.nan)])
 
     @staticmethod
     def nothing(n: int) -> "Response":
-        """Return what is known of n beams before they are run."""
+        """Return the response of n beams before they are run: unknown."""
         regime = np.full(n, APERIODIC, np.int8)
         unknown = np.full((2, n), np.nan)
         return Response._make([*np.full((3, n, 2), np.nan), regime, *unknown])
@@ -62,5 +62,5 @@ class Response(NamedTuple):
             mine[rows] = theirs
 
     def forget(self, rows: NDArray[np.intp]) -> None:
-        """Know nothing of some beams."""
+        """Reset some beams to unknown."""
         self.put(rows, Response.nothing(len(rows)))

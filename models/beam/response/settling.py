@@ -1,12 +1,12 @@
-"""The settled response at constant gaps: which regime it is, and its work-rate.
+"""The settled response at constant gaps: its regime and work-rate.
 
-The tip is observed once per forcing period. Where its strobe points seem to approach an orbit of
-k periods, Newton's method on the map of k periods searches for it; if it exists, near and stable,
-the response is that orbit and its work-rate is exact. A response that has not come near a stable
+The tip is observed once per forcing period. Where its strobe points seem to approach an orbit of k
+periods, Newton's method on the map of k periods searches for it; if a stable one exists nearby, the
+response is that orbit and its work-rate is exact. A response that has not come near to a stable
 orbit is aperiodic, and its work-rate is a time mean with the error of batch means. It is observed
-for `SHORTEST` segments; the time is doubled again and again while the mean is uncertain, the start
-not yet forgotten, or a beam that could live without contact may still do so. Under a random load it
-never settles, see `models.beam.response.averages`.
+for `SHORTEST` segments; the time is doubled repeatedly while the mean is uncertain, the start is
+not yet forgotten, or a beam that can move without contact may still come to do so. Under a random
+load it never settles; see `models.beam.response.averages`.
 """
 
 from typing import Any
@@ -29,18 +29,18 @@ from models.beam.structure.propagation import Propagator, System
 from models.numerics.batch_means import mean_and_bound
 from models.numerics.jit import kernel
 
-SEGMENT = 32  # periods between two looks; also the length of a batch
+SEGMENT = 32  # periods between two checks; also the length of a batch
 LONGEST_PERIOD = 16
 SHORTEST, LONGEST = 32, 512  # segments of a look
 MOST_STEPS = 2**24  # of a look
 RANDOM_ACCURACY = 0.05  # relative standard error of a mean work-rate under a random load
-NINE_IN_TEN = 1.645  # standard errors within which nine in ten lie
-ACCURACY = NINE_IN_TEN * RANDOM_ACCURACY  # error of a mean for which a look goes on
-TURNS = 2  # of the first mode, in which a beam that does not touch shows that it no longer will
-MEMORIES = 5  # times what the beam remembers: in so long it forgets its start
+NINE_IN_TEN = 1.645  # standard errors in the half-width of a 90 % interval
+ACCURACY = NINE_IN_TEN * RANDOM_ACCURACY  # error of a mean above which a look is extended
+TURNS = 2  # of the first mode without contact, after which there will be none
+MEMORIES = 5  # memories of the beam after which it has forgotten its start
 _NEAR = 0.05  # k times the distance of strobe points k periods apart, relative to the response
-_SHRINKING = 0.9  # factor of that distance from one look to the next
-_NEARER = 0.5  # that distance over the one at which an orbit was looked for in vain
+_SHRINKING = 0.9  # factor of that distance from one check to the next
+_NEARER = 0.5  # that distance over the one at which a search for an orbit failed
 _SYMMETRIC = 1e-3  # difference of the sites' work, relative to their sum
 
 
@@ -51,7 +51,7 @@ def settle(propagator: Propagator, system: System, state: Array, gaps: Array) ->
     ----------
     propagator : Propagator
     system : System
-        What it prepared.
+        Prepared by it.
     state : ndarray, shape (n, k)
         Updated in place: the state at the end.
     gaps : ndarray, shape (n, 2)
@@ -60,8 +60,8 @@ def settle(propagator: Propagator, system: System, state: Array, gaps: Array) ->
     Returns
     -------
     Response
-        NaN for a beam that no propagator can follow, or whose motion has neither come near an orbit
-        nor forgotten its start within the longest look.
+        NaN for a beam that no propagator can follow, or whose motion has neither come near to an
+        orbit nor forgotten its start within the longest look.
     """
     out = Response.settling(len(state))
     never_touches = system.reach < gaps.min(axis=1)
@@ -86,7 +86,7 @@ def look(
     longest: int,
     shortest: int = SHORTEST,
 ) -> None:
-    """Look at some of n beams until they are silent, on an orbit, or known well enough on average.
+    """Follow some of n beams until they are silent, on an orbit, or accurately averaged.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def look(
         silent = never_touches[left] & (quiet[left] >= np.maximum(SEGMENT, TURNS * part.beams.turn))
         _note_silence(out, left[silent])
         guess = np.zeros(len(left), int)
-        if (segment + 1) % (1 + segment // 4) == 0:  # late ones wait for company
+        if (segment + 1) % (1 + segment // 4) == 0:  # later rows wait, to be treated together
             guess = np.where(silent, 0, _guess(before, distance[left], tried[left]))
         for k in np.unique(guess[guess > 0]):
             some = left[guess == k]
@@ -150,7 +150,7 @@ def _settle_random(
     rows: NDArray[np.intp],
     out: Response,
 ) -> None:
-    """Average over a random load: nothing repeats, so only silence can be distinguished."""
+    """Average over a random load: nothing repeats, so silence is the only other regime."""
     now = state[rows]
     mean = time_mean(propagator, system.take(rows), now, gaps[rows], RANDOM_ACCURACY, 0)
     state[rows] = now
@@ -162,7 +162,7 @@ def _settle_random(
 
 @kernel
 def _distances(strobe, size):
-    """Return how far strobe points k periods apart lie from each other, over the response's size.
+    """Return the distances of strobe points k periods apart, relative to the response's size.
 
     For each k, the largest of the last `LONGEST_PERIOD` distances.
     """
@@ -179,7 +179,7 @@ def _distances(strobe, size):
 
 
 def _guess(before: Array, now: Array, tried: Array) -> NDArray[np.int64]:
-    """Return the shortest period an orbit may have that a response comes near, 0 if none."""
+    """Return the shortest period of an orbit that a response may approach, 0 if none."""
     shrinking = now < _SHRINKING * before
     first = shrinking.argmax(axis=1)
     rows = np.arange(len(now))
@@ -196,7 +196,7 @@ def _note_silence(out: Response, rows: NDArray[np.intp]) -> None:
 
 
 def note_orbit(out: Response, rows: Any, orbit: Approached, state: Array) -> None:
-    """Note the orbits that some beams approach, and put the beams onto them."""
+    """Record the orbits that some beams approach, and put the beams onto them."""
     good = orbit.found
     rows, work = rows[good], orbit.work[good]
     state[rows] = orbit.state[good]

@@ -1,4 +1,4 @@
-"""What the fast propagator's steps do to a periodic response: the orbit again, in half steps."""
+"""The step error of periodic responses of the fast propagator: the orbit again, in half steps."""
 
 import numpy as np
 
@@ -8,26 +8,26 @@ from models.beam.response.settling import look, note_orbit
 from models.beam.structure.modal import Array
 from models.beam.structure.propagation import Propagator, System
 
-_SEGMENTS = 16  # of the look at what leaves its orbit
+_SEGMENTS = 16  # of the look at a beam that leaves its orbit
 
 
 def add_step_error(
     propagator: Propagator, system: System, state: Array, gaps: Array, out: Response
 ) -> None:
-    """Put orbits in the place of those of twice the step; what that changes is their error.
+    """Replace orbits by those of half the step; the difference is their error.
 
     Parameters
     ----------
     propagator : Propagator
     system : System
-        What it prepared.
+        Prepared by it.
     state : ndarray, shape (n, k)
-        On the orbits, where there are some; not changed.
+        On the orbits, where there are any; not changed.
     gaps : ndarray, shape (n, 2)
         In initial gaps.
     out : Response
-        Updated in place. Where half the step makes an orbit unstable, the response is what becomes
-        of it.
+        Updated in place. Where an orbit is unstable with half the step, the response is the one it
+        leads to.
     """
     rows = np.flatnonzero((out.period > 0) & (out.regime != NO_IMPACT))
     for part, fine, now in propagator.finer(system.take(rows), state[rows]):

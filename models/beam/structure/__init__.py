@@ -5,7 +5,7 @@ Reading order; a module imports only those above it:
     finite_element     frequencies and tip values of the modes
     random_lines       the random force as a sum of lines
     random_response    the steady response to it
-    random_load        its lines for a given beam, and how long they last
+    random_load        its lines for a given beam, and the length of their epochs
     modal              the equations of motion, and rows of parameters as beams in modal form
-    propagation        what a propagator of them promises and reports
+    propagation        the interface and the record of their propagators
 """

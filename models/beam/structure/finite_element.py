@@ -1,15 +1,15 @@
 """Finite elements of the loosely supported beam: frequencies and tip values of its modes.
 
-Equal Hermite cubic Euler-Bernoulli elements with consistent mass; one end stands on a lateral and
-a rotational spring, the other (the tip) is free and carries the load and both contact springs.
+Equal Hermite cubic Euler-Bernoulli elements with consistent mass; one end is supported by a lateral
+and a rotational spring, the other (the tip) is free, under the load and both contact springs.
 Rotations are scaled by the element length, so that every matrix below is a constant times a
 physical factor:
 
     M = rho A h Mhat,    K^-1 = (h^3/EI) Ghat + r r^T/k_tra + (h^2 s s^T)/k_rot,
 
-with Ghat the flexibility of the clamped beam, r and s its rigid translation and rotation. The
-modes come from the flexibility, because the eigenvalues 1/w^2 of K^-1 M make the LOW frequencies
-the accurate ones: about 1e-15 relative in the fundamental however fine the mesh.
+with Ghat the flexibility of the clamped beam, r and s its rigid translation and rotation. The modes
+are computed from the flexibility, because the eigenvalues 1/w^2 of K^-1 M make the LOW frequencies
+the accurate ones: to about 1e-15 relative in the fundamental, however fine the mesh.
 """
 
 import math
@@ -86,7 +86,7 @@ def _constants(elements: int) -> tuple[Array, Array, Array, Array]:
 
 @kernel
 def _factorise(matrix, lower):
-    """Set the lower triangle to Cholesky's factor of a positive matrix."""
+    """Set `lower` to the Cholesky factor of a positive definite matrix."""
     for j in range(len(matrix)):
         for i in range(j, len(matrix)):
             rest = matrix[i, j]
@@ -125,7 +125,7 @@ def modes(
     Returns
     -------
     Modes
-        With tip values positive.
+        With positive tip values.
     """
     clamped, translation, rotation, tip_row = _constants(elements)
     h = length / elements

@@ -1,4 +1,4 @@
-"""The beam as the propagators see it: one oscillator per mode, coupled through the tip.
+"""The beam in modal form: one oscillator per mode, coupled through the tip.
 
 With z_i = phi_i q_i / X0 the tip's displacement in initial gaps is x = sum z_i, and
 
@@ -36,7 +36,7 @@ class Beams(NamedTuple):
     stiffness : ndarray, shape (n,)
         k_c [N m-1].
     moving : ndarray of int, shape (n,)
-        How many modes obey their equations; those beyond follow the contact force at once.
+        Number of modes that obey their equations; the others follow the contact force statically.
     load : ndarray of random_load.LOAD, shape (n,)
         The random force over X0.
     """
@@ -52,12 +52,12 @@ class Beams(NamedTuple):
 
     @property
     def is_random(self) -> NDArray[np.bool_]:
-        """Which beams have a random load, shape (n,)."""
+        """Whether each beam has a random load, shape (n,)."""
         return self.load["power"] > 0
 
     @property
     def memory(self) -> Array:
-        """Forcing periods in which the first mode's free motion falls to 1/e, shape (n,)."""
+        """Forcing periods in which the first mode's free motion decays to 1/e, shape (n,)."""
         return self.forcing / (2 * np.pi * self.decay[:, 0])
 
     @property
@@ -66,19 +66,19 @@ class Beams(NamedTuple):
         return self.forcing / self.frequency[:, 0]
 
     def take(self, rows: NDArray[np.intp]) -> "Beams":
-        """Return the beams of some rows."""
+        """Return some of the beams."""
         return Beams._make(a[rows] for a in self)
 
 
 def beams(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -> Beams:
-    """Bring n beams into modal form.
+    """Return n beams in modal form.
 
     Parameters
     ----------
     p : Params
         Each field an ndarray of shape (n,).
     settings : Settings
-        Its `elements`, `modes` and `residual_flexibility` count.
+        Only `elements`, `modes` and `residual_flexibility` are used.
     seed : ndarray of uint64, shape (n,), optional
         Of the random load; 0 if not given.
 
@@ -131,7 +131,7 @@ def steady_response(b: Beams) -> NDArray[np.complex128]:
 
 
 def reach(b: Beams) -> Array:
-    """Return what the displacement of the tip never exceeds without contact.
+    """Return a bound of the tip's displacement without contact.
 
     Parameters
     ----------
@@ -140,8 +140,7 @@ def reach(b: Beams) -> Array:
     Returns
     -------
     ndarray, shape (n,)
-        In initial gaps. A random force has no such bound, but one that no life is long enough to
-        see exceeded.
+        In initial gaps. Under a random force, a bound that is not exceeded in any realistic life.
     """
     response = steady_response(b).sum(axis=1)
     harmonic = np.hypot(response.real, response.imag)

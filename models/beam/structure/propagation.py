@@ -1,4 +1,4 @@
-"""What a propagator of the beam promises, and what it reports."""
+"""The interface of the beam's propagators, and their record."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple, Protocol
@@ -15,7 +15,7 @@ LONGEST = 16_384
 
 
 class Record(NamedTuple):
-    """What a propagator reports about some forcing periods of n beams.
+    """What a propagator records of some forcing periods of n beams.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Record(NamedTuple):
     peak : ndarray, shape (n, 2)
         Largest penetration at each site, in initial gaps.
     trace : ndarray, shape (n, periods * steps)
-        Tip displacement at every step, in initial gaps; empty unless asked for.
+        Tip displacement at every step, in initial gaps; empty unless requested.
     """
 
     work: Array
@@ -36,7 +36,7 @@ class Record(NamedTuple):
 
     @staticmethod
     def empty(n: int, periods: int, steps: int = 0) -> "Record":
-        """Return a record to be filled in."""
+        """Return a record to fill in."""
         return Record(
             np.zeros((n, periods, 2)),
             np.zeros((n, periods, 2)),
@@ -46,7 +46,7 @@ class Record(NamedTuple):
 
 
 class System(Protocol):
-    """n beams, prepared by a propagator for itself."""
+    """n beams, prepared by a propagator."""
 
     @property
     def beams(self) -> Beams:
@@ -58,21 +58,21 @@ class System(Protocol):
 
     @property
     def steps(self) -> int:
-        """Steps in a forcing period."""
+        """Steps per forcing period."""
 
     @property
     def longest(self) -> int:
-        """Forcing periods in a time mean, at most: no more than `LONGEST`."""
+        """Forcing periods in a time mean, at most; not above `LONGEST`."""
 
     def take(self, rows: NDArray[np.intp], /) -> "System":
-        """Return the systems of some rows."""
+        """Return some of the beams."""
 
 
 class Propagator(propagator.Propagator, Protocol):
-    """Takes n beams through forcing periods: `models.beam.lanes` and `models.beam.exact` do.
+    """The part of `models.numerics.propagator.Propagator` that is particular to the beam.
 
-    It keeps all promises of `models.numerics.propagator.Propagator`. A beam that cannot be followed
-    any further gets NaN.
+    `models.beam.lanes` and `models.beam.exact` implement it. Whole periods are those of the force.
+    Results of a beam that cannot be followed any further are NaN.
     """
 
     CLOCK: int
@@ -81,14 +81,7 @@ class Propagator(propagator.Propagator, Protocol):
     def groups(
         self, beams: Beams, settings: Settings, /
     ) -> Iterator[tuple[NDArray[np.intp], System]]:
-        """Prepare n beams, in groups that are propagated together.
-
-        Yields
-        ------
-        rows : ndarray of int
-            Which of the n beams are in the group; one that cannot be followed is in none.
-        system : System
-        """
+        """Prepare n beams in groups."""
 
     def finer(
         self, system: Any, state: Array, /
@@ -98,14 +91,14 @@ class Propagator(propagator.Propagator, Protocol):
         Yields
         ------
         rows : ndarray of int
-            Which of the system's beams are in the group.
+            Indices of the group's beams in the system.
         system : System
         state : ndarray, shape (n, k')
-            Nearly the same as the one given.
+            Nearly the same as the given one.
         """
 
     def start(self, system: Any, displacement: Array, velocity: Array, /) -> Array:
-        """Return the state at phase 0 of the force, tip displaced in the shape of the first mode.
+        """Return the state at phase 0 of the force, with the tip displaced in the first mode.
 
         Parameters
         ----------
@@ -116,7 +109,7 @@ class Propagator(propagator.Propagator, Protocol):
         Returns
         -------
         ndarray, shape (n, k)
-            As the propagator wishes, but for its clock.
+            In a form of the propagator's own, except for its clock.
         """
 
     def advance(
@@ -129,20 +122,18 @@ class Propagator(propagator.Propagator, Protocol):
         /,
         trace: bool = False,
     ) -> Record:
-        """Advance n beams by whole periods of the force, their gaps growing with the work done.
+        """Advance n beams, whose gaps grow with the work done.
 
         Parameters
         ----------
-        system : System
-        state : ndarray, shape (n, k)
-            Updated in place.
+        system, state
         gaps : ndarray, shape (n, 2)
             Right and left, in initial gaps; updated in place.
         growth : ndarray, shape (n, 2)
             Gap growth per unit of dimensionless work; zero for no wear.
         periods : int
         trace : bool
-            Whether to keep the tip's displacement at every step.
+            Whether to record the tip's displacement at every step.
 
         Returns
         -------
@@ -150,19 +141,4 @@ class Propagator(propagator.Propagator, Protocol):
         """
 
     def monodromy(self, system: Any, state: Array, gaps: Array, periods: int, /) -> Array:
-        """Return how the states after whole periods of the force depend on the states now.
-
-        Parameters
-        ----------
-        system : System
-        state : ndarray, shape (n, k)
-            At phase 0 of the force; not changed.
-        gaps : ndarray, shape (n, 2)
-            Constant, in initial gaps.
-        periods : int
-
-        Returns
-        -------
-        ndarray, shape (n, k, k)
-            Derivative of each component after (rows) with respect to each before (columns).
-        """
+        """Return the derivative of the state, shape (n, k, k), from phase 0 at constant gaps."""

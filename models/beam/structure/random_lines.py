@@ -4,13 +4,13 @@ By spectral representation (Shinozuka 1971) it is a sum of J lines,
 
     f(t) = sum_j sqrt(2 S_F D_j E_j) cos(2 pi f_j t + phi_j),
 
-with f_j at a random place of the j-th of J sub-bands, D_j wide, E_j exponential of mean 1 and phi_j
-any phase. Whatever the sub-bands, it is then Gaussian at each instant, its variance is S_F times
-the width of the band, and its expected spectrum is flat.
+with f_j uniform in the j-th of J sub-bands of width D_j, E_j exponential with mean 1 and phi_j
+uniform. For any sub-bands it is then Gaussian at each instant, its variance is S_F times the
+bandwidth, and its expected spectrum is flat.
 
 Lines are drawn from the row's seed and the number of the epoch. Time is counted in whole forcing
-periods, and phases from the beginning of the epoch, so that neither a long run nor where it is
-interrupted makes a difference.
+periods, and phases from the start of the epoch, so that results depend neither on the length of a
+run nor on where it is interrupted.
 """
 
 import numpy as np
@@ -43,7 +43,7 @@ _STRIDE, _MIX_1, _MIX_2 = map(
 
 @kernel
 def _uniform(seed, epoch, which):
-    """Return a number in (0, 1): the counter-based generator splitmix64, twice over."""
+    """Return a number in (0, 1) by the counter-based generator splitmix64, applied twice."""
     word = seed
     for count in (epoch, which):
         word += _STRIDE * np.uint64(count + 1)
@@ -64,8 +64,8 @@ def draw(load, epoch, lines):
     epoch : int
         0 for the first.
     lines : ndarray, shape (COUNT, 3)
-        Set to the amplitude over the initial gap [N m-1], the turns in a forcing period, and the
-        turn at which the epoch begins, of each line.
+        Set to the amplitude over the initial gap [N m-1], the turns per forcing period, and the
+        turn at the start of the epoch, of each line.
     """
     edges, seed = load["edges"], load["seed"]
     for j in range(COUNT):
@@ -78,7 +78,7 @@ def draw(load, epoch, lines):
 
 @kernel
 def turn_at(speed, turn, period):
-    """Return the turn at which a line begins the given forcing period of its epoch."""
+    """Return the turn of a line at the start of the given forcing period of its epoch."""
     turn += (speed - np.floor(speed)) * period
     return turn - np.floor(turn)
 

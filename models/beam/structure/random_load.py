@@ -1,16 +1,17 @@
-"""The random load of n beams: how its band is divided into lines, and how long they last.
+"""The random load of n beams: division of its band into lines, and length of their epochs.
 
-Sub-bands of equal width would leave a sharp resonance to one line, or to none: the beam's own are
-some 0.3 Hz wide. So only half of their edges are evenly spaced, the others at equal shares of the
-power that a white force gives to the modes, sum_i b_i d_i/((w - w_i)^2 + d_i^2).
+Sub-bands of equal width would leave a sharp resonance to one line, or to none: the beam's
+resonances are about 0.3 Hz wide. So only half of the edges are evenly spaced; the others divide the
+power that a white force supplies to the modes, sum_i b_i d_i/((w - w_i)^2 + d_i^2), into equal
+shares.
 
-Lines once drawn never change; a random process loses its memory. So all are drawn anew after each
-epoch of 2/d + 200/B, with the slowest decay d and the bandwidth B: a few correlation times of beam
-and force. The force never repeats, and the time mean of a work-rate converges to that of the
-process. From epoch to epoch the force jumps, and the steady response with it; the modes keep the
-difference as free vibration. The jumps blur the band, to a level of
-S_F B/(2 pi^2 |f - f_low| |f - f_high|) over the epoch outside. Where modes outside the band would
-thereby contribute more than 1 % of the tip's variance, the epoch is longer, up to 30 times.
+Unlike a random process, a sum of fixed lines never loses its memory. So all lines are redrawn after
+each epoch of 2/d + 200/B, with the slowest decay d and the bandwidth B: a few correlation times of
+beam and force. The force never repeats, and the time mean of a work-rate converges to that of the
+process. Between epochs the force jumps, and the steady response with it; the modes take up the
+difference as free vibration. The jumps blur the band: outside it the level is
+S_F B/(2 pi^2 |f - f_low| |f - f_high|) over the epoch. Where modes outside the band would thus
+contribute more than 1 % of the tip's variance, the epoch is longer, up to 30 times.
 """
 
 import numpy as np
@@ -25,7 +26,7 @@ from models.beam.structure.random_lines import (
 from models.beam.structure.random_response import tip_deviation
 from models.numerics.elementary import arctan, tan
 
-_MEMORIES, _TURNS = 2, 200  # of the slowest mode, and of the bandwidth, in an epoch
+_MEMORIES, _TURNS = 2, 200  # of the slowest mode, and of the bandwidth, per epoch
 _BLUR = 0.01  # of the tip's variance, from modes outside the band
 _LONGER = 30.0
 
@@ -41,7 +42,7 @@ def has_band(p: Rows) -> NDArray[np.bool_]:
     Returns
     -------
     ndarray of bool, shape (n,)
-        False where a level is given for a band whose upper end is not above its lower one.
+        False where a level is given but the band's upper end is not above its lower one.
     """
     return (p.random_force_level == 0) | (p.random_force_high > p.random_force_low)
 
@@ -88,7 +89,7 @@ def random_load(
 def _divide(low: Array, high: Array, frequency: Array, decay: Array, mobility: Array) -> Array:
     """Return the edges of the sub-bands, shape (n, COUNT + 1), all in rad/s.
 
-    Half of them lie evenly; each of the others ends an equal share of the modes' power, which for
+    Half of them are evenly spaced; the others bound equal shares of the modes' power, which for
     each mode is a difference of two angles.
     """
     half = COUNT // 2

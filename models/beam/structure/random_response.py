@@ -1,4 +1,4 @@
-"""The steady response to the random force, line by line, so that nothing is sampled."""
+"""The steady response to the random force, line by line, without sampling in time."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +14,13 @@ from models.beam.structure.random_lines import (
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
-_SURE = 9.0  # standard deviations that no life ever sees: once in some 10^17 oscillations
+_SURE = 9.0  # standard deviations not exceeded in a life: once in about 10^17 oscillations
 _NODES = 4  # of the quadrature of each sub-band
 
 
 @kernel
 def respond(lines, forcing, frequency, decay, mobility):
-    """Turn the lines of a beam's force into those of its steady tip displacement [initial gaps]."""
+    """Convert the lines of a beam's force to those of its steady tip displacement [X0]."""
     for j in range(COUNT):
         w = lines[j, SPEED] * forcing
         re = im = 0.0
@@ -35,10 +35,10 @@ def respond(lines, forcing, frequency, decay, mobility):
 
 @kernel
 def add_modes(lines, period, sign, forcing, frequency, decay, mobility, modes):
-    """Add to modes (2, m), or take away, the modes' steady response to the lines of a force.
+    """Add to `modes` (2, m), or subtract, the modes' steady response to the lines of a force.
 
-    Rows: displacements and velocities, in initial gaps (per second), as a period of the epoch
-    begins.
+    Rows: displacements and velocities, in initial gaps (per second), at the start of a period of
+    the epoch.
     """
     for j in range(COUNT):
         w = lines[j, SPEED] * forcing
@@ -93,5 +93,5 @@ def tip_deviation(
 
 
 def sure_reach(deviation: Array) -> Array:
-    """Return what the random part of the tip's displacement never exceeds in a life."""
+    """Return a bound not exceeded in a life by the random part of the tip's displacement."""
     return _SURE * deviation

@@ -3,8 +3,8 @@
 Reading order; a module imports only those above it:
 
     regimes             the regime of a response that drifts with wear, and its changes
-    lost_stability      orbits that wear has made unstable
-    growth              how the gaps grow, and what is noted of it
+    lost_stability      orbits made unstable by wear
+    growth              growth of the gaps, and its record
     accelerated_life    one life, many times faster than in reality
     extrapolation       the limit of ever slower lives
     lives               lifetimes in that limit

@@ -1,10 +1,10 @@
-"""An accelerated life: the gaps grow while the beam rattles, only many times faster than in life.
+"""An accelerated life: the gaps grow while the beam rattles, but many times faster than in reality.
 
-Archard's law with impact work (eqs 5, 9 to 12 of Knudsen & Massih 2002) makes a gap grow by a
-constant times the work done on its site. Life lasts some 1e9 forcing periods; with the wear
+By Archard's law with impact work (eqs 5, 9 to 12 of Knudsen & Massih 2002) a gap grows by a
+constant times the work done on its site. A life lasts about 1e9 forcing periods; with the wear
 coefficient multiplied by an acceleration K it takes N periods, and the life is K times as long as
-what was simulated. K follows the running work-rate, so that the gap which grows faster grows by
-the same amount per period all along: N is known beforehand, whatever the work-rate does.
+the time simulated. K follows the running work-rate, so that the faster-growing gap grows by the
+same amount in every period: N is known beforehand, whatever the work-rate.
 """
 
 from typing import NamedTuple
@@ -21,7 +21,7 @@ from models.beam.wear.regimes import History
 
 LOOKS = 32  # changes of the acceleration in N periods
 OVERTIME = 4  # a run may last this many times N periods
-_SILENCE = 64  # least periods without contact after which a beam that need not touch never will
+_SILENCE = 64  # periods without contact, at least, after which a beam that can avoid contact will
 
 
 class Run(NamedTuple):
@@ -31,14 +31,15 @@ class Run(NamedTuple):
     ----------
     time : ndarray, shape (n, 2, D)
         Life of each site to each growth, in forcing periods over the wear per work of the right
-        site [X0 per dimensionless work]; inf if never, else the time reached.
+        site [X0 per dimensionless work]; inf if never, the time simulated if not reached.
     reached : ndarray of bool, shape (n, 2, D)
     ended : ndarray of bool, shape (n,)
-        Whether wear has stopped for good: what was not reached never will be.
+        Whether wear has stopped for good: growths not reached never will be.
     ratio : ndarray, shape (n, D)
-        Gap of the other site over that of the first to reach the growth, then; NaN if never.
+        Gap of the other site over that of the first to reach the growth, at that time; NaN if
+        never.
     lost : ndarray of bool, shape (n,)
-        Whether an orbit was found to have lost its stability.
+        Whether an orbit lost its stability.
     history : History
         NaN after the end of a life.
     """
@@ -68,7 +69,7 @@ def run_life(
     ----------
     propagator : Propagator
     system : System
-        What it prepared.
+        Prepared by it.
     state : ndarray, shape (n, k)
         Settled at the initial gaps; not changed.
     gaps : ndarray, shape (n, 2)
@@ -80,9 +81,9 @@ def run_life(
     growths : ndarray, shape (n, D)
         Gap growths to reach, increasing, in X0.
     periods : int
-        N: what the faster site takes to the last growth.
+        N, in which the faster site reaches the last growth.
     looks : int
-        In N periods.
+        Number of looks in N periods.
 
     Returns
     -------
@@ -103,7 +104,7 @@ def run_life(
     silent = np.maximum(_SILENCE, TURNS * system.beams.turn)
     life = Life(gaps, share, growths, reach, rate.max(axis=1), rate, grown, clock, silence, silent)
     left, state, here, unstable = np.arange(n), state.copy(), gaps.copy(), np.zeros(n, bool)
-    every = 8 if looks < LOOKS else 4  # looks from one check of stability to the next
+    every = 8 if looks < LOOKS else 4  # looks between two checks of stability
     for look in range(looks * OVERTIME):
         acceleration, growth = np.empty(len(left)), np.empty((len(left), 2))
         pace(left, life, out.reached, periods, acceleration, growth)

@@ -1,4 +1,4 @@
-"""The life at infinitely slow wear, from lives of which each is half as fast as the one before."""
+"""The life at infinitely slow wear, from lives each half as fast as the one before."""
 
 import math
 
@@ -8,12 +8,12 @@ from scipy.special import stdtrit
 
 from models.beam.structure.modal import Array
 
-LEAST = 5  # runs: fewer are too fast to notice some branch changes
-SMOOTH = 4  # runs that suffice where nothing changes and the limit is approached evenly
+LEAST = 5  # runs: fewer would be too fast to notice some changes of branch
+SMOOTH = 4  # runs that suffice where nothing changes and convergence is regular
 
 
 def _fit_of_constant_and_inverse() -> Array:
-    """Return the weights with which four lives at N to 8 N enter the constant of their fit."""
+    """Return the weights of four lives at N to 8 N in the constant of their fit."""
     periods = 2.0 ** np.arange(4)
     sum_, count, inverses = periods.sum(), len(periods), (1 / periods).sum()
     return (inverses * periods - count) / (sum_ * inverses - count * count)
@@ -35,8 +35,8 @@ def extrapolate_smooth(times: Array) -> tuple[Array, Array]:
     Returns
     -------
     time, error : ndarray, shape (...)
-        As `extrapolate` does; the error is infinite unless both differences of differences are
-        those of a regular series.
+        As from `extrapolate`; the error is infinite unless both second differences are those of a
+        regular series.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         time, regular = _rest(times[1:])
@@ -50,17 +50,16 @@ def extrapolate_smooth(times: Array) -> tuple[Array, Array]:
 def extrapolate(times: Array) -> tuple[Array, Array]:
     """Estimate the life at infinitely slow wear from lives at N, 2 N, 4 N, 8 N and 16 N periods.
 
-    Where the response follows the gaps smoothly it lags behind by a time that does not depend on
-    the pace, so that the error falls like 1/N; through a change of branch (a slow passage) it
-    falls like N^(-2/3). In both cases the differences of the lives are a geometric series of
-    ratio 2 or 1.6, whose rest is added. Any other sequence is, in part or wholly, that of an
-    aperiodic response: then the four slowest lives are fitted by a constant and an error like
-    1/N, each with the weight of its periods. Differences that grow mean that a change is not
-    resolved yet.
+    Where the response follows the gaps smoothly it lags behind by a time independent of the pace,
+    so the error falls like 1/N; through a change of branch (a slow passage) it falls like N^(-2/3).
+    In both cases the differences of the lives are a geometric series of ratio 2 or 1.6, whose
+    remainder is added. Any other sequence is that of a partly or wholly aperiodic response: then
+    the four slowest lives are fitted by a constant plus an error like 1/N, weighted by their
+    periods. Differences that grow mean that a change is not resolved yet.
 
-    The error is made of what was added, how much it changes when the slowest life is left out, the
-    differences themselves, and the scatter that all of them show where the variance of a life is
-    one over its periods. Its factors are such that nine in ten lives lie within it, measured
+    The error combines the remainder added, its change when the slowest life is dropped, the
+    differences themselves, and their scatter, assuming that the variance of a life is inversely
+    proportional to its periods. Its factors are such that it covers nine in ten lives, measured
     against lives ten times as slow: see ``benchmarks/beam_lives.py``.
 
     Parameters
@@ -87,7 +86,7 @@ def extrapolate(times: Array) -> tuple[Array, Array]:
 
 
 def _regular_error(added: Array, change: Array) -> Array:
-    """Return the error of a limit by what was added, and its change from one run to the next."""
+    """Return the error of a limit from the remainder added and its change between runs."""
     return np.maximum(added, 2 * change)
 
 
@@ -101,14 +100,14 @@ def _limit(times: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Return the limit of lives at N, 2 N, 4 N and 8 N, and whether they are regular."""
     slowest = times[-1]
     limit, regular = _rest(times[1:])
-    # Summed one by one: a product of matrices would round by how many rows there are.
+    # Summed one by one: the rounding of a matrix product depends on the number of rows.
     fitted = sum(weight * time for weight, time in zip(_FIT, times, strict=True))
     limit = np.where(regular, limit, fitted)
     return np.where(np.abs(limit - slowest) < slowest / 2, limit, slowest), regular
 
 
 def _rest(times: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Add the rest of a geometric series to the last of three lives; return whether it is one."""
+    """Add the remainder of a geometric series to the last of three lives; return if it is one."""
     last = times[2] - times[1]
     ratio = (times[1] - times[0]) / last
     return times[2] + last / (ratio - 1), (ratio > 1.4) & (ratio < 2.4)

@@ -1,9 +1,9 @@
-"""How fast one site wears along the path, from noisy means of its wear at some nodes.
+"""The wear rate of one site along the path, from noisy means at some nodes.
 
-The reciprocal of a noisy mean is biased upwards. So the logarithm of the wear along the path is
-fitted by a cubic such that the ratios of means and fit average to one (the quasi-likelihood of a
-gamma law): unbiased, and the scatter about it shows how well it is known, the misfit of the cubic
-included. Where the means are precise it is interpolated instead.
+The reciprocal of a noisy mean is biased upwards. So the logarithm of the wear rate along the path
+is fitted by a cubic such that the ratios of means to fit average to one (the quasi-likelihood of a
+gamma law). This is unbiased, and the scatter about it gives its error, including the misfit of the
+cubic. Precise means are interpolated instead.
 """
 
 import numpy as np
@@ -12,15 +12,15 @@ from models.beam.structure.modal import Array
 from models.numerics.elementary import exp, expm1, log
 from models.numerics.linear import inverse, product
 
-_GOOD = 0.05  # relative error of means that are interpolated
+_GOOD = 0.05  # relative error up to which means are interpolated
 _CUBIC = 3
-_STEEPEST = 300.0  # logarithm by which a fit may fall short of a rate
+_STEEPEST = 300.0  # largest logarithm by which a fit may fall short of a rate
 _GRID = 129  # points of a quadrature
 _ITERATIONS = 30
 
 
 class FittedWear:
-    """How fast one site wears along the path, known at nodes with a standard error."""
+    """The wear rate of one site along the path, known at nodes with a standard error."""
 
     def __init__(self, x: Array, rate: Array, error: Array):
         worn = rate > 0
@@ -32,7 +32,7 @@ class FittedWear:
             self.coefficient, self.covariance = fit(x / x[-1], rate)
 
     def life(self, end: float) -> tuple[float, float]:
-        """Return the integral of dx over the rate up to an end, and its standard error."""
+        """Return the integral of dx/rate up to an end, and its standard error."""
         if self.interpolated:
             inside = np.append(self.x[self.x < end], end)
             level = np.interp(inside, self.x, self.log)
@@ -54,7 +54,7 @@ class FittedWear:
 
 
 def fit(t: Array, rate: Array) -> tuple[Array, Array]:
-    """Fit log rate by a polynomial in t such that rate over fit averages to one; and covariance."""
+    """Fit log rate by a polynomial in t such that rate/fit averages to one; with covariance."""
     degree = min(_CUBIC, (len(t) - 1) // 3)
     basis = np.vander(t, degree + 1, increasing=True)
     coefficient = np.zeros(degree + 1)
@@ -62,7 +62,7 @@ def fit(t: Array, rate: Array) -> tuple[Array, Array]:
     normal = inverse(product(basis.T[None], basis[None]))[0][0]
     for _ in range(_ITERATIONS):
         residual = rate * exp(np.minimum(-_values(basis, coefficient), _STEEPEST)) - 1
-        # Steps are kept where the fit changes by no more than a factor e: fits of noise run away.
+        # Steps are limited to changes of the fit by a factor e: fits of noise would diverge.
         change = _values(normal, _values(basis.T, residual))
         coefficient += change / max(1.0, np.abs(_values(basis, change)).max())
     residual = rate * exp(np.minimum(-_values(basis, coefficient), _STEEPEST)) - 1

@@ -1,4 +1,4 @@
-"""How the gaps of an accelerated life grow, and what is noted of it, beam by beam."""
+"""Growth of the gaps in an accelerated life, and its record, beam by beam."""
 
 from typing import NamedTuple
 
@@ -11,26 +11,26 @@ from models.beam.wear.regimes import WINDOW, regime_of
 from models.numerics.jit import kernel, lean
 
 _MEMORY = 0.25  # weight of the newest look in the running work-rate
-_EXTINCT = 1e-6  # of the first work-rate: what is left when the gaps approach the free amplitude
+_EXTINCT = 1e-6  # of the first work-rate: wear ends below it, near the free amplitude
 
 
 class Life(NamedTuple):
-    """What is read and kept of each beam, beside the outcome.
+    """Constants and running values of each beam, besides the outcome.
 
     Attributes
     ----------
     gaps, share, growths : ndarray
-        As in `run`.
+        As in `models.beam.wear.accelerated_life.run_life`.
     reach : ndarray, shape (n,)
         Amplitude of the tip without contact [X0].
     first, rate : ndarray, shape (n,), (n, 2)
-        Wear per period at the beginning, and the running one of each site.
+        Wear per period at the beginning, and its running value at each site.
     grown : ndarray, shape (n, 2)
         Growth of each gap so far [X0].
     clock, silence : ndarray, shape (n,)
         Accelerated time, and periods since the last contact.
     silent : ndarray, shape (n,)
-        Periods without contact after which there will be none.
+        Periods without contact after which contact has ended for good.
     """
 
     gaps: Array
@@ -47,7 +47,7 @@ class Life(NamedTuple):
 
 @kernel
 def pace(left, life, reached, periods, acceleration, growth):
-    """Choose accelerations so that the gap that grows faster grows like (1 + a)^t, from t = 0."""
+    """Choose accelerations such that the faster-growing gap grows like (1 + a)^t from t = 0."""
     last = life.growths.shape[1] - 1
     for j in range(left.size):
         i = left[j]
@@ -65,7 +65,7 @@ def pace(left, life, reached, periods, acceleration, growth):
 
 @kernel
 def note_growth(left, life, out, work, acceleration, growth):
-    """Take in the periods just simulated: growths reached, running work-rates, the end of wear."""
+    """Record the periods just simulated: growths reached, running work-rates, the end of wear."""
     periods = work.shape[1]
     for j in range(left.size):
         i = left[j]
@@ -101,7 +101,7 @@ def _total(work, j):
 
 @kernel
 def note_look(left, life, out, look, strobe, work):
-    """Enter the present gaps, work-rates and regime in the history."""
+    """Record the present gaps, work-rates and regime in the history."""
     periods = work.shape[1]
     history = out.history
     for j in range(left.size):
@@ -118,7 +118,7 @@ def note_look(left, life, out, look, strobe, work):
 
 @lean
 def _will_cross(i, life, out, step):
-    """Return whether beam i reaches any growth in a step: most looks reach none."""
+    """Return whether beam i reaches any growth in a step; in most it does not."""
     for site in range(2):
         for depth in range(life.growths.shape[1]):
             missing = not out.reached[i, site, depth]
@@ -129,7 +129,7 @@ def _will_cross(i, life, out, step):
 
 @lean
 def _note_crossings(i, life, out, grown, step, when, acceleration):
-    """Note which growths beam i reaches in one period, and when; linear within it."""
+    """Record which growths beam i reaches in one period, and when, by linear interpolation."""
     for depth in range(life.growths.shape[1]):
         goal = life.growths[i, depth]
         first_of_all = not (out.reached[i, 0, depth] or out.reached[i, 1, depth])
@@ -150,9 +150,9 @@ def _note_crossings(i, life, out, grown, step, when, acceleration):
 
 @lean
 def _has_ended(i, life):
-    """Return whether no contact is left, or so little that no greater depth is ever reached.
+    """Return whether contact has ended, or is too weak for a greater depth ever to be reached.
 
-    A gap that grows towards the free amplitude comes near it like 1/t, not in finite time.
+    A gap that grows towards the free amplitude approaches it like 1/t, not in finite time.
     """
     narrow = min(life.gaps[i, 0] + life.grown[i, 0], life.gaps[i, 1] + life.grown[i, 1])
     rate = max(life.rate[i, 0], life.rate[i, 1])

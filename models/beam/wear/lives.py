@@ -1,7 +1,7 @@
 """Lifetimes in the limit of infinitely slow wear, from accelerated lives at ever slower paces.
 
-Each run lasts twice as long as the one before and is nearer to that limit; how the differences
-fall shows how near: see `models.beam.wear.extrapolation`.
+Each run is twice as long as the one before and nearer to that limit; the decrease of the
+differences shows how near: see `models.beam.wear.extrapolation`.
 """
 
 import math
@@ -17,7 +17,7 @@ from models.beam.wear.extrapolation import LEAST, SMOOTH, extrapolate, extrapola
 from models.beam.wear.regimes import UNKNOWN, WINDOW, changes_of, confirmed_regimes
 
 SHORTEST = 64  # N of the first run; each further one lasts twice as long
-LONGEST = 210  # over the accuracy: N of the last run at most, unless they are the least
+LONGEST = 210  # over the accuracy: largest N of the last run, unless `LEAST` runs need more
 
 
 class Lives(NamedTuple):
@@ -26,11 +26,11 @@ class Lives(NamedTuple):
     Attributes
     ----------
     time : ndarray, shape (n, 3, D)
-        Right site, left site and the earlier of the two, unit as in `accelerated_life.Run`.
+        Right site, left site and the earlier of the two, in the unit of `accelerated_life.Run`.
     error : ndarray, shape (n, 3, D)
         Estimated numerical error, NaN where the growth is not reached.
     reached : ndarray of bool, shape (n, 3, D)
-        False where the time is infinite, or only the time simulated.
+        False where the time is infinite, or that simulated.
     ratio : ndarray, shape (n, D)
         As in `accelerated_life.Run`.
     changes : ndarray, shape (n,)
@@ -45,7 +45,7 @@ class Lives(NamedTuple):
 
     @staticmethod
     def nothing(n: int, depths: int) -> "Lives":
-        """Return what is known of n beams before they are run."""
+        """Return the lives of n beams before they are run: unknown."""
         unknown = np.full((2, n, 3, depths), np.nan)
         ratio = np.full((n, depths), np.nan)
         reached = np.zeros((n, 3, depths), bool)
@@ -69,8 +69,8 @@ def find_lives(
     propagator, system, state, gaps, work, share, growths
         As in `accelerated_life.run_life`.
     accuracy : float
-        Relative error at which a beam's lives are good enough. It also sets the longest run: where
-        that does not suffice, the error shows it.
+        Relative error at which a beam's lives are accurate enough. It also sets the longest run: if
+        this does not suffice, the error shows it.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def find_lives(
             error[changed | one.lost] = np.inf
         else:
             time, error = extrapolate(times[level + 1 - LEAST : level + 1, left])
-        # A life that one of the runs did not reach is known no better than by its own size.
+        # The error of a life that one of the runs did not reach is as large as the life.
         error = np.where(before & np.isfinite(error), np.minimum(error, time), time)
         out.time[left, :2] = np.where(one.reached, time, one.time)
         out.error[left, :2] = np.where(one.reached, error, np.nan)

@@ -1,9 +1,9 @@
-"""Orbits that wear has made unstable are left at once, not when rounding has grown.
+"""Orbits made unstable by wear are left at once, not only when rounding errors have grown.
 
-A beam that follows an orbit through the loss of its stability stays next to it until what is left
-of its disturbances has grown again. In a life of 1e9 periods that is no time at all; in an
-accelerated one it may be half of it, and the life comes out too long. So the multiplier of an orbit
-of one period is computed on the way, and a beam whose orbit has just become unstable is pushed.
+A beam that follows an orbit through its loss of stability stays close to it until the remaining
+disturbances have grown again. In a life of 1e9 periods this delay is negligible; in an accelerated
+one it may be half the life, which is then overestimated. So the multiplier of a period-1 orbit is
+computed on the way, and a beam whose orbit has just become unstable is pushed.
 """
 
 import numpy as np
@@ -25,13 +25,13 @@ def push_off_unstable_orbits(
     regime: NDArray[np.int8],
     unstable: NDArray[np.bool_],
 ) -> None:
-    """Push the beams that follow an orbit which has become unstable.
+    """Push the beams whose orbit has become unstable.
 
     Parameters
     ----------
     propagator : Propagator
     system : System
-        What it prepared.
+        Prepared by it.
     state : ndarray, shape (n, k)
         Updated in place.
     gaps : ndarray, shape (n, 2)
@@ -39,8 +39,8 @@ def push_off_unstable_orbits(
     regime : ndarray of int8, shape (n,)
         Index into `models.beam.parameters.REGIMES`.
     unstable : ndarray of bool, shape (n,)
-        Whether the orbit was so before; updated in place. One push is enough: the next might undo
-        what has grown of it.
+        Whether the orbit was already unstable; updated in place. One push suffices: another might
+        cancel its growth.
     """
     rows = np.flatnonzero((regime == SYMMETRIC) | (regime == ASYMMETRIC))
     now = np.zeros_like(unstable)

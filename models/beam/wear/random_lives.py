@@ -1,8 +1,9 @@
 """Lifetimes under a random load: the gaps grow by increments, with a time mean of the wear at each.
 
-A random load leaves no branches to follow and no memory of the path: the mean wear of a site
-depends on the gaps alone, and its life is the integral of dx over it (eqs 10 to 12 of Knudsen &
-Massih 2002). An accelerated life would take each burst of the load for a hundred, and each lull.
+Under a random load there are no branches to follow and no memory of the path: the mean wear rate of
+a site depends only on the gaps, and its life is the integral of dx over it (eqs 10 to 12 of Knudsen
+& Massih 2002). An accelerated life would stretch each burst of the load, and each lull, a
+hundredfold.
 """
 
 import numpy as np
@@ -15,10 +16,10 @@ from models.beam.wear.fitted_wear import FittedWear
 from models.beam.wear.lives import Lives
 from models.numerics.elementary import expm1, log1p
 
-INCREMENTS = 12  # in which the faster gap grows to the last depth
-_OVERTIME = 3  # times as many for the slower one
+INCREMENTS = 12  # of the faster gap, up to the last depth
+_OVERTIME = 3  # times as many for the slower gap
 _LONGEST = 82  # over the accuracy: periods at each increment
-_ANY = 1e9  # error of a mean whose length is given
+_ANY = 1e9  # accuracy of a mean of given length
 _MEMORY = 0.3  # weight of the newest node in the sites' shares of wear
 
 
@@ -42,13 +43,13 @@ def find_random_lives(
     error : ndarray, shape (n, 2)
         Standard error of `work`.
     accuracy : float
-        Sets how long a time mean is taken at each increment. Their
-        errors show what accuracy the lives have.
+        Sets the length of the time mean at each increment. The errors show the accuracy of the
+        lives.
 
     Returns
     -------
     Lives
-        With the errors within which nine in ten lie.
+        The errors are half-widths of 90 % intervals.
     """
     n = len(state)
     periods = SHORTEST << max(0, round(np.log2(_LONGEST / accuracy / SHORTEST)))
@@ -75,18 +76,18 @@ def find_random_lives(
         narrow = (gaps[i] + grown[last[i], i]).min()
         silent = not rate[last[i], i].any() and system.reach[i] < narrow
         _note(i, out, gaps[i], grown[some, i], rate[some, i], doubt[some, i], growths[i], silent)
-        # A random load knows one regime until contact ends.
+        # Under a random load there is one regime until contact ends.
         out.changes[i] = float(silent and bool(rate[0, i].any()))
     out.error[:] *= NINE_IN_TEN
     return out
 
 
 def _step(grown: Array, rate: Array, growths: Array) -> Array:
-    """Return what the gaps of n beams have grown to at the next node, NaN where there is none.
+    """Return the growth of the gaps of n beams at the next node, NaN where there is none.
 
-    The faster of the sites that have not finished goes to its next grid point; the grid is finer
-    where the gap is new. A site that has finished long ago may be very much faster still: its
-    growth, with the last depth, no more than doubles.
+    The faster of the unfinished sites advances to its next grid point; the grid is finer at small
+    growth. A finished site may be very much faster still: its growth, plus the last depth, at most
+    doubles.
     """
     head_start = growths[:, :1] / 2
     whole = log1p(growths[:, -1:] / head_start)
@@ -113,7 +114,7 @@ def _note(
     growths: Array,
     silent: bool,
 ) -> None:
-    """Note the lives of beam i, from how its sites had grown and wore at the nodes."""
+    """Record the lives of beam i from the growth and wear rates of its sites at the nodes."""
     if np.isnan(rate).any():
         return
     at = np.full((2, len(growths)), np.nan)
@@ -127,7 +128,7 @@ def _note(
         simulated = max(simulated, whole if np.isfinite(whole) else 0.0)
         for depth in np.flatnonzero(growths <= x[-1] * (1 + 1e-9)).tolist():
             life, uncertainty = wear.life(growths[depth])
-            if not np.isfinite(life):  # a fit of next to nothing
+            if not np.isfinite(life):  # a fit of negligible wear
                 break
             out.time[i, site, depth], out.error[i, site, depth] = life, uncertainty
             out.reached[i, site, depth] = True

@@ -1,8 +1,8 @@
-"""The regime of a wearing beam, look by look, in spite of the drift, and its changes.
+"""The regime of a wearing beam, look by look, despite the drift, and its changes.
 
 The strobe points of a beam whose gaps grow never return exactly: they drift. But those of a
-response of period k all drift alike, so that the step from one to the k-th after it is the same
-all along a look. That is the criterion here; the result hardly depends on its tolerance.
+response of period k drift uniformly: the step from each to the k-th after it is constant within a
+look. That is the criterion here; the result hardly depends on its tolerance.
 """
 
 from typing import NamedTuple
@@ -15,11 +15,11 @@ from models.beam.response.settling import LONGEST_PERIOD
 from models.beam.structure.modal import Array
 from models.numerics.jit import kernel
 
-WINDOW = 2 * LONGEST_PERIOD  # periods that a look must have for its regime to be known
+WINDOW = 2 * LONGEST_PERIOD  # periods of a look, at least, for its regime to be known
 CONFIRMED = 3  # looks in a row that a regime must last to count
 UNKNOWN = -1
 _STEADY = 1e-2  # unevenness of the drift, relative to the response
-_SYMMETRIC = 1e-2  # difference of the sites' work, relative to their sum: wear unsettles it
+_SYMMETRIC = 1e-2  # difference of the sites' work, relative to their sum: looser because of wear
 
 
 class History(NamedTuple):
@@ -44,7 +44,7 @@ class History(NamedTuple):
 
     @staticmethod
     def nothing(n: int, looks: int) -> "History":
-        """Return the history of n beams before they are run."""
+        """Return the history of n beams before they are run: unknown."""
         time = np.full((n, looks), np.nan)
         gaps, work = np.full((2, n, looks, 2), np.nan)
         return History(time, gaps, work, np.full((n, looks), UNKNOWN, np.int8))
@@ -52,7 +52,7 @@ class History(NamedTuple):
 
 @kernel
 def regime_of(strobe, work):
-    """Return the regime by the last `WINDOW` strobe points and works of one beam."""
+    """Return the regime from the last `WINDOW` strobe points and works of one beam."""
     periods = len(strobe)
     scale = right = left = 0.0
     for j in range(periods - WINDOW, periods):
@@ -82,7 +82,7 @@ def _drifts_evenly(strobe, lag, tolerance):
 
 @kernel
 def confirmed_regimes(regime, confirmed=CONFIRMED):
-    """Return the regimes of each look less those that did not last.
+    """Return the regime of each look, without regimes that did not last.
 
     Parameters
     ----------
@@ -94,8 +94,8 @@ def confirmed_regimes(regime, confirmed=CONFIRMED):
     Returns
     -------
     ndarray of int8, shape (n, L)
-        A regime begins with the first of so many equal looks in a row; that of no impact, which
-        is the end of wear, needs none to follow. `UNKNOWN` before the first, and after the end.
+        A regime begins with the first of this many equal looks in a row; that of no impact, which
+        is the end of wear, needs only one. `UNKNOWN` before the first, and after the end.
     """
     out = np.full_like(regime, UNKNOWN)
     for i in range(len(regime)):

@@ -2,7 +2,7 @@
 
 Reading order; a module imports only those above it:
 
-    states        what a mole's future depends on, and how it moved
+    states        states and motions of a mole
     events        the loop over events
     propagator    one mole, started and followed
 """

@@ -1,8 +1,10 @@
 """From event to event: the loop of the exact propagator, compiled.
 
-Between two events the equations are smooth, and `models.numerics.dop853` integrates them. Events:
-the bar meets or leaves the stop, a slip ends, an interface no longer sticks, the relay switches.
-While the bar slips, v keeps its sign: u has its extremes at events, and an integration's ends.
+Between two events the equations are smooth and integrated by `models.numerics.dop853`. Events: the
+bar meets or leaves the stop, a slip ends, an interface no longer sticks, the relay switches.
+
+While the bar slips, v keeps its sign: the extremes of u are at events and at the ends of an
+integration.
 """
 
 import math
@@ -15,7 +17,7 @@ from models.numerics.dop853 import GUARDED, REACHED_END, integrator
 from models.numerics.jit import kernel
 
 _CONTACT, _BAR, _MOLE = range(3)  # guards
-_LOOKS = 16  # in a step: with 8, slips of the mole half a millisecond long go unseen
+_LOOKS = 16  # per step: with 8, slips of the mole of half a millisecond go unnoticed
 
 
 class _Run(NamedTuple):
@@ -62,13 +64,13 @@ _integrate = integrator(equations.rates, _guards, 3, _LOOKS, _longest)
 
 @kernel
 def _give_way(hold, force):
-    """Return the direction of the slip that begins."""
+    """Return the direction in which an interface begins to slip."""
     return 1 if hold.gain * force + hold.offset > 0 else -1
 
 
 @kernel
 def _after(mode, interface, y):
-    """Return how bar and mole slip after an event at one interface; put its velocity to rest."""
+    """Return how bar and mole slip after an event at one interface; zero its velocity."""
     bar, mole = mode.bar, mode.mole
     slips = bar != 0 if interface == _BAR else mole != 0
     if slips:
@@ -76,7 +78,7 @@ def _after(mode, interface, y):
     force = equations.force(mode.q, mode.contact, y[0], y[1], y[3])
     if slips:
         return decide(mode.q, y[1], y[2], force)
-    # The force is on its limit: to ask again what sticks would be to toss a coin, forever.
+    # The force is at its limit: rounding errors would decide again and again whether it sticks.
     if interface == _BAR:
         bar = _give_way(mode.bar_hold, force)
         if mole == 0:

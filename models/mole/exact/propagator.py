@@ -1,4 +1,4 @@
-"""One mole over any time, by `models.numerics.propagator.Yardstick`."""
+"""One mole over any time: a `models.numerics.propagator.Yardstick`."""
 
 import math
 
@@ -28,8 +28,8 @@ def start(params: Params, q: Mole) -> State:
 def propagate(q: Mole, state: State, end: float, tolerance: float, times: ArrayLike = ()) -> Motion:
     """Follow one mole.
 
-    The tolerance is relative to each component of the state, or to its size in `scales` if that is
-    greater.
+    The tolerance is relative to each component of the state, or to its `scales` if these are
+    larger.
     """
     q = Mole._make([*(float(field) for field in q[:-1]), int(q.formulation)])
     times = np.ascontiguousarray(times, float)
@@ -63,7 +63,7 @@ def propagate(q: Mole, state: State, end: float, tolerance: float, times: ArrayL
 
 
 def _fastest(q: Mole) -> float:
-    """Return the sum of the rates at which something happens [s-1]."""
+    """Return the sum of the characteristic rates [s-1]."""
     return (
         math.sqrt((q.contact_stiffness + q.spring_stiffness) / q.mass)
         + q.damping / q.mass
@@ -75,11 +75,11 @@ def _fastest(q: Mole) -> float:
 
 
 def scales(q: Mole) -> NDArray[np.float64]:
-    """Return the size of each component of the state.
+    """Return the scale of each component of the state.
 
-    Of voltage and displacement by the data; of the current by the resistance; of energy by what
-    such a current has in the coil on behalf of the bar; of velocity and impulse by a bar with that
-    energy.
+    Those of voltage and displacement are given; that of the current follows from the resistance; of
+    energy from this current in the inductance added by the bar; of velocity and impulse from a bar
+    with that energy.
     """
     current = q.voltage / q.resistance
     energy = 0.5 * q.bar_inductance * current**2

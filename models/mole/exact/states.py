@@ -1,4 +1,4 @@
-"""What the exact propagator starts from, and what it returns."""
+"""States and motions of the exact propagator."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 class State(NamedTuple):
-    """All that a mole's future depends on.
+    """Everything on which a mole's future depends.
 
     Attributes
     ----------
@@ -18,10 +18,10 @@ class State(NamedTuple):
     contact : bool
         Whether the bar touches the stop.
     bar, mole : int
-        How they slip: 1, -1, or 0 if they stick. At zero velocity a slip may just have begun.
+        Direction of slip: 1, -1, or 0 if they stick. At zero velocity a slip may just have begun.
     switched : int
-        How often the relay has switched: it is closed if that is odd. It switches at multiples of
-        half the control period, and a state at that instant is the one before.
+        How often the relay has switched; it is closed if this is odd. It switches at multiples of
+        half the control period, and a state at such an instant is the one before.
     """
 
     time: float
@@ -33,24 +33,24 @@ class State(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """How one mole moved.
+    """The motion of one mole.
 
     Attributes
     ----------
     status : int
         `REACHED_END`, `OUT_OF_BUDGET` or `STUCK`, of `models.numerics.dop853`.
     state : State
-        The last.
+        The last one.
     contacts : int
-        Begun on the way.
+        Contacts begun.
     events : int
-        All of them, switching included.
+        All events, including switching.
     lowest, highest : float
         Displacement u [m].
     steps : int
-        Tried.
+        Steps tried.
     samples : ndarray, shape (k, 12)
-        At the times asked for, NaN from where the motion ended.
+        At `times`; NaN after the end of the motion.
     """
 
     status: int

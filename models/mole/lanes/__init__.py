@@ -1,4 +1,4 @@
-"""The fast propagator: sixteen moles abreast.
+"""The fast propagator: sixteen moles at a time.
 
 Reading order; a module imports only those above it:
 
@@ -6,9 +6,9 @@ Reading order; a module imports only those above it:
     rates         their rates of change
     modes         constants and guards of each mode
     events        what an event changes
-    steps         what follows a trial step
+    steps         decisions after a trial step
     rows          how a row enters and leaves a lane
-    strobe        whether the motion repeats, once in a control period
+    strobe        whether the motion repeats, checked once per control period
     loop          each lane with its own step: the hot loop
     propagator    n moles, prepared, started and advanced
 """

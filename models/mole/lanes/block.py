@@ -1,4 +1,4 @@
-"""What sixteen moles abreast keep in memory, and where."""
+"""The memory layout of sixteen moles."""
 
 from typing import Any, NamedTuple
 
@@ -7,12 +7,12 @@ import numpy as np
 from models.numerics import dop8
 from models.numerics.blocks import LANES, aligned
 
-# Quantities of a lane; tangents, each with the first five, follow.
+# Quantities of a lane, followed by its tangents, which have the first five each.
 U, V, X, CURRENT, P, ADDED, SINE, COSINE = range(8)
 PLAIN = 8
 MEASURED = 5
 
-# Rows of a block's memory: first the constants of a lane in its present mode.
+# Rows of a block's memory, beginning with the constants of a lane in its present mode.
 (
     STEP,
     A,
@@ -32,8 +32,8 @@ MEASURED = 5
     GAP,
 ) = range(16)
 
-# Integrals over a trial step, and their sums so far: of velocity, of the powers of impacts and
-# supply, and of the contact force.
+# Integrals over a trial step, and their sums so far: of the velocity, the powers of impacts and
+# supply, and the contact force.
 PROGRESS, IMPACT, ELECTRIC, IMPULSE = range(4)
 INTEGRALS = 4
 INTEGRAL, SUM = 16, 20
@@ -41,8 +41,8 @@ INTEGRAL, SUM = 16, 20
 # Derivatives of F with respect to u and i, and of i' with respect to u, v, i and p.
 JACOBIAN = 24
 
-# Guards, positive while the mode lasts: of the stop, of the bar's and of the mole's friction. How
-# they follow from the state, and their values and rates at both ends of a step.
+# Guards, positive while the mode lasts: of the stop, of the bar's and of the mole's friction. Their
+# coefficients, and their values and rates at both ends of a step.
 TOUCH, BAR, MOLE = range(3)
 GUARDS = 3
 OPEN, BAR_SLIP, MOLE_SLIP, BAR_HOLD, MOLE_HOLD = range(30, 35)
@@ -53,29 +53,29 @@ START, START_RATE, END, END_RATE = (39 + i * GUARDS for i in range(4))
 ROW, BAR_MODE, MOLE_MODE, TOUCHING, HALF, TARGET, CONTACTS, ENTRIES = range(51, 59)
 WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(59, 67)
 
-# Of the coil: what the bar adds in its middle, its width, and how long a step may be near it.
+# The coil: inductance added by the bar in its middle, its width, and the longest step near it.
 ADDED_MOST, WIDTH, REACH = range(67, 70)
 
-GROWTH = 70  # logarithm of what tangents were divided by
+GROWTH = 70  # logarithm of the factor by which tangents were divided
 ROWS = 71
 
 LONGEST_PERIOD = 64
-"""Common periods among which a repetition is looked for."""
+"""Number of common periods among which a repetition is sought."""
 
 
 class Block(NamedTuple):
-    """Memory of sixteen lanes; rows of one lane stand LANES apart.
+    """Memory of sixteen lanes; the numbers of one lane are LANES apart.
 
     Attributes
     ----------
     whole : ndarray
-        States, arguments and slopes, see `models.numerics.dop8.layout`.
+        States, arguments and slopes; see `models.numerics.dop8.layout`.
     state, new : ndarray
-        Views of states and arguments; after the last stage `new` is the state reached.
+        Views of states and arguments; after the last stage `new` is the new state.
     end : ndarray
-        Slopes at the state reached.
+        Slopes at the new state.
     memory : ndarray
-        All else, see the rows above.
+        Everything else; see the rows above.
     share, error : ndarray
         See `models.numerics.dop8.estimator`.
     ring : ndarray, shape (LANES, LONGEST_PERIOD, MEASURED)
@@ -93,7 +93,7 @@ class Block(NamedTuple):
 
     @staticmethod
     def made(columns: int) -> "Block":
-        """Return memory for lanes with so many columns of tangents."""
+        """Return memory for lanes with this many columns of tangents."""
         size = quantities(columns)
         where = dop8.layout(size)
         whole = aligned(where.size)
@@ -111,5 +111,5 @@ class Block(NamedTuple):
 
 
 def quantities(columns: int) -> int:
-    """Return the number of quantities of a lane with so many columns of tangents."""
+    """Return the number of quantities of a lane with this many columns of tangents."""
     return PLAIN + MEASURED * columns

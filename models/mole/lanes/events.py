@@ -12,7 +12,7 @@ from models.numerics.jit import lean
 
 @lean
 def happen(which, q, lane, m, y, columns):
-    """Change the mode of a lane whose guard `which` has come to zero."""
+    """Change the mode of a lane whose guard `which` has reached zero."""
     bar, mole = m[at.BAR_MODE * LANES + lane], m[at.MOLE_MODE * LANES + lane]
     touching = m[at.TOUCHING * LANES + lane] == 1
     u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
@@ -23,7 +23,7 @@ def happen(which, q, lane, m, y, columns):
         m[at.CONTACTS * LANES + lane] += 0 if touching else 1
         y[at.U * LANES + lane] = q.stop_gap
     elif which == BAR and bar == 0:
-        # The force has just reached the limit: which way it slips is not to be decided anew.
+        # The force has just reached its limit: the direction of slip is known.
         m[at.BAR_MODE * LANES + lane] = 1 if force + bar_hold(q, mole).offset > 0 else -1
     elif which == MOLE and mole == 0:
         m[at.MOLE_MODE * LANES + lane] = 1 if mole_hold(q, bar).offset - force > 0 else -1
@@ -43,7 +43,7 @@ def happen(which, q, lane, m, y, columns):
         before, after = response(q, bar, mole), response(q, new_bar, new_mole)
         _saltate(lane, y, which, columns, force, before, after)
     enter(q, lane, m, y)
-    # What has just begun to slip, or to move away, does so from zero.
+    # A slip or a separation that has just begun starts from zero.
     begun = which == TOUCH or m[(at.BAR_MODE + which - BAR) * LANES + lane] != 0
     if begun:
         m[(at.START + which) * LANES + lane] = 0.0
@@ -51,7 +51,7 @@ def happen(which, q, lane, m, y, columns):
 
 @lean
 def _saltate(lane, y, which, columns, force, before, after):
-    """Take tangents through the end of a slip: they meet it at different times."""
+    """Apply the saltation matrix of the end of a slip to the tangents."""
     kick_v = (after.a - before.a) * force + after.b - before.b
     kick_x = (after.d - before.d) * force + after.e - before.e
     along = at.V if which == BAR else at.X
@@ -75,7 +75,7 @@ def turn_relay(q, lane, m, y):
     stop = m[(at.START + TOUCH) * LANES + lane]
     bar, mole = m[(at.START + BAR) * LANES + lane], m[(at.START + MOLE) * LANES + lane]
     enter(q, lane, m, y)
-    # What begins to move just now does so from zero.
+    # A slip that begins now starts from zero.
     m[(at.START + TOUCH) * LANES + lane] *= 0.0 if stop == 0 else 1.0
     m[(at.START + BAR) * LANES + lane] *= 0.0 if bar == 0 else 1.0
     m[(at.START + MOLE) * LANES + lane] *= 0.0 if mole == 0 else 1.0
@@ -83,7 +83,7 @@ def turn_relay(q, lane, m, y):
 
 @lean
 def set_supply(q, lane, m, y):
-    """Set clock and supply at the beginning of half a control period."""
+    """Set clock and supply at the start of half a control period."""
     half = m[at.HALF * LANES + lane]
     angle = q.supply_phase + q.supply_speed * (half * 0.5 * q.control_period)
     y[at.SINE * LANES + lane] = math.sin(angle)

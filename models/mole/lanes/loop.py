@@ -1,9 +1,9 @@
-"""Sixteen moles abreast, each with its own step, every event located.
+"""Sixteen moles at a time, each with its own step and with every event located.
 
-All lanes take a trial step; what follows is each lane's own affair. A lane whose guards stay
-positive goes on. One that has met an event tries again with a step that ends there, which takes two
-or three trials. The relay's switchings are met exactly. A lane whose row is done takes the next
-row. No lane sees another, so a row's bits do not depend on its neighbours.
+All lanes take a trial step; then each lane is treated on its own. A lane whose guards stay positive
+accepts it. One that has met an event tries again with a step that ends there, which takes two or
+three trials. Steps end exactly where the relay switches. A lane whose row is done takes the next
+row. Lanes are independent, so a row's bits do not depend on its neighbours.
 """
 
 from collections.abc import Callable
@@ -27,12 +27,12 @@ def propagator(columns: int) -> Callable[..., None]:
     Parameters
     ----------
     columns : int
-        Of tangents.
+        Columns of tangents.
 
     Returns
     -------
     kernel
-        ``propagate(task, block)``, with a `Task` and a `Block`, until every row is done.
+        ``propagate(task, block)``, with a `Task` and a `Block`, returns when every row is done.
     """
     size = quantities(columns)
     rates = slopes(columns)
@@ -43,7 +43,7 @@ def propagator(columns: int) -> Callable[..., None]:
 
     @lean
     def keep(m, y, new):
-        """Take over the new state of the lanes whose step was taken."""
+        """Store the new state of the lanes whose step was accepted."""
         for q in range(size):
             for lane in range(LANES):
                 j = q * LANES + lane
@@ -56,7 +56,7 @@ def propagator(columns: int) -> Callable[..., None]:
 
     @lean
     def propagate(task, block):
-        # What is taken out of a tuple within a loop is counted in and out again each time.
+        # Unpack tuples before the loop: inside it, every access would be reference-counted.
         w, y, new, end, m, share, error, ring = block
         table, rows = task.table, task.record.shape[0]
         waiting = running = 0

@@ -1,7 +1,7 @@
-"""Modes of sixteen moles abreast: their constants and their guards.
+"""Modes of sixteen moles: their constants and guards.
 
 A guard is positive while its part of the mode lasts: the distance to the stop; the slip velocity of
-an interface along its direction, or the friction limit less the force that sticking needs.
+an interface in its direction, or the friction limit less the force required for sticking.
 """
 
 import math
@@ -57,7 +57,7 @@ def force_on_bar(q, touching, u, v, i):
 
 @lean
 def enter(q, lane, m, y):
-    """Set what depends on the mode of a lane: constants, longest step, guards at the start."""
+    """Set everything that depends on a lane's mode: constants, longest step, initial guards."""
     bar, mole = m[at.BAR_MODE * LANES + lane], m[at.MOLE_MODE * LANES + lane]
     touching = m[at.TOUCHING * LANES + lane] == 1
     mode = response(q, bar, mole)
@@ -77,7 +77,7 @@ def enter(q, lane, m, y):
     m[at.BAR_HOLD * LANES + lane] = 1.0 if bar == 0 else 0.0
     m[at.BAR_OFFSET * LANES + lane] = hold.offset if bar == 0 else 0.0
     m[at.BAR_LIMIT * LANES + lane] = hold.limit if bar == 0 else 0.0
-    # Where the bar sticks to a mole that sticks, nothing pulls at the mole.
+    # If both bar and mole stick, no net force acts on the mole.
     hold = mole_hold(q, bar)
     pulled = mole == 0 and bar != 0
     m[at.MOLE_HOLD * LANES + lane] = 1.0 if pulled else 0.0

@@ -1,4 +1,4 @@
-"""n moles over whole control periods, by `models.numerics.propagator.Propagator`."""
+"""n moles over whole control periods: a `models.numerics.propagator.Propagator`."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -26,7 +26,7 @@ from models.numerics import elementary
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
-BUDGET = 2_000_000  # trial steps of a mole; more where averages are long
+BUDGET = 2_000_000  # trial steps of a mole; more for long averages
 
 
 class System(NamedTuple):
@@ -35,13 +35,13 @@ class System(NamedTuple):
     Attributes
     ----------
     table : ndarray, shape (n, 20)
-        Of `models.mole.lanes.rows.table_of`.
+        See `models.mole.lanes.rows.table_of`.
     control_frequency : ndarray, shape (n,)
         [Hz]
     common : ndarray of int, shape (n,)
         Common period of control and mains [control periods], 0 if there is none.
     tolerance : float
-        Of a step.
+        Relative tolerance of a step.
     budget : int
         Trial steps of each mole.
     """
@@ -53,7 +53,7 @@ class System(NamedTuple):
     budget: int
 
     def take(self, rows: NDArray[np.intp]) -> "System":
-        """Return the systems of some rows."""
+        """Return some of the moles."""
         return System(
             self.table[rows],
             self.control_frequency[rows],
@@ -64,7 +64,7 @@ class System(NamedTuple):
 
 
 def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
-    """Prepare n moles, by the formulation and the tolerance set: all in one group."""
+    """Prepare n moles with the formulation and tolerance of the settings, all in one group."""
     n = len(p.control_frequency)
     yield (
         np.arange(n),
@@ -81,8 +81,8 @@ def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], Syst
 def start(system: System, displacement: Array, velocity: Array) -> Array:
     """Return the records of moles at rest whose relays have just closed, shape (n, RECORD).
 
-    The bars are at u [m] and move at v [m s-1]. A record holds the state and what the last run has
-    seen, see `models.mole.lanes.rows`.
+    The bars are at u [m] and move at v [m s-1]. A record holds the state and what the last run
+    measured; see `models.mole.lanes.rows`.
     """
     record = np.empty((len(system.table), RECORD))
     begin(system.table, displacement, velocity, record)
@@ -101,18 +101,17 @@ def advance(
     Parameters
     ----------
     system, record
-        As `groups` and `start` return them.
     limit : ndarray of int, shape (n,)
-        Control periods since the start at which to end.
+        Control periods since the start at which to stop.
     tangents : ndarray, shape (n, 5 columns), optional
         0, 1 or 5 columns, updated in place; see `models.mole.lanes.rows.Task`.
     repeat : bool
-        Whether to end where the motion repeats.
+        Whether to stop once the motion repeats.
 
     Returns
     -------
     ndarray of int
-        Moles that got where they should.
+        Moles that reached their limit, or a repetition.
     """
     n = len(record)
     if tangents is None:
@@ -125,7 +124,7 @@ def advance(
 
 
 def monodromy(system: System, record: Array, limit: Counts) -> Array:
-    """Return the derivative of (u, v, x, i, p); zero by what sticks now."""
+    """Return the derivative of (u, v, x, i, p); zero with respect to a sticking velocity."""
     after = record.copy()
     tangents = np.tile(np.eye(MEASURED).ravel(), (len(record), 1))
     advance(system, after, limit, tangents)

@@ -1,10 +1,10 @@
-"""Rates of change of sixteen moles abreast: straight lines without branches.
+"""Rates of change of sixteen moles: straight-line code without branches.
 
 Within a mode v' = a F + b and x' = d F + e, see `models.mole.theory.friction`; contact and relay
-are numbers, too, so that every lane does the same. Two helpers make the equations polynomial but
-for one division: the bar's share of the inductance, and sine and cosine of the supply, are
-integrated along. The first, which is negligible far from the coil, is set anew at the start of each
-step; the others as often as the relay switches.
+are numbers, too, so that every lane executes the same code. Auxiliary variables make the equations
+polynomial but for one division: the inductance added by the bar, and sine and cosine of the supply,
+are integrated along. The first, which is negligible far from the coil, is reset at the start of
+each step; the others whenever the relay switches.
 """
 
 import math
@@ -52,7 +52,7 @@ from models.numerics.jit import lean
 
 @lean
 def renew(m, y):
-    """Set the bar's share of the inductance."""
+    """Set the inductance added by the bar."""
     for lane in range(LANES):
         u = y[U * LANES + lane]
         share = math.exp(0.5 * m[SLOPE * LANES + lane] * u * u)
@@ -65,13 +65,13 @@ def slopes(columns: int) -> Callable[..., None]:
     Parameters
     ----------
     columns : int
-        Of tangents.
+        Columns of tangents.
 
     Returns
     -------
     kernel
         ``slopes(m, y, k, weight)`` sets k to the rates at y times the step, and adds weight times
-        those of the integrals to them.
+        the integrands, times the step, to the integrals.
     """
 
     @lean

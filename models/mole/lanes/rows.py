@@ -1,4 +1,4 @@
-"""Rows of a study in the lanes: taken in and given back."""
+"""Rows of a study, loaded into lanes and stored back."""
 
 import math
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ from models.mole.theory.friction import decide
 from models.mole.theory.system import Mole
 from models.numerics.jit import kernel, lean
 
-# What is kept of a row: the state, which tells all that is to come, and what a run has seen.
+# The record of a row: its state, on which its future depends, and what a run measured.
 (
     U,
     V,
@@ -47,21 +47,20 @@ SCALES = (1e-2, 1.0, 0.1)
 
 
 class Task(NamedTuple):
-    """Rows to be propagated.
+    """Rows to propagate.
 
     Attributes
     ----------
     table : ndarray, shape (n, 20)
         `Mole`s.
     record : ndarray, shape (n, RECORD)
-        Where they stand, updated in place; integrals, contacts, extremes and growth are those of
-        this run.
+        Updated in place; integrals, contacts, extremes and growth are those of this run.
     tangents : ndarray, shape (n, 5 columns)
-        Updated in place, and brought back to size 1; what sticks has no freedom.
+        Updated in place and rescaled to size 1; zero in sticking velocities.
     limit : ndarray of int, shape (n,)
-        Control periods since the start at which to end.
+        Control periods since the start at which to stop.
     common : ndarray of int, shape (n,)
-        Control periods after which the motion may repeat, which ends the run; 0: never.
+        Control periods after which a repetition ends the run; 0: never.
     tolerance : float
         Of a step, relative to the scales.
     budget : int
@@ -84,7 +83,7 @@ def table_of(moles: Mole, n: int) -> Any:
 
 @kernel
 def begin(table, displacement, velocity, record):
-    """Set the records of moles at rest, bars thrown, relays just closed."""
+    """Set the records of moles at rest with moving bars, relays just closed."""
     record[:] = 0.0
     for row in range(len(record)):
         q, r = mole_of(table, row), record[row]
@@ -99,7 +98,7 @@ def begin(table, displacement, velocity, record):
 
 @lean
 def load(lane, row, task, m, y, share, columns):
-    """Give a lane a row to work on."""
+    """Load a row into a lane."""
     q, r = mole_of(task.table, row), task.record[row]
     m[at.ROW * LANES + lane] = row
     m[at.BAR_MODE * LANES + lane] = int(r[BAR_MODE])
@@ -144,7 +143,7 @@ def load(lane, row, task, m, y, share, columns):
 
 @lean
 def unload(lane, task, m, y, columns, outcome):
-    """Note how a row stands."""
+    """Store a lane in the record of its row."""
     row = int(m[at.ROW * LANES + lane])
     r = task.record[row]
     for j in range(MEASURED):
@@ -168,7 +167,7 @@ def unload(lane, task, m, y, columns, outcome):
 
 @lean
 def idle(lane, m):
-    """Let a lane stand still."""
+    """Stop a lane for which no row is left."""
     m[at.ROW * LANES + lane] = -1
     m[at.STEP * LANES + lane] = 0.0
     m[at.HALF_PERIOD * LANES + lane] = np.inf

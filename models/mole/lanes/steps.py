@@ -1,4 +1,4 @@
-"""What follows a trial step of sixteen moles abreast: all that is decided lane by lane."""
+"""Decisions after a trial step of sixteen moles, lane by lane."""
 
 import math
 
@@ -12,16 +12,16 @@ from models.numerics.events import crossing, dip
 from models.numerics.jit import lean
 
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 5.0
-_LOCATED = 1e-6  # of the longest step: what is left to an event, made up for to first order
-_LOST = 1e-9  # of the longest step: a guard that opens no wider does not open
-_DONE = 1 - 1e-12  # of half a control period: what is left is rounding
-_GRAZE = 0.05  # of a guard at the ends of a step: so low in between that a step must end there
-_LOW = 0.75  # of a guard: what must fall away in a step for a low point to be worth a look
+_LOCATED = 1e-6  # of the longest step: distance to an event that is bridged to first order
+_LOST = 1e-9  # of the longest step: a guard positive for less than this never opened
+_DONE = 1 - 1e-12  # of half a control period: the rest is rounding error
+_GRAZE = 0.05  # of a guard at the ends of a step: a minimum below this must end a step
+_LOW = 0.75  # of a guard: a smaller extrapolated fall needs no check for a minimum
 
 
 @lean
 def next_step(lane, m, wish):
-    """Choose the next step of a lane: as wished, within bounds, and to the switching if near."""
+    """Choose the next step of a lane: as wished, within bounds, up to the switching if near."""
     h = min(wish, m[at.LONGEST * LANES + lane], m[at.REACH * LANES + lane])
     rest = m[at.HALF_PERIOD * LANES + lane] - m[at.TIME * LANES + lane]
     m[at.STEP * LANES + lane] = rest if rest <= h * 1.000001 else h
@@ -29,14 +29,14 @@ def next_step(lane, m, wish):
 
 @lean
 def look(m, error):
-    """Take the steps of all lanes that met nothing; mark the others."""
+    """Accept the steps of all lanes that met no event; mark the others."""
     for lane in range(LANES):
         h, time = m[at.STEP * LANES + lane], m[at.TIME * LANES + lane]
         crossed = m[at.END * LANES + lane] < 0
         crossed |= m[(at.END + 1) * LANES + lane] < 0
         crossed |= m[(at.END + 2) * LANES + lane] < 0
         for g in range(GUARDS):
-            # A guard that falls and rises again, and would have come near zero had it gone on.
+            # A guard that falls and rises again, and would have come near zero at its first rate.
             start = m[(at.START + g) * LANES + lane]
             fall = m[(at.START_RATE + g) * LANES + lane] * h
             crossed |= (fall < -_LOW * start) & (m[(at.END_RATE + g) * LANES + lane] > 0)
@@ -47,7 +47,7 @@ def look(m, error):
         m[at.TRIALS * LANES + lane] += 1.0
         step = h if taken else 0.0
         m[at.TIME * LANES + lane] = time + step
-        # The error of a method of order 8 grows with the eighth power of the step.
+        # The error estimate grows with the eighth power of the step.
         least = error[lane] if error[lane] > 1e-9 else 1e-9
         factor = _SAFETY / math.sqrt(math.sqrt(math.sqrt(least)))
         factor = factor if factor < _GROW else _GROW
@@ -70,7 +70,7 @@ def look(m, error):
 
 @lean
 def _add_rest(lane, rest, m, y):
-    """Count in the short time that a located step lacks of its event."""
+    """Account for the short time between the end of a located step and its event."""
     u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
     i, added = y[at.CURRENT * LANES + lane], y[at.ADDED * LANES + lane]
     magnetic = 0.5 * i * i * m[at.SLOPE * LANES + lane] * u * added
@@ -85,7 +85,7 @@ def _add_rest(lane, rest, m, y):
 
 @lean
 def conclude(lane, table, m, y, new, end, error, size, columns):
-    """Deal with a lane whose step was not simply taken; tell if half a control period is over."""
+    """Treat a lane whose step was not yet accepted; return whether half a control period ended."""
     h, target = m[at.STEP * LANES + lane], int(m[at.TARGET * LANES + lane])
     m[at.TARGET * LANES + lane] = -1
     if not error <= 1.0:
@@ -101,7 +101,7 @@ def conclude(lane, table, m, y, new, end, error, size, columns):
         d_0 = m[(at.START_RATE + g) * LANES + lane] * h
         d_1 = m[(at.END_RATE + g) * LANES + lane]
         if g_1 < 0:
-            # One that opens within the step and closes again: not so far.
+            # It opens and closes within the step: try a shorter one.
             here = crossing(g_0, d_0, g_1, d_1) if g_0 > 0 else 0.25
             if which < 0 or here < place:
                 which, place = g, here
@@ -145,7 +145,7 @@ def conclude(lane, table, m, y, new, end, error, size, columns):
             rate = m[(at.END_RATE + g) * LANES + lane]
             m[(at.START_RATE + g) * LANES + lane] = rate / h
         if target >= 0:
-            # Not quite there: the next step is to end there.
+            # Just short of the event: the next step shall end there.
             m[at.TARGET * LANES + lane] = target
             wish = min(wish, rest)
     ended = m[at.TIME * LANES + lane] >= _DONE * m[at.HALF_PERIOD * LANES + lane]

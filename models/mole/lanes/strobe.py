@@ -1,4 +1,4 @@
-"""What is looked at once in a control period: whether the motion repeats, and how tangents grow."""
+"""Checks once per control period: whether the motion repeats, and how tangents grow."""
 
 import math
 
@@ -9,14 +9,14 @@ from models.mole.lanes.rows import GOING, PERIOD, REACHED_END, REPEATING, SCALES
 from models.numerics.jit import lean
 
 REPEAT = 1e-6  # of the scales of u, v, x, and of i and p by resistance and supply
-_ALIKE = 1e-4  # a divisor of the period at which the motion repeats so well is the period
+_ALIKE = 1e-4  # a divisor of the period at which the motion repeats this closely is the period
 
 
 @lean
 def _repetition(lane, q, m, y, ring):
     """Return after how many common periods the motion repeats, 0 if it does not.
 
-    Current and voltage may return with the other sign: only their squares act on the bar.
+    Current and voltage may return with opposite sign: only their squares act on the bar.
     """
     here = (
         y[at.U * LANES + lane],
@@ -32,7 +32,7 @@ def _repetition(lane, q, m, y, ring):
         if found == 0 and _distance(q, ring[(entries - back) % length], here) < REPEAT:
             found = back
     for back in range(1, found):
-        # Approached from alternating sides, an orbit looks twice its length.
+        # Approached from alternating sides, an orbit appears to have twice its period.
         if found % back == 0 and _distance(q, ring[(entries - back) % length], here) < _ALIKE:
             found = back
             break
@@ -55,7 +55,7 @@ def _distance(q, old, new):
 
 @lean
 def _bring_back(lane, m, y, columns):
-    """Bring tangents back to size 1, all by one number."""
+    """Rescale tangents to size 1, all by one factor."""
     size = 0.0
     for j in range(columns * MEASURED):
         size = max(size, abs(y[(PLAIN + j) * LANES + lane]))
@@ -67,7 +67,7 @@ def _bring_back(lane, m, y, columns):
 
 @lean
 def strobe(lane, task, m, y, ring, columns):
-    """Look at a lane at the beginning of half a control period; return its outcome."""
+    """Check a lane at the start of half a control period; return its outcome."""
     row, half = int(m[at.ROW * LANES + lane]), int(m[at.HALF * LANES + lane])
     if half % 2 == 1:
         return GOING

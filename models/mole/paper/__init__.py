@@ -1,1 +1,1 @@
-"""What reproduces the paper, and nothing else needs: its claims beside ours, in `table`."""
+"""The paper's claims compared with the model, in `table`; nothing else needs it."""

@@ -1,6 +1,6 @@
-"""The claims of Ho, Nguyen & Woo 2011 beside the model: ``python -m models.mole.paper.table``.
+"""The claims of Ho, Nguyen & Woo 2011 against the model: ``python -m models.mole.paper.table``.
 
-Each claim is looked at in two formulations: as printed, which is what the paper computed, and
+Each claim is checked in two formulations: as printed, which is what the paper computed, and
 physical, with the friction of the mole on the bar and the jump of the voltage restored.
 """
 
@@ -24,9 +24,9 @@ from models.mole.parameters import (
 )
 from models.mole.theory.periods import common_periods
 
-STARTS = 16  # neighbouring ones over which a chaotic response is averaged, too
+STARTS = 16  # neighbouring starts over which a chaotic response is averaged, too
 LONG = 3000  # control periods of each
-LONGEST = 25_600  # control periods of one whose regime is undecided
+LONGEST = 25_600  # control periods if the regime is undecided
 CURVE = 2000  # strobe points by which closed curves are counted
 
 NOTE = """\
@@ -42,7 +42,7 @@ is near a doubling of the torus."""
 
 
 class Claim(NamedTuple):
-    """What the paper says of one case.
+    """The paper's claim about one case.
 
     Attributes
     ----------
@@ -116,8 +116,8 @@ def responses(formulation: Any) -> dict[str, NDArray[Any]]:
 def closed_curves(params: Params, settings: Settings) -> int:
     """Count the closed curves on which a quasi-periodic response meets its strobe, 0 if too many.
 
-    On n of them, every n-th state lies on the same one, where its place follows from the mains'
-    phase: in the order of phases, neighbours are close.
+    With n curves, every n-th state lies on the same one, at a place given by the mains' phase: in
+    the order of phases, neighbours are close.
     """
     section = poincare_section(params, settings, CURVE, dropped=400)
     u = section["displacement"].to_numpy()
@@ -131,7 +131,7 @@ def closed_curves(params: Params, settings: Settings) -> int:
 
 
 def described(outputs: dict[str, NDArray[Any]], i: int, common: int, curves: int) -> str:
-    """Say in a few words what one response is."""
+    """Describe one response in a few words."""
     regime, period = outputs["regime"][i], int(outputs["period"][i])
     exponent = f"{outputs['lyapunov_exponent'][i]:.3g}"
     if regime == CHAOTIC:

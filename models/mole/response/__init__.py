@@ -2,9 +2,9 @@
 
 Reading order; a module imports only those above it:
 
-    measured     what is measured on the way
-    verdict      what a motion is that does not repeat
-    machines     n moles, and where they stand
+    measured     measures of the settled response
+    verdict      regimes of motion that does not repeat
+    machines     n moles and their present states
     settling     until the start is forgotten
     following    averages, over periods or over batches
 """

@@ -1,8 +1,8 @@
 """Averages over the settled response.
 
-Motion that repeats is averaged over whole periods; other motion, and one that repeats by chance
-though its tangents grow, over batches of common periods, whose scatter tells the errors of the
-means.
+Motion that repeats is averaged over whole periods; other motion, including motion that repeats by
+chance although its tangents grow, over batches of common periods, whose scatter gives the errors of
+the means.
 """
 
 import numpy as np
@@ -17,9 +17,9 @@ from models.numerics.batch_means import mean_and_error
 from models.numerics.exponents import log_multiplier
 
 LOOKS = 1, 4, 16
-"""How often as many it may take to tell the exponent from zero."""
-_UNSTABLE = 1e-3  # logarithm of a multiplier from which on a motion that repeats is no attractor
-_WARM_UP = 10  # control periods in which a tangent finds the direction that grows most
+"""Factors by which averages are extended until the exponent is distinguishable from zero."""
+_UNSTABLE = 1e-3  # logarithm of a multiplier above which a motion that repeats is no attractor
+_WARM_UP = 10  # control periods in which a tangent turns into the direction of fastest growth
 
 
 def follow_repeating(machines: Machines, rows: Counts, duration: int, out: Response) -> Counts:
@@ -30,14 +30,14 @@ def follow_repeating(machines: Machines, rows: Counts, duration: int, out: Respo
     machines : Machines
     rows : ndarray of int
     duration : int
-        Control periods to be averaged at least.
+        Control periods to average, at least.
     out : Response
-        Updated in place; nothing is known of those whose motion repeats but is unstable.
+        Updated in place; unknown where the motion repeats but is unstable.
 
     Returns
     -------
     ndarray of int
-        Rows whose motion repeats but is unstable: it came by chance, and is no attractor.
+        Rows whose motion repeats but is unstable: reached by chance, it is no attractor.
     """
     common, frequency = machines.system.common, machines.system.control_frequency
     half_cycles = machines.system.table[:, Mole._fields.index("supply_speed")] / np.pi
@@ -62,7 +62,7 @@ def follow_repeating(machines: Machines, rows: Counts, duration: int, out: Respo
         done, flow = places[ended], flow[ended].reshape(-1, MEASURED, MEASURED)
         here = rows[done]
         time = left[done] * common[here] / frequency[here]
-        # After an odd number of half mains cycles current and voltage have the other sign.
+        # After an odd number of half mains cycles current and voltage have changed sign.
         odd = np.round(time * half_cycles[here]) % 2 == 1
         flow[odd, :, CURRENT : P + 1] *= -1
         out.growth[here, 0] = growth[done] + log_multiplier(flow)
@@ -78,14 +78,14 @@ def follow_repeating(machines: Machines, rows: Counts, duration: int, out: Respo
 def follow_other(machines: Machines, rows: Counts, duration: int, out: Response) -> None:
     """Follow moles whose motion does not repeat through batches of control periods.
 
-    Where the exponent is indistinguishable from zero, a longer look replaces the one before.
+    Where the exponent is indistinguishable from zero, a longer average replaces the previous one.
 
     Parameters
     ----------
     machines : Machines
     rows : ndarray of int
     duration : int
-        Control periods to be averaged at first, in `BATCHES` batches of whole common periods; 0:
+        Control periods to average at first, in `BATCHES` batches of whole common periods; 0:
         `APERIODIC`.
     out : Response
         Updated in place.
@@ -107,7 +107,7 @@ def follow_other(machines: Machines, rows: Counts, duration: int, out: Response)
 def _follow_batches(
     machines: Machines, rows: Counts, each: Counts, tangents: Array, out: Response
 ) -> Counts:
-    """Follow moles through batches, forgetting earlier ones; return places of those that got on."""
+    """Follow moles through new batches; return the indices of those that completed them."""
     some = Response.nothing(len(rows))
     some.touching[:] = machines.record[rows, TOUCHING] == 1
     limit, places = machines.periods(rows), np.arange(len(rows))
@@ -120,7 +120,7 @@ def _follow_batches(
         some.growth[places, batch] = machines.record[rows[places], GROWTH]
         tangents[places] = flow
     some.time[places] = BATCHES * each[places] / machines.system.control_frequency[rows[places]]
-    # Who did not get so far keeps what a shorter run has told.
+    # A row that does not complete them keeps the averages of a shorter run.
     for mine, new in zip(out, some, strict=True):
         mine[rows[places]] = new[places]
     return places

@@ -1,4 +1,4 @@
-"""n moles, and where they stand: what the settled response is made with."""
+"""n moles and their present states, from which the settled response is computed."""
 
 from typing import NamedTuple
 
@@ -20,7 +20,7 @@ class Machines(NamedTuple):
     ----------
     system : System
     record : ndarray, shape (n, RECORD)
-        Where they stand, and what their last run has seen; see `models.mole.lanes.rows`.
+        Their states, and what their last run measured; see `models.mole.lanes.rows`.
     """
 
     system: System
@@ -28,7 +28,7 @@ class Machines(NamedTuple):
 
     @staticmethod
     def started(p: Rows, settings: Settings, periods: int = 0) -> "Machines":
-        """Return moles just switched on, with a budget for so many control periods and more."""
+        """Return moles just switched on, with a budget for at least this many control periods."""
         ((_, system),) = groups(p, settings)
         system = system._replace(budget=system.budget * max(1, -(-periods // APERIODIC)))
         return Machines(system, start(system, p.initial_displacement, p.initial_velocity))
@@ -36,18 +36,18 @@ class Machines(NamedTuple):
     def run(
         self, rows: Counts, limit: Counts, tangents: Array | None = None, repeat: bool = False
     ) -> Counts:
-        """Propagate some of them; return which of them got where they should.
+        """Propagate some of the moles; return which of them reached their limits.
 
         Parameters
         ----------
         rows : ndarray of int, shape (k,)
         limit, tangents, repeat
-            Of these rows; see `models.mole.lanes.propagator.advance`.
+            For these rows; see `models.mole.lanes.propagator.advance`.
 
         Returns
         -------
         ndarray of int
-            Places in `rows`.
+            Indices into `rows`.
         """
         record = self.record[rows]
         reached = advance(self.system.take(rows), record, limit, tangents, repeat)
@@ -55,5 +55,5 @@ class Machines(NamedTuple):
         return reached
 
     def periods(self, rows: Counts) -> Counts:
-        """Return how many control periods have passed."""
+        """Return the number of control periods completed."""
         return (self.record[rows, HALF] / 2).astype(np.int64)

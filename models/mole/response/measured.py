@@ -1,4 +1,4 @@
-"""What is measured of the settled response of n moles."""
+"""Measures of the settled response of n moles."""
 
 from typing import NamedTuple
 
@@ -12,31 +12,31 @@ Flags = NDArray[np.bool_]
 Counts = NDArray[np.int64]
 
 BATCHES = 20
-"""Parts of a time mean, whose scatter tells its error."""
+"""Parts of a time mean, whose scatter gives its error."""
 
 
 class Response(NamedTuple):
-    """The settled response of n moles; NaN where a run did not get so far.
+    """The settled response of n moles; NaN where a run was not completed.
 
     Attributes
     ----------
     time : ndarray, shape (n,)
-        Averaged over [s].
+        Time averaged over [s].
     progress, impact, electric : ndarray, shape (n, BATCHES)
-        Advance of the mole [m], work of the impacts and of the supply [J] in each batch; what
-        repeats is all in the first.
+        Advance of the mole [m], work of the impacts and of the supply [J] in each batch; all in the
+        first if the motion repeats.
     impulse : ndarray, shape (n,)
         Of the contact force [N s].
     contacts : ndarray, shape (n,)
     low, high : ndarray, shape (n,)
         Smallest and largest displacement u [m].
     touching : ndarray of bool, shape (n,)
-        Whether there was contact at the beginning.
+        Whether the bar touched the stop at the beginning.
     growth : ndarray, shape (n, BATCHES)
-        Growth of the logarithm of a tangent in each batch; what repeats: of the largest multiplier,
-        in the first.
+        Growth of the logarithm of a tangent in each batch; if the motion repeats, the logarithm of
+        the largest multiplier, in the first.
     period : ndarray of int, shape (n,)
-        Common periods in a response that repeats, else 0.
+        Period of a response that repeats, in common periods; else 0.
     """
 
     time: Array
@@ -53,7 +53,7 @@ class Response(NamedTuple):
 
     @staticmethod
     def nothing(n: int) -> "Response":
-        """Return n responses of which nothing is known."""
+        """Return n unknown responses."""
         batches = (np.zeros((n, BATCHES)) for _ in range(4))
         progress, impact, electric, growth = batches
         return Response(
@@ -71,12 +71,12 @@ class Response(NamedTuple):
         )
 
     def forget(self, rows: Counts) -> None:
-        """Know nothing of some responses again."""
+        """Reset some responses to unknown."""
         for mine, new in zip(self, Response.nothing(len(rows)), strict=True):
             mine[rows] = new
 
     def note(self, rows: Counts, batch: int, record: Array) -> None:
-        """Take in what a run of some moles has seen."""
+        """Add what a run of some moles measured."""
         self.progress[rows, batch] += record[:, PROGRESS]
         self.impact[rows, batch] += record[:, IMPACT]
         self.electric[rows, batch] += record[:, ELECTRIC]

@@ -1,8 +1,7 @@
 """From the start to the settled response.
 
-The transient ends when the motion repeats itself over common periods of control and mains. Where
-there is no common period, it ends when the tangent flow has forgotten all but a millionth of the
-start.
+The transient ends when the motion repeats over common periods of control and mains. Without a
+common period, it ends when the tangent flow has contracted the start to a millionth.
 """
 
 import numpy as np
@@ -15,9 +14,9 @@ from models.mole.response.verdict import SURE
 from models.numerics.batch_means import mean_and_error
 
 LONGEST = 120.0  # s of transient
-LATEST = 1200.0  # s more where the tangent flow says that the motion is still settling
+LATEST = 1200.0  # s more if by the tangent flow the motion is still settling
 _FORGOTTEN = np.log(1e-6)
-_LOOK = 1.0  # s between two looks at the tangent flow
+_LOOK = 1.0  # s between two checks of the tangent flow
 
 
 def settle(machines: Machines, transient: int) -> tuple[Counts, Counts]:
@@ -28,12 +27,12 @@ def settle(machines: Machines, transient: int) -> tuple[Counts, Counts]:
     machines : Machines
         Their record is updated.
     transient : int
-        Control periods to be left out; 0: until the motion has settled, 120 s at most.
+        Control periods to drop; 0: until the motion has settled, at most 120 s.
 
     Returns
     -------
     repeating, other : ndarray of int
-        Rows whose motion repeats, and rows whose motion does not.
+        Rows whose motion repeats, and rows whose motion does not repeat.
     """
     common = machines.system.common
     rows = np.arange(len(common))
@@ -53,7 +52,7 @@ def settle(machines: Machines, transient: int) -> tuple[Counts, Counts]:
 
 
 def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
-    """Run moles until their start is forgotten; return those that got so far."""
+    """Run moles until their start is forgotten; return those that completed the run."""
     done = [np.empty(0, np.int64)]
     look = np.maximum(np.round(_LOOK * machines.system.control_frequency[rows]), 1).astype(np.int64)
     tangents, growth = np.ones((len(rows), MEASURED)), np.zeros(len(rows))
@@ -70,7 +69,7 @@ def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
 
 
 def settle_late(machines: Machines, rows: Counts, known: Response) -> Counts:
-    """Go on with moles whose motion does not repeat yet but draws nearer to one that does.
+    """Continue moles whose motion does not repeat yet but converges to one that does.
 
     Parameters
     ----------
@@ -79,12 +78,12 @@ def settle_late(machines: Machines, rows: Counts, known: Response) -> Counts:
     rows : ndarray of int
         Moles whose motion does not repeat.
     known : Response
-        What is known of them; forgotten where the motion has come to repeat.
+        Their responses so far; reset to unknown where the motion now repeats.
 
     Returns
     -------
     ndarray of int
-        Rows whose motion has come to repeat.
+        Rows whose motion now repeats.
     """
     mean, error = mean_and_error(known.growth[rows])
     system = machines.system

@@ -1,11 +1,11 @@
-"""What a motion that does not repeat is: chaotic, quasi-periodic, or undecided.
+"""The regime of a motion that does not repeat: chaotic, quasi-periodic, or undecided.
 
-The largest Lyapunov exponent decides, with its standard error. Chaos needs an exponent that is
-positive, quasi-periodicity evidence of its own; an exponent indistinguishable from zero is
-neither. Where control and mains have no common period, motion driven by both follows their phases
-if neighbours come together: the exponent is negative. Where they have one, such motion is still
-settling to something that repeats. A motion with a frequency of its own has an exponent of zero,
-which no average can equal, but which it can be near to.
+The largest Lyapunov exponent and its standard error decide. Chaos requires a positive exponent,
+quasi-periodicity evidence of its own; an exponent indistinguishable from zero shows neither. If
+control and mains have no common period, a motion driven by both follows their phases if neighbours
+converge: the exponent is negative. If they have one, such a motion is still settling to one that
+repeats. A motion with a frequency of its own has an exponent of zero, which an average can approach
+but never equal.
 """
 
 import numpy as np
@@ -15,22 +15,22 @@ from models.mole.parameters import CHAOTIC, QUASI_PERIODIC, UNDECIDED
 from models.numerics.batch_means import mean_and_error
 
 SURE = 3.0
-"""Standard errors by which an exponent differs from another number."""
+"""Standard errors by which an exponent must differ from another number."""
 
 NEAR_ZERO = 0.01
-"""Of the exponent times the control period: neighbours part, or come together, by less than a
-hundredth in each. Chaos of the nominal mole makes it 0.015 to 0.6."""
+"""Bound of the exponent times the control period: neighbours diverge or converge by less than 1 %
+in each. For chaos of the nominal mole it is 0.015 to 0.6."""
 
 
 def verdicts(
     growth: NDArray[np.float64], periods: NDArray[np.float64], alone: NDArray[np.bool_]
 ) -> NDArray[np.int8]:
-    """Return what n motions that do not repeat are.
+    """Return the regimes of n motions that do not repeat.
 
     Parameters
     ----------
     growth : ndarray, shape (n, b)
-        Growth of the logarithm of a tangent in batches of equal length.
+        Growth of the logarithm of a tangent, in batches of equal length.
     periods : ndarray, shape (n,)
         Control periods in all batches together.
     alone : ndarray of bool, shape (n,)

@@ -1,11 +1,11 @@
 """Equations of motion (1), (2), (4), (10), (12), (16), (17) of Ho, Nguyen & Woo 2011, in a mode.
 
-A mode says whether the bar touches the stop, whether the relay is closed, and how either interface
-slips. With p, the source's voltage less the capacitor's, which is that over resistance and coil,
+A mode states whether the bar touches the stop, whether the relay is closed, and how each interface
+slips. With p, the source voltage less the capacitor's, which is that across resistance and coil,
 
     L i' = p - (R + L'(u) v) i,    p' = V' - i/C,
 
-the circuit needs neither the v' nor the L''(u) of (15).
+the circuit requires neither v' nor L''(u) of (15).
 """
 
 import math
@@ -16,22 +16,21 @@ from models.mole.theory.system import Mole
 from models.numerics.jit import inlined, kernel
 
 DISPLACEMENT, VELOCITY, MOLE_VELOCITY, CURRENT, VOLTAGE, MOLE_DISPLACEMENT = range(6)
-"""u [m], v, x [m s-1], i [A], p [V], w [m]: the first part of a state, of which w drives nothing.
-
-The second part holds energies since the start [J]:
+"""u [m], v, x [m s-1], i [A], p [V], w [m]: the first part of a state; nothing depends on w. The
+second part holds energies since the start [J]:
 """
 IMPACT_WORK, ELECTRICAL_WORK, MAGNETIC_WORK, FRICTION_LOSS, VISCOUS_LOSS = range(6, 11)
-"""Work of the contact force on the mole, of the supply but for what coil and capacitor store, and
-of the magnetic force on the bar; heat from dry friction and from viscous damping."""
+"""Work of the contact force on the mole, of the supply less the energy stored in coil and
+capacitor, and of the magnetic force on the bar; heat from dry friction and from viscous damping."""
 IMPULSE = 11
-"""Of the contact force since the start [N s]."""
+"""Impulse of the contact force since the start [N s]."""
 SIZE = 12
 
-_FAR = 8.0  # widths of the coil, from where on the bar adds 1e-14 of its inductance and less
+_FAR = 8.0  # widths of the coil, beyond which the bar adds less than 1e-14 of its inductance
 
 
 class Coil(NamedTuple):
-    """Inductance (10) of the coil and its derivative by u.
+    """Inductance (10) of the coil and its derivative with respect to u.
 
     Attributes
     ----------
@@ -46,7 +45,7 @@ class Coil(NamedTuple):
 
 
 class Mode(NamedTuple):
-    """What stays the same between two events.
+    """What is constant between two events.
 
     Attributes
     ----------
@@ -56,10 +55,10 @@ class Mode(NamedTuple):
     relay : bool
         Whether the supply is connected.
     bar, mole : int
-        How they slip: 1, -1, or 0 if they stick.
+        Direction of slip: 1, -1, or 0 if they stick.
     response : Response
     bar_hold, mole_hold : Hold
-        The latter means nothing while the bar sticks: then the mole has no reason to slip.
+        The latter is meaningless while the bar sticks: then no force makes the mole slip.
     """
 
     q: Mole
@@ -97,14 +96,14 @@ def coil(q, u):
 
 @inlined
 def reach(u, v, width):
-    """Return the longest step [s] in which a bar cannot leap over the coil unnoticed.
+    """Return the longest step [s] in which a bar cannot cross the coil unnoticed.
 
     Parameters
     ----------
     u, v : float
         [m], [m s-1]
     width : float
-        Half of sigma: the standard deviation of the bell that is L - L0 [m].
+        Half of sigma: the standard deviation of the Gaussian L - L0 [m].
     """
     room = abs(u) - _FAR * width
     room = room if room > width else width
@@ -119,7 +118,7 @@ def contact_force(q, contact, u):
 
 @kernel
 def force(q, contact, u, v, i):
-    """Return the force F on the bar, but for friction (16) [N]."""
+    """Return the force F on the bar without friction (16) [N]."""
     magnetic = 0.5 * i * i * coil(q, u).slope
     spring = q.spring_stiffness * (u - q.spring_rest)
     return magnetic - q.damping * v - spring - contact_force(q, contact, u)

@@ -1,12 +1,12 @@
-"""Dry friction at two interfaces: which of them slip, which stick, and the forces that follow.
+"""Dry friction at two interfaces: which of them slip or stick, and the resulting forces.
 
 The bar slips within the mole with relative velocity v, limit f1; the mole slips on the ground with
 velocity x, limit f2. F is the force on the bar without friction. With friction forces T1, T2,
 
     v' = (F - T1)/m + T2/m2,    x' = (-F + T1 - T2)/m2    (17)
 
-In a mode, which says of each interface whether it slips forwards (1), backwards (-1) or sticks (0),
-both are linear in F: v' = a F + b, x' = d F + e. As printed, (20) lacks the term T2/m2.
+In a mode, in which each interface slips forwards (1), slips backwards (-1) or sticks (0), both are
+linear in F: v' = a F + b, x' = d F + e. As printed, (20) lacks the term T2/m2.
 """
 
 from typing import NamedTuple
@@ -33,7 +33,7 @@ class Response(NamedTuple):
 
 
 class Hold(NamedTuple):
-    """When an interface sticks: while |gain F + offset| <= limit.
+    """The sticking condition of an interface: |gain F + offset| <= limit.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ def response(q, bar, mole):
 
 @kernel
 def bar_hold(q, mole):
-    """Return the `Hold` of the bar, the mole being in this mode."""
+    """Return the `Hold` of the bar for this mode of the mole."""
     coupled = mole != 0 and q.formulation != AS_PRINTED
     offset = q.mole_limit * mole * q.mass / q.mole_mass if coupled else 0.0
     return Hold(1.0, offset, q.bar_limit)
@@ -78,7 +78,7 @@ def bar_hold(q, mole):
 
 @kernel
 def mole_hold(q, bar):
-    """Return the `Hold` of the mole, the bar slipping in this direction."""
+    """Return the `Hold` of the mole for this direction of the bar's slip."""
     return Hold(-1.0, q.bar_limit * bar, q.mole_limit)
 
 
@@ -89,9 +89,9 @@ def _direction(force, limit):
 
 @kernel
 def decide(q, v, x, force):
-    """Return the modes of bar and mole at velocities v and x, just then, under a force F.
+    """Return the modes of bar and mole at velocities v and x under a force F.
 
-    A velocity that is exactly zero sticks, or slips the way it is driven; the answer is unique.
+    An interface at exactly zero velocity sticks, or slips as it is driven; the result is unique.
 
     Parameters
     ----------

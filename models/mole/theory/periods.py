@@ -1,6 +1,7 @@
 """The common period of control and mains.
 
-Only the square of the current acts on the bar, so that the mains matters modulo half a cycle.
+Only the square of the current acts on the bar, so the phase of the mains matters modulo half a
+cycle.
 """
 
 from typing import Any
@@ -23,8 +24,8 @@ def common_periods(control_frequency: Any, supply_frequency: Any) -> NDArray[np.
     Returns
     -------
     ndarray of int, shape (n,)
-        The fewest control periods, 40 at most, that are a multiple of half a mains cycle to 1e-9;
-        0 if there are none.
+        The smallest number of control periods, at most 40, that is a multiple of half a mains cycle
+        to 1e-9; 0 if there is none.
     """
     cycles = 2 * np.asarray(supply_frequency, float) / np.asarray(control_frequency, float)
     periods = np.arange(1, LONGEST + 1)

@@ -1,4 +1,4 @@
-"""What the equations need of one mole, or of n at once."""
+"""Constants of the equations, of one mole or of n."""
 
 import math
 from typing import Any, NamedTuple
@@ -26,7 +26,7 @@ class Mole(NamedTuple):
     bar_limit, mole_limit : float
         Largest friction forces f1, f2 [N].
     coil_inductance, bar_inductance : float
-        L0 and the most that the bar adds [H].
+        L0, and the largest inductance added by the bar [H].
     sharpness : float
         2/sigma^2 [m-2].
     resistance : float

@@ -3,11 +3,11 @@
 Reading order; a module imports only those above it:
 
     rigid                motors bolted to the body, no feed: constants and accelerations
-    rigid_derivatives    and the derivatives of these
-    rigid_motion         the same for a state
+    rigid_derivatives    their derivatives
+    rigid_motion         accelerations of a state
     system               the constants of any machine
-    geometry             exact kinematics, mounts and feed: where everything is
-    mass_matrix          and how it resists
-    general              and how it moves
-    time_scales          bounds of steps and waits
+    geometry             exact kinematics of body, motor set and unbalanced masses
+    mass_matrix          mass matrix of the general machine
+    general              accelerations with exact kinematics, mounts and feed
+    time_scales          bounds of steps and waiting times
 """

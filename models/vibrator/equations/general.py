@@ -1,10 +1,10 @@
 """The vibrator's equations with exact kinematics, a flexible mount of the motor set, and feed.
 
-All inertia beside that of turning parts is that of mass points: the motor set's centre, the two
+Apart from rotary inertia, all inertia is that of point masses: the motor set's centre, the two
 unbalanced masses and the feed while it rides. The set slides by u on its mount and turns by chi
 about O, the midpoint of the shafts, both relative to the body; a rigid mount keeps its coordinate
-at zero. By the principle of virtual work each point adds J^T m J to the mass matrix and -J^T m b
-to the forces; J = d(position)/dq, and b is the acceleration that the point has without q''.
+at zero. By the principle of virtual work each point adds J^T m J to the mass matrix and -J^T m b to
+the forces; J = d(position)/dq, and b is the acceleration of the point at q'' = 0.
 
 The rotors' equations give psi_i'' in terms of the acceleration a of their shafts, as in
 `models.vibrator.equations.rigid`: with n the direction of the unbalance and t = dn/dpsi
@@ -12,12 +12,12 @@ an unbalanced mass
 
     m J_zr mu I + (m e)^2 mu n n^T,    mu = 1/(J_zr + m e^2),
 
-rides on the shaft, and m e w^2 n - m e mu Q t pulls at it. That leaves a symmetric system for x, y,
-alpha, u and chi, of which the last two are eliminated first.
+rides on the shaft, and the force m e w^2 n - m e mu Q t pulls at it. That leaves a symmetric system
+for x, y, alpha, u and chi, of which the last two are eliminated first.
 
-The feed is a point on the deck, straight right or left of C, free to move vertically. It rides
-while the deck pushes it up, flies, and lands without rebound. x, y and alpha are measured from rest
-under its weight.
+The feed is a point mass on the deck, level with C, free to move vertically. It rides while the deck
+pushes it up, flies, and lands without rebound. x, y and alpha are measured from equilibrium under
+its weight.
 """
 
 import math
@@ -48,7 +48,7 @@ class Accelerations(NamedTuple):
 
 
 def extend(state: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the state of the rigid machine without feed as one of this machine, feed riding.
+    """Extend a state of the rigid machine without feed to this machine, with the feed riding.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def _drive(torque, lag, slip, loss, speed, speed_in_bearing):
 
 @inlined
 def _pull(vibrator, unbalance, mobility, drive, speed, bias_x, bias_y):
-    """Return the force of an unbalanced mass on a shaft that has the acceleration `bias`."""
+    """Return the force of an unbalanced mass on a shaft whose acceleration is `bias`."""
     out, back = unbalance * speed * speed, unbalance * mobility * drive
     return (
         out * vibrator.n_x - back * vibrator.t_x - vibrator.xx * bias_x - vibrator.xy * bias_y,
@@ -91,7 +91,7 @@ def _supports(m, pose, state):
     shrunk = pose.cos - 1
     force_x = -r.stiffness_x * (x + h * turned) - r.damping_x * (vx + h * pose.cos * va)
     force_y = -r.stiffness_y * (y - h * shrunk) - r.damping_y * (vy + h * pose.sin * va)
-    # Where one support moves more than the other.
+    # The supports move by different amounts.
     more_x = r.stiffness_x * shrunk - r.damping_x * pose.sin * va
     more_y = r.stiffness_y * turned + r.damping_y * pose.cos * va
     moment = h * (pose.cos * force_x + pose.sin * force_y)
@@ -135,7 +135,7 @@ def accelerations(m, riding, state):
     rock -= m.rock_stiffness * state[6] + m.rock_damping * state[DEGREES + 6]
     moment += pose.set_x * force_y - pose.set_y * force_x
     support_x, support_y, support_moment = _supports(m, pose, state)
-    # The supports push up by the weight of the feed even while it flies.
+    # The supports carry the static weight of the feed even while it flies.
     reach, sunk = m.feed_position * pose.cos, m.feed_position * pose.sin
     push = m.feed_mass * (inward * sunk if riding else m.feed_gravity)
     x, y, a, u, c = solve(
@@ -161,7 +161,7 @@ def accelerations(m, riding, state):
 
 @inlined
 def _felt(vibrator, unbalance, mobility, x, y, turning):
-    """Return by how much a rotor feels x'' and y'' of its shaft, which also turns about O."""
+    """Return the effect of x'' and y'' of the shaft, and of its turning about O, on a rotor."""
     x -= turning * vibrator.arm_y
     y += turning * vibrator.arm_x
     return -mobility * unbalance * (vibrator.t_x * x + vibrator.t_y * y)
@@ -169,7 +169,7 @@ def _felt(vibrator, unbalance, mobility, x, y, turning):
 
 @kernel
 def support_of_feed(m, state):
-    """Return the force of the deck on a feed that rides, over its mass [m s-2]."""
+    """Return the force of the deck on a riding feed, over its mass [m s-2]."""
     motion = accelerations(m, True, state)
     angle, spin = m.exact * state[2], m.exact * state[DEGREES + 2]
     turning = math.cos(angle) * motion.alpha - math.sin(angle) * spin * spin
@@ -178,7 +178,7 @@ def support_of_feed(m, state):
 
 @kernel
 def land(m, state):
-    """End the feed's flight: it keeps to the deck, by a vertical impulse between them.
+    """End the feed's flight: a vertical impulse between feed and deck equalises their velocities.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Where body, motor set and unbalanced masses of the general machine are, seen from C."""
+"""Positions of the body, motor set and unbalanced masses of the general machine, from C."""
 
 from typing import Any, NamedTuple
 
@@ -7,11 +7,11 @@ from models.numerics.sincos import cosine_sine
 
 
 class Pose(NamedTuple):
-    """How the body stands, seen from C."""
+    """The pose of the body and of the motor set, relative to C."""
 
     cos: Any  # of its rotation
     sin: Any
-    slide_x: Any  # direction in which the set slides
+    slide_x: Any  # direction in which the motor set slides
     slide_y: Any
     set_x: Any  # O
     set_y: Any
@@ -22,9 +22,9 @@ class Pose(NamedTuple):
 class Vibrator(NamedTuple):
     """An unbalanced mass."""
 
-    n_x: Any  # where it points
+    n_x: Any  # its direction
     n_y: Any
-    t_x: Any  # where it goes
+    t_x: Any  # its direction of motion
     t_y: Any
     arm_x: Any  # its shaft from O
     arm_y: Any

@@ -1,4 +1,4 @@
-"""The mass matrix of the general machine, symmetric in x, y, alpha, u and chi, and its solution."""
+"""The mass matrix of the general machine, symmetric in x, y, alpha, u and chi, and its solver."""
 
 from typing import Any, NamedTuple
 
@@ -6,14 +6,14 @@ from models.numerics.jit import inlined
 
 
 class Inertia(NamedTuple):
-    """The mass matrix of x, y, alpha, u and chi, eliminated from the end: c for chi."""
+    """The factorised mass matrix of x, y, alpha, u and chi, eliminated from the last; c is chi."""
 
     c: Any  # reciprocals of the pivots
     u: Any
     a: Any
     y: Any
     x: Any
-    cu: Any  # elements of the rows at the time of their elimination
+    cu: Any  # elements of the rows when eliminated
     ca: Any
     cy: Any
     cx: Any
@@ -38,7 +38,7 @@ def factorised(m, pose, one, two, riding):
         Whether the feed lies on the deck.
     """
     o_x, o_y, to_x, to_y = pose.set_x, pose.set_y, pose.slide_x, pose.slide_y
-    # How both masses on the shafts resist turning about O, then about C.
+    # Inertia of both masses on the shafts about O, then about C.
     cx_1, cy_1 = one.xy * one.arm_x - one.xx * one.arm_y, one.yy * one.arm_x - one.xy * one.arm_y
     cx_2, cy_2 = two.xy * two.arm_x - two.xx * two.arm_y, two.yy * two.arm_x - two.xy * two.arm_y
     cx, cy = cx_1 + cx_2, cy_1 + cy_2

@@ -1,6 +1,6 @@
 """The machine with its motors bolted to the body: its constants and accelerations.
 
-Straight-line algebra for whoever integrates (13) to (23), one machine or sixteen abreast. The
+Straight-line algebra for every integrator of (13) to (23), of one machine or sixteen at a time. The
 rotors' equations (16), (17) give their accelerations in terms of the body's, which leaves a
 symmetric 3 x 3 system S a = f for the body, a = (x'', y'', alpha'').
 
@@ -16,7 +16,7 @@ from models.numerics.jit import inlined
 
 
 class Rigid(NamedTuple):
-    """What the equations of the rigid machine need; n machines if the fields are arrays.
+    """Constants of the rigid machine's equations; n machines if the fields are arrays.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Rigid(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Accelerations, and what their derivatives need besides.
+    """Accelerations, and intermediate results that their derivatives need.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ def accelerations(m, c_1, s_1, c_2, s_2, x, y, alpha, vx, vy, va, w_1, w_2):
     Parameters
     ----------
     m : Rigid
-        Or any other with its fields.
+        Or any other tuple with its fields.
     c_1, s_1, c_2, s_2 : float
         Cosine and sine of theta_1 = beta + psi_1, theta_2 = beta - psi_2.
     x, y, alpha, vx, vy, va, w_1, w_2 : float
@@ -152,7 +152,7 @@ def accelerations(m, c_1, s_1, c_2, s_2, x, y, alpha, vx, vy, va, w_1, w_2):
     kloss_1, kloss_2 = m.torque_1 * lag_1 * share_1, m.torque_2 * lag_2 * share_2
     q_1 = fma(-m.bearing_loss_1 * w_1 * w_1, 1.0 if w_1 > va else -1.0, kloss_1)
     q_2 = fma(-m.bearing_loss_2 * w_2 * w_2, 1.0 if w_2 > -va else -1.0, kloss_2)
-    # Forces on the body: of the supports, centrifugal, and what the rotors' torques pass on.
+    # Forces on the body: of the supports, centrifugal, and those due to the rotors' torques.
     p_x = m.stiffness_x * fma(m.support_offset, alpha, x)
     p_x = fma(m.damping_x, fma(m.support_offset, va, vx), p_x)
     p_y = fma(m.stiffness_y, y, m.damping_y * vy)

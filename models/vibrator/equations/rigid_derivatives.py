@@ -1,4 +1,4 @@
-"""Derivatives of the accelerations that `models.vibrator.equations.rigid` gives."""
+"""Derivatives of the accelerations of `models.vibrator.equations.rigid`."""
 
 from models.numerics.fma import fma
 from models.numerics.jit import inlined
@@ -6,7 +6,7 @@ from models.numerics.jit import inlined
 
 @inlined
 def _column(m, motion, e_1, e_2, k_x, k_y, k_a, q_1, q_2):
-    """Return the accelerations that a change of force and of the rotors' own terms makes."""
+    """Return the change of the accelerations due to changes of the forces and the rotors' terms."""
     b_xx, b_xy, b_xa, b_yy, b_ya, b_aa = motion.inverse
     x = fma(b_xa, k_a, fma(b_xx, k_x, b_xy * k_y))
     y = fma(b_ya, k_a, fma(b_xy, k_x, b_yy * k_y))
@@ -23,7 +23,7 @@ def _column(m, motion, e_1, e_2, k_x, k_y, k_a, q_1, q_2):
 
 @inlined
 def derivatives(m, motion, c_1, s_1, c_2, s_2, va, w_1, w_2):
-    """Return the derivatives of the accelerations, which `accelerations` gave.
+    """Return the derivatives of the accelerations returned by `accelerations`.
 
     Parameters
     ----------
@@ -35,7 +35,8 @@ def derivatives(m, motion, c_1, s_1, c_2, s_2, va, w_1, w_2):
     Returns
     -------
     tuple of ten tuples of five floats
-        By x, y, alpha, psi_1, psi_2 and their rates; the signum of the bearing loss is constant.
+        With respect to x, y, alpha, psi_1, psi_2 and their rates; the sign of the bearing loss is
+        treated as constant.
     """
     e_1, n_1 = (-s_1, c_1, motion.g_1), (c_1, s_1, motion.h_1)
     e_2, n_2 = (-s_2, c_2, motion.g_2), (c_2, s_2, motion.h_2)

@@ -6,8 +6,8 @@ n_i = (cos theta_i, sin theta_i), the masses m are at (x, y) + s_i + alpha e_z x
 the geometry is frozen at alpha = 0, and the forces still derive from a Lagrangian. As in (15), the
 body feels no reaction to the torques of motors and bearings.
 
-`acceleration` is the machine with its motors bolted to the body and no feed; for all else see
-`models.vibrator.equations.general`.
+`acceleration` applies to the machine with its motors bolted to the body and no feed; for all else
+see `models.vibrator.equations.general`.
 """
 
 import math
@@ -24,7 +24,7 @@ DEGREES = 5
 
 
 def initial_state(p: Rows) -> NDArray[np.float64]:
-    """Return n machines at rest, the unbalances hanging down but for their initial phases.
+    """Return n machines at rest, the unbalances at their initial phases from hanging down.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def initial_state(p: Rows) -> NDArray[np.float64]:
 
 @kernel
 def acceleration(m, state, out):
-    """Set out[:5] to the accelerations, which `models.vibrator.equations.rigid` gives.
+    """Set out[:5] to the accelerations by `models.vibrator.equations.rigid`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The vibrator as its equations see it: what they need of a machine, computed once.
+"""The constants of the vibrator's equations, computed once from its parameters.
 
 C is the mass centre of the bare body, the origin of all levers; see `models.vibrator.parameters`.
 """
@@ -13,16 +13,16 @@ from models.vibrator.equations.rigid import Rigid
 from models.vibrator.parameters import Params, Rows
 from models.vibrator.theory.averaged import feed_gravity
 
-_NEVER_THROWN = 1e30  # gravity that keeps a feed without mass on the deck [m s-2]
+_NEVER_THROWN = 1e30  # gravity that keeps a massless feed on the deck [m s-2]
 
 
 class System(NamedTuple):
-    """What the equations need of a machine, computed once; n machines if the fields are arrays.
+    """Constants of a machine's equations; n machines if the fields are arrays.
 
     Attributes
     ----------
     rigid : Rigid
-        The same with rigid mounts and without feed.
+        The same machine with rigid mounts and without feed.
     unbalanced_mass, rotor_inertia : float
         m [kg], J_zr [kg m2]
     body_mass, body_inertia : float
@@ -99,7 +99,7 @@ def _motor_set(p: Rows) -> _MotorSet:
 
 
 def rigid_machines(p: Rows) -> Rigid:
-    """Prepare n machines as if their mounts were rigid and no feed on the deck.
+    """Prepare n machines as if their mounts were rigid and the deck empty.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def systems(p: Rows, kinematics: str = "small") -> System:
 
 
 def _gravity(p: Rows) -> NDArray[np.float64]:
-    """Return the gravity of the feed; so large that what has no mass never takes off."""
+    """Return the gravity of the feed; for a massless one so large that it never takes off."""
     loaded = p.feed_mass > 0
     gravity = np.full(len(loaded), _NEVER_THROWN)
     if loaded.any():

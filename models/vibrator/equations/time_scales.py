@@ -1,4 +1,4 @@
-"""How fast a machine can change, which bounds a fixed step, and how slowly its body vibrates."""
+"""The fastest rate of a machine, which bounds fixed steps, and its slowest vibration."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from models.vibrator.equations.rigid import Rigid
 
 
 def fastest_rates(m: Rigid) -> NDArray[np.float64]:
-    """Return an upper bound of the rates of free vibration and decay of n rigid machines.
+    """Return upper bounds of the rates of free vibration and decay of n rigid machines.
 
     Parameters
     ----------
@@ -19,12 +19,13 @@ def fastest_rates(m: Rigid) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (n,)
-        [s-1]. By Gershgorin's rule for the supports, in units in which the body's mass and its
-        radius of gyration are 1; and the steepest slope of each motor's torque over its rotor.
+        [s-1]. For the supports by Gershgorin's theorem, in units in which the body's mass and
+        radius of gyration are 1; for each motor the steepest slope of its torque over the rotor's
+        inertia.
     """
     centre = (m.moment_x**2 + m.moment_y**2) / m.mass
     inertia = m.inertia - centre
-    # Rotors share the body's mass: what is left of it when an unbalance lends none.
+    # Rotors share the body's mass: what remains of it without the share of the unbalances.
     radius = np.sqrt(inertia / m.mass)
     lever_x = (np.abs(m.support_offset) + np.abs(m.moment_y) / m.mass) / radius
     lever_y = (np.abs(m.half_spacing) + np.abs(m.moment_x) / m.mass) / radius
@@ -47,7 +48,7 @@ def fastest_rates(m: Rigid) -> NDArray[np.float64]:
 
 
 def slowest_period(m: Rigid) -> Any:
-    """Return about the longest period of a body on its supports [s].
+    """Estimate the longest period of free vibration of a body on its supports [s].
 
     Parameters
     ----------
@@ -57,7 +58,7 @@ def slowest_period(m: Rigid) -> Any:
     Returns
     -------
     float or ndarray, shape (n,)
-        As if the body could move in one of its three ways only.
+        As if its three degrees of freedom were uncoupled.
     """
     turning = m.stiffness_x * m.support_offset**2 + m.stiffness_y * m.half_spacing**2
     ways = (m.mass / m.stiffness_x, m.mass / m.stiffness_y, m.inertia / turning)

@@ -3,8 +3,8 @@
 Reading order; a module imports only those above it:
 
     propagator    one machine, started and followed
-    budgeted      a machine that is run again and again within a budget of steps
-    measures      what is read off a sampled motion
+    budgeted      a machine run repeatedly within a budget of steps
+    measures      measures of a sampled motion
     orbit         the synchronous motion as a periodic orbit, by shooting
 
 It is a `models.numerics.propagator.Yardstick`.

@@ -1,4 +1,4 @@
-"""One vibrator to be run and run again by the exact propagator, within a budget of steps."""
+"""One vibrator, run repeatedly by the exact propagator within a budget of steps."""
 
 import math
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from models.vibrator.exact import propagator
 from models.vibrator.parameters import Params
 
 PSI_1, PSI_2, HEIGHT = 3, 4, 7
-"""Places in the state."""
+"""Indices into the state."""
 
 
 @dataclass
@@ -25,7 +25,7 @@ class Machine:
     params : Params
     system : System
     scales : ndarray
-        Size of each component of the state.
+        Scale of each component of the state.
     budget : int
         Steps that may still be tried.
     """
@@ -50,7 +50,7 @@ class Machine:
         return not self.is_extended or state[HEIGHT] == 0 == state[self.degrees + HEIGHT]
 
     def free(self, riding: bool) -> NDArray[np.intp]:
-        """Return the components of the state that can differ while psi_1 does not."""
+        """Return the components of the state that can vary at fixed psi_1."""
         m = self.system
         rates = [True, True, True, True, True, bool(m.slides), bool(m.rocks), not riding]
         rates = rates[: self.degrees]
@@ -66,7 +66,7 @@ class Machine:
         turns: float = math.inf,
         times: ArrayLike = (),
     ) -> tuple[Outcome, NDArray[np.float64]]:
-        """Advance `state` in place, for some time or turns of vibrator 1; return samples too."""
+        """Advance `state` in place by a duration or by turns of vibrator 1; return samples, too."""
         times = np.ascontiguousarray(times, float)
         samples = np.full((len(times), len(state)), np.nan)
         ended = propagator.runner(self.system, self.degrees)(

@@ -1,4 +1,4 @@
-"""What is read off the motion of one vibrator sampled at equal intervals of time."""
+"""Measures of the motion of one vibrator, sampled at equal intervals of time."""
 
 import math
 from typing import Any, NamedTuple
@@ -12,7 +12,7 @@ from models.numerics.linear import product
 from models.vibrator.equations.system import System
 
 _FRACTIONS = np.linspace(0.0, 1.0, 65)
-_CUBICS = np.stack(  # Hermite's: of the values, then of the rates, at both ends
+_CUBICS = np.stack(  # Hermite's, for the values, then for the rates, at both ends
     [
         (1 + 2 * _FRACTIONS) * (1 - _FRACTIONS) ** 2,
         _FRACTIONS**2 * (3 - 2 * _FRACTIONS),
@@ -23,12 +23,12 @@ _CUBICS = np.stack(  # Hermite's: of the values, then of the rates, at both ends
 
 
 class Measures(NamedTuple):
-    """Numbers of a motion over some time.
+    """Measures of a motion over a time span.
 
     Attributes
     ----------
     disphasing : float
-        Mean of psi_1 - psi_2, with all its turns [rad].
+        Mean of psi_1 - psi_2, not wrapped [rad].
     angular_amplitude, stroke_left, stroke_right : float
         Half peak-to-peak [rad, m, m].
     speed_1, speed_2, power_1, power_2 : float
@@ -48,19 +48,19 @@ class Measures(NamedTuple):
 def refine(
     value: NDArray[np.float64], rate: NDArray[np.float64], interval: float
 ) -> NDArray[np.float64]:
-    """Return a quantity between samples, by Hermite's cubics.
+    """Interpolate a quantity between samples by Hermite cubics.
 
     Parameters
     ----------
     value, rate : ndarray, shape (2, k)
-        At both ends of k gaps between samples.
+        At both ends of k intervals between samples.
     interval : float
         [s]
 
     Returns
     -------
     ndarray, shape (k, 65)
-        At equal steps from end to end of each gap.
+        At equal steps from end to end of each interval.
     """
     ends = np.stack([value.T, interval * rate.T])
     return product(ends, np.stack([_CUBICS[:2], _CUBICS[2:]])).sum(axis=0)
@@ -69,7 +69,7 @@ def refine(
 def extremes(
     value: NDArray[np.float64], rate: NDArray[np.float64], interval: float
 ) -> tuple[float, float]:
-    """Return the smallest and the largest value, between samples too; see `refine`."""
+    """Return the smallest and the largest value, including between samples; see `refine`."""
     ends, rates = np.stack([value[:-1], value[1:]]), np.stack([rate[:-1], rate[1:]])
     turning = rates[0] * rates[1] < 0
     between = refine(ends[:, turning], rates[:, turning], interval).ravel()
@@ -79,7 +79,7 @@ def extremes(
 
 @kernel
 def excursion(samples, interval):
-    """Return the largest distance of C from its place at rest, between samples too.
+    """Return the largest distance of C from its rest position, including between samples.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
     ----------
     m : System
     samples : ndarray, shape (k, 10) or (k, 16)
-        States at equal intervals, both ends of the time included.
+        States at equal intervals, including both ends.
     interval : float
         [s]
 
@@ -128,7 +128,7 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
     )
     turned = m.exact * alpha
     cos, sin = math.cos(m.rigid.working_angle), math.sin(m.rigid.working_angle)
-    # How a unit of `half_spacing` to the right of C moves along xi.
+    # Displacement along xi per unit of rotation and of distance to the right of C.
     arm = cos * (elementary.cos(turned) - 1) + sin * (elementary.sin(turned) if m.exact else alpha)
     arm_rate = spin * (sin * elementary.cos(turned) - cos * elementary.sin(turned))
 
@@ -150,7 +150,7 @@ def measure(m: System, samples: NDArray[np.float64], interval: float) -> Measure
 
 
 def first_harmonic(periodic: NDArray[np.float64]) -> float:
-    """Return the amplitude of the first harmonic of one period, its last sample left out."""
+    """Return the amplitude of the first harmonic of one period, sampled without its end."""
     return float(2 * abs(np.fft.rfft(periodic)[1]) / len(periodic))
 
 

@@ -1,12 +1,13 @@
 """Synchronous running of any vibrator as a periodic orbit: shooting with the exact propagator.
 
-The map P takes a state at psi_1 = 0 to the one where vibrator 1 has next turned once. A fixed
-point, psi_2 having turned once as well, is a periodic orbit; the eigenvalues of its derivative are
-the Floquet multipliers but for the trivial 1. The derivative is taken by central differences.
+The Poincaré map P takes a state on the section psi_1 = 0 to the state after one turn of vibrator 1.
+A fixed point, with psi_2 also turned once, is a periodic orbit; the eigenvalues of dP are the
+Floquet multipliers except the trivial 1. The derivative is taken by central differences.
 
-What cannot move is no part of P: coordinates of rigid mounts and, if the feed rides at psi_1 = 0,
-its height. If it flies there, height and its rate count. The flight may then begin or end at
-any other phase: P stays smooth as long as the same changes happen in the same order.
+Coordinates that cannot vary are left out of P: those of rigid mounts and, if the feed rides at
+psi_1 = 0, its height. If it flies there, its height and its rate are included. The flight may
+then begin or end at any other phase: P is smooth as long as the same events occur in the same
+order.
 """
 
 import math
@@ -22,13 +23,13 @@ from models.vibrator.exact.budgeted import PSI_1, PSI_2, Machine
 from models.vibrator.exact.measures import Measures, first_harmonic, measure
 from models.vibrator.theory import averaged
 
-TIGHTEST = 1e-11  # tolerance of orbits, if that of the runs is wider
-SAMPLES = 2048  # of an orbit: impacts of the feed give the mean powers errors of up to 1e-4
+TIGHTEST = 1e-11  # tolerance of orbits, if that of the runs is looser
+SAMPLES = 2048  # of an orbit: impacts of the feed cause errors of up to 1e-4 in the mean powers
 _ITERATIONS, _DERIVATIVES = 15, 4  # at most
-_ROUGH = 1e-8  # tolerance that is good enough for the derivative in a search
+_ROUGH = 1e-8  # tolerance that suffices for the derivative in a search
 _NUDGE = 1e-4  # of central differences, in units of the propagator's scales
-_CLOSE, _STALLED = 1e-9, 1e-6  # a step this small was the last; or this small, and not shrinking
-_BOLDEST = 0.5  # largest step of psi_2 and of log(speed)
+_CLOSE, _STALLED = 1e-9, 1e-6  # last step: below the first, or stalled below the second
+_BOLDEST = 0.5  # longest step of psi_2 and of log(speed)
 _SLOWEST = 5.0  # longest turn tried, in turns at the guessed speed
 
 
@@ -42,7 +43,7 @@ class Orbit(NamedTuple):
     period : float
         [s]
     multiplier : float
-        Largest modulus of a Floquet multiplier but for the trivial 1.
+        Largest modulus of the Floquet multipliers except the trivial 1.
     measures : Measures
         Over one revolution, disphasing in (-pi, pi], amplitude of the first harmonic of alpha.
     ripple : float
@@ -57,9 +58,9 @@ class Orbit(NamedTuple):
 
 
 def proposal(machine: Machine) -> NDArray[np.float64] | None:
-    """Return the state at psi_1 = 0 of the synchronous running that the averaged theory foresees.
+    """Return the state at psi_1 = 0 of the synchronous running predicted by the averaged theory.
 
-    None if there is none that is stable. The feed rides.
+    None if no stable one exists. The feed rides.
     """
     guess = averaged.disphasing(machine.params)
     if not guess.stable[0]:
@@ -76,7 +77,7 @@ def proposal(machine: Machine) -> NDArray[np.float64] | None:
 
 
 def anchored(machine: Machine, state: NDArray[np.float64], tolerance: float) -> NDArray[np.float64]:
-    """Return the state when psi_1 is next a multiple of 2 pi, whole turns taken off."""
+    """Return the state when psi_1 is next a multiple of 2 pi, with whole turns subtracted."""
     state = state.copy()
     part = 1 - (state[PSI_1] / (2 * np.pi)) % 1
     machine.run(state, _longest_turn(machine, state), tolerance, part)
@@ -88,7 +89,7 @@ def anchored(machine: Machine, state: NDArray[np.float64], tolerance: float) -> 
 def find_orbit(machine: Machine, guess: NDArray[np.float64], tolerance: float) -> Orbit | None:
     """Find the periodic orbit near a guess, by Newton's method.
 
-    The derivative of P is taken anew only where it no longer makes the steps shrink well.
+    The derivative of P is renewed only where steps no longer shrink fast enough.
 
     Parameters
     ----------
@@ -120,7 +121,7 @@ def _longest_turn(machine: Machine, state: NDArray[np.float64]) -> float:
 def _revolved(
     machine: Machine, state: NDArray[np.float64], tolerance: float
 ) -> tuple[NDArray[np.float64], float] | None:
-    """Return the state after vibrator 1 has turned once, turns taken off, and the time it took."""
+    """Return the state after one turn of vibrator 1, with the turn subtracted, and its duration."""
     end = state.copy()
     ended, _ = machine.run(end, _longest_turn(machine, state), tolerance, 1.0)
     if ended.status != GUARDED or not np.isfinite(end).all():
@@ -160,7 +161,7 @@ def _fixed_point(
             return None
         end, _ = revolved
         if machine.rides(end) != riding:
-            # Newton's method has to know whether the feed's height is part of P.
+            # Newton's method must know whether P includes the feed's height.
             state, riding, matrix = end, not riding, None
             continue
         free = machine.free(riding)

@@ -1,7 +1,7 @@
 """Error-controlled propagation of one machine: the yardstick of the vibrator.
 
-The equations are integrated by `models.numerics.dop853`; the flights of the feed begin and end
-where its contact force, or its height, vanishes.
+The equations are integrated by `models.numerics.dop853`; a flight of the feed begins where its
+contact force vanishes and ends where its height does.
 """
 
 import math
@@ -40,19 +40,19 @@ class Task(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """How one machine moved.
+    """The motion of one machine.
 
     Attributes
     ----------
     status : int
-        `REACHED_END`, `GUARDED` (the turns are done), `OUT_OF_BUDGET` or `STUCK`, of
+        `REACHED_END`, `GUARDED` (turns completed), `OUT_OF_BUDGET` or `STUCK`, of
         `models.numerics.dop853`.
     time : float
         [s] since the start.
     state : ndarray
         At that time.
     samples : ndarray, shape (k, len(state))
-        At the times asked for, NaN from where the motion ended.
+        At `times`; NaN after the end of the motion.
     """
 
     status: int
@@ -102,14 +102,14 @@ def run_rigid(system, state, last_angle, end, absolute, budget, times, samples):
 
 @kernel
 def run_empty(system, state, last_angle, end, absolute, budget, times, samples):
-    """Integrate the extended machine without feed, as `run_rigid`."""
+    """Integrate the extended machine without feed; see `run_rigid`."""
     task = Task(system, last_angle, True)
     return _integrate_empty(0.0, end, state, 0.0, task, 0.0, absolute, budget, times, samples)
 
 
 @kernel
 def run_fed(system, state, last_angle, end, absolute, budget, times, samples):
-    """Integrate the extended machine through all flights of the feed, as `run_rigid`."""
+    """Integrate the extended machine through all flights of the feed; see `run_rigid`."""
     riding = state[7] == 0 and state[general.DEGREES + 7] == 0
     time = step = 0.0
     steps = sampled = 0
@@ -145,7 +145,7 @@ def is_extended(system: System) -> bool:
 
 
 def runner(system: System, degrees: int) -> Callable[..., Outcome]:
-    """Return the kernel for states of so many degrees: `run_rigid` or one with its arguments."""
+    """Return the kernel for this many degrees of freedom: `run_rigid` or one with its arguments."""
     if degrees == rigid_motion.DEGREES:
         return run_rigid
     return run_fed if system.feed_mass else run_empty
@@ -154,17 +154,10 @@ def runner(system: System, degrees: int) -> Callable[..., Outcome]:
 def start(params: Params, system: System) -> NDArray[np.float64]:
     """Return the state of one machine at rest, at its initial phases.
 
-    Parameters
-    ----------
-    params : Params
-        Each field a float.
-    system : System
-        The same machine, prepared.
-
     Returns
     -------
     ndarray, shape (10,) or (16,)
-        As in `models.vibrator.equations`: of `rigid_motion` or of `general`.
+        Of `models.vibrator.equations.rigid_motion` or of `models.vibrator.equations.general`.
     """
     row = Params._make(np.array([value]) for value in params)
     (state,) = rigid_motion.initial_state(row)
@@ -179,22 +172,21 @@ def propagate(
     turns: float = math.inf,
     times: ArrayLike = (),
 ) -> Motion:
-    """Follow one machine.
+    """Follow one machine, as `models.numerics.propagator.Yardstick` states.
 
     Parameters
     ----------
     system : System
     state : array_like, shape (10,) or (16,)
-        At time 0, as `start` returns it; the longer one for the extended machine.
+        At time 0; the longer one for the extended machine.
     duration : float
         [s]
     tolerance : float
-        Error allowed in a step, in units of the motion: static unbalance over mass, this over
+        Allowed error of a step, in units of the motion: static unbalance over mass, this over
         the radius of gyration, a radian, and these times the synchronous speed.
     turns : float
-        Stop when vibrator 1 has made so many, if the time is not up before.
+        Stop after this many turns of vibrator 1, if they come before `duration`.
     times : array_like, shape (k,)
-        Ascending, when to sample the state [s].
 
     Returns
     -------
@@ -223,7 +215,7 @@ def _speed(m: System) -> float:
 
 
 def scales_of(m: System, degrees: int) -> NDArray[np.float64]:
-    """Return the size of each component of the state, of x, y, alpha, psi, u, chi, height."""
+    """Return the scales of x, y, alpha, psi_1, psi_2, u, chi and height, then of their rates."""
     shift = (m.rigid.unbalance_1 + m.rigid.unbalance_2) / m.rigid.mass
     turn = shift / math.sqrt(m.rigid.inertia / m.rigid.mass)
     sizes = np.array([shift, shift, turn, 1.0, 1.0, shift, turn, shift])[:degrees]

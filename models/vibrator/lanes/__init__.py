@@ -5,9 +5,9 @@ Reading order; a module imports only those above it:
     packed         constants and states of machines in lanes
     machines       n machines, prepared and started
     dynamics       their accelerations, with the fewest operations
-    notes          what is noted of a step
+    notes          what is recorded of a step
     fixed_steps    n machines advanced: the hot loop
-    tangents       a revolution with its derivatives by the start
+    tangents       a revolution with its derivatives with respect to the start
     multiplier     the largest Floquet multiplier of many orbits
     orbit          the synchronous motion as a periodic orbit, by Newton's method
 

@@ -1,13 +1,13 @@
 """Accelerations of sixteen rigid machines with the fewest operations.
 
-The algebra of `models.vibrator.equations.rigid` the other way round. About the common centre of
-mass, in units of the mass and of the radius of gyration, the inertia of body and rotors' masses is
-the unit matrix: nothing has to be inverted to eliminate the body,
+The equations of `models.vibrator.equations.rigid`, eliminated in the opposite order. About the
+common centre of mass, in units of the mass and the radius of gyration, the inertia of body and
+rotors' masses is the unit matrix: the body is eliminated without an inversion,
 
     a = F - nu_1 psi_1'' e_1 + nu_2 psi_2'' e_2,
 
-which leaves two equations for the rotors. All products of constants are formed once, with the step
-in them.
+which leaves two equations for the rotors. All products of constants, including the step, are formed
+once.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ _AT = layout(DEGREES)
 _X, _Y, _ALPHA, _PSI_1, _PSI_2 = (_AT.at + i * LANES for i in range(DEGREES))
 _VX, _VY, _VA, _W_1, _W_2 = (_AT.speed + i * LANES for i in range(DEGREES))
 _AX, _AY, _AA, _A_1, _A_2 = (_AT.rise + i * LANES for i in range(DEGREES))
-_PASSED = 9  # numbers that one loop hands to the next
+_PASSED = 9  # numbers that one loop passes to the next
 _C_1, _S_1, _C_2, _S_2, _F_X, _F_Y, _F_A, _Q_1, _Q_2 = (_AT.end + i * LANES for i in range(_PASSED))
 _CONSTANTS = 37
 (
@@ -119,7 +119,7 @@ def prepare(m, h, w, lane):
 def accelerate(w):
     """Set the accelerations of all lanes, times the step.
 
-    Three short loops and not a long one: the next lanes' work then overlaps the waiting for sines
+    Three short loops instead of a long one: work on the next lanes overlaps the latency of sines
     and quotients.
     """
     for lane in range(LANES):

@@ -1,6 +1,6 @@
-"""The fast propagator: sixteen rigid machines abreast, Runge-Kutta steps of fixed length.
+"""The fast propagator: sixteen rigid machines at a time, Runge-Kutta steps of fixed length.
 
-All loops over lanes are straight lines, so lanes never diverge and a row's bits do not depend on
+Loops over lanes are straight-line code, so lanes never diverge and a row's bits do not depend on
 its neighbours. See `models.numerics.nystrom`.
 """
 
@@ -30,7 +30,7 @@ _step_5 = stepper(dynamics.DEGREES, dynamics.END, TSITOURAS_5, dynamics.accelera
 _step_8 = stepper(dynamics.DEGREES, dynamics.END, DORMAND_PRINCE_8, dynamics.accelerate)
 
 STABLE = 0.8
-"""Step times the fastest rate of a machine: what keeps the method stable with room to spare."""
+"""Step times the fastest rate of a machine; the method is stable with a margin."""
 
 _DEAD = 1e-140
 
@@ -42,9 +42,9 @@ def _advance(constants, h, state, target, steps, accurate, band, notes, work):
     for first in range(0, state.shape[0], LANES):
         load(constants, first, c)
         load(state, first, y)
-        # Vibrations that have died away: numbers near underflow would be ten times slower.
+        # Decayed vibrations: numbers near underflow would be ten times slower. NaN is kept.
         for j in range(STATE * LANES):
-            y[j] = y[j] if abs(y[j]) > _DEAD else 0.0
+            y[j] = 0.0 if abs(y[j]) <= _DEAD else y[j]
         load(h, first, step_size)
         load(target, first, aim)
         for lane in range(LANES):
@@ -84,21 +84,21 @@ def advance(
     h : ndarray, shape (n,)
         Step [s].
     target : ndarray, shape (n,)
-        Disphasing angle about which the band is [rad]; NaN for none.
+        Centre of the band of the disphasing angle [rad]; NaN for none.
     steps : int
     band : float
-        [rad]
+        Its half-width [rad].
     accurate : bool
-        Whether in steps of order 8, else 5. They cost twice as much; measured on run-ups of 5 s,
-        six in a turn err by 1e-8 rad, as twenty of order 5 do.
+        Steps of order 8 instead of 5. They cost twice as much; in run-ups of 5 s, six per turn have
+        a measured error of 1e-8 rad, as have twenty of order 5.
 
     Returns
     -------
     ndarray, shape (n, NOTES)
         Sums over the steps of the motors' powers before bearing loss [W] and of the disphasing
-        angle [rad]; lowest and highest rotation [rad], displacement along xi of the left and the
+        angle [rad]; smallest and largest rotation [rad], displacement along xi of the left and the
         right end of the deck [m], and disphasing angle [rad]; largest squared displacement of C
-        [m2]; when the disphasing angle last came into its band [steps], -1 if it did not.
+        [m2]; when the disphasing angle last entered its band [steps], -1 if it did not.
     """
     notes = np.empty((len(state), NOTES))
     work = (

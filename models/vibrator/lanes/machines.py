@@ -1,4 +1,4 @@
-"""n rigid machines, prepared for the lanes, and where they start."""
+"""n rigid machines, prepared for the lanes, and their initial states."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -22,7 +22,7 @@ class Machines(NamedTuple):
     p : Params
     rigid : Rigid
     constants : ndarray, shape (n, CONSTANTS)
-        Of `models.vibrator.lanes.packed.pack`.
+        See `models.vibrator.lanes.packed.pack`.
     fastest : ndarray, shape (n,)
         See `models.vibrator.equations.time_scales.fastest_rates`.
     synchronous_speed : ndarray, shape (n, 2)
@@ -47,7 +47,7 @@ class Machines(NamedTuple):
 
 
 def follows(p: Rows, settings: Settings) -> NDArray[np.bool_]:
-    """Tell the machines that lanes can follow: motors bolted to the body, no feed."""
+    """Return which machines the lanes can follow: motors bolted to the body, no feed."""
     rigid = np.isinf(p.mount_stiffness) & np.isinf(p.mount_rotational_stiffness)
     return rigid & (p.feed_mass == 0) & (settings.kinematics == "small")
 
@@ -60,14 +60,7 @@ def prepared(p: Rows) -> Machines:
 
 
 def groups(p: Rows, settings: Settings) -> Iterator[tuple[NDArray[np.intp], Machines]]:
-    """Prepare those of n machines that lanes can follow, all in one group.
-
-    Parameters
-    ----------
-    p : Params
-        Each field an ndarray of shape (n,).
-    settings : Settings
-    """
+    """Prepare those of n machines that lanes can follow, all in one group."""
     rows = np.flatnonzero(follows(p, settings))
     yield rows, prepared(Params._make(field[rows] for field in p))
 

@@ -1,8 +1,8 @@
-"""The largest Floquet multiplier of periodic orbits, sixteen machines abreast.
+"""The largest Floquet multiplier of periodic orbits, sixteen machines at a time.
 
-By Gelfand's formula the spectral radius of A is the limit of |A^n|^(1/n). Squaring again and again
-doubles n, and whatever goes wrong in the k-th squaring counts only 2^-k as much. Unlike
-eigenvalues one by one, this is straight-line algebra.
+By Gelfand's formula the spectral radius of A is the limit of |A^n|^(1/n). Each squaring doubles n,
+and an error in the k-th squaring is weighted by 2^-k. Unlike an eigenvalue solver, this is
+straight-line algebra.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from models.numerics.jit import inlined, kernel
 from models.vibrator.lanes.packed import STATE, Array
 from models.vibrator.lanes.tangents import ANCHOR, COLUMNS
 
-_SQUARINGS = 40  # |A^n| may differ from the radius to the n by a factor c: log(c)/2^40 is left
+_SQUARINGS = 40  # |A^n| may differ from radius^n by a factor c: an error of log(c)/2^40 is left
 _WHOLE = COLUMNS * COLUMNS * LANES
 
 
@@ -31,7 +31,7 @@ def _entry(w, o, row):
 
 @kernel
 def _square(a, square, out, next_square):
-    """Set out to the square of a over that of its norm, and find the square of the norm of out."""
+    """Set `out` to the square of a over that of its norm, and find the squared norm of `out`."""
     for lane in range(LANES):
         next_square[lane] = 0.0
     for i in range(COLUMNS):
@@ -59,7 +59,7 @@ def _square(a, square, out, next_square):
 
 @kernel
 def _load(end, first, w, square):
-    """Bring the derivatives of passages into lanes; spare lanes repeat the last."""
+    """Load the derivatives of revolutions into lanes; spare lanes repeat the last."""
     last = end.shape[0] - 1
     for lane in range(LANES):
         n = min(first + lane, last)
@@ -94,17 +94,17 @@ def _radius(end, out, a, b, squares):
 
 
 def largest_multiplier(end: Array) -> Array:
-    """Return the spectral radius of the map from one passage of psi_1 = 0 to the next.
+    """Return the spectral radius of the Poincaré map of the section psi_1 = 0.
 
     Parameters
     ----------
     end : ndarray, shape (n, 10, 11)
-        Of `models.vibrator.lanes.tangents.revolve`, of periodic orbits.
+        As `models.vibrator.lanes.tangents.revolve` returns it, for periodic orbits.
 
     Returns
     -------
     ndarray, shape (n,)
-        The largest modulus of a Floquet multiplier but for the trivial 1.
+        The largest modulus of the Floquet multipliers except the trivial 1.
     """
     out = np.empty(len(end))
     squares = aligned((_SQUARINGS + 1) * LANES).reshape(-1, LANES)

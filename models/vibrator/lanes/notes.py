@@ -1,6 +1,6 @@
-"""What the fast propagator notes of its steps.
+"""What the fast propagator records of its steps.
 
-Powers, extremes of the motion, and when the disphasing angle came into its band.
+Powers, extremes of the motion, and when the disphasing angle entered its band.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from models.vibrator.equations.rigid import Rigid
 from models.vibrator.lanes import dynamics
 from models.vibrator.lanes.packed import CONSTANTS
 
-# What is noted of each row.
+# What is recorded of each row.
 (
     POWER_1,
     POWER_2,
@@ -32,13 +32,13 @@ from models.vibrator.lanes.packed import CONSTANTS
     LAST_ENTRY,
 ) = range(13)
 NOTES = 13
-SUMS = 3  # the first ones are sums over the steps
+SUMS = 3  # the first three are sums over the steps
 
 COS, SIN = CONSTANTS, CONSTANTS + 1
-"""Where lanes have cosine and sine of the working angle, behind the constants of the machine."""
+"""Rows of the cosine and sine of the working angle, after the constants of the machine."""
 
 CONSTANTS_ROOM, NOTES_ROOM = CONSTANTS + 2, NOTES + 6
-"""Numbers that a lane needs for both."""
+"""Numbers that a lane needs for constants and notes."""
 
 _AT = layout(dynamics.DEGREES)
 _TURN = 2 * np.pi
@@ -55,7 +55,7 @@ _VX, _VY, _VA, _W_1, _W_2 = (_AT.velocity + i * LANES for i in range(dynamics.DE
 
 @kernel
 def begin(w, target, notes):
-    """Set the notes to those of no step, from the state and the target of the angle."""
+    """Initialise the notes before the first step, from the state and the target of the angle."""
     for lane in range(LANES):
         for i in (POWER_1, POWER_2, ANGLE, EXCURSION):
             notes[i * LANES + lane] = 0.0
@@ -70,7 +70,7 @@ def begin(w, target, notes):
 
 @inlined
 def _distance(w, lane):
-    """Return the squared displacement, and its rise in a step at this rate."""
+    """Return the squared displacement of C, and its increase over a step at the present rate."""
     x, y = w[_X + lane], w[_Y + lane]
     out = 2 * w[_AT.step + lane] * fma(x, w[_VX + lane], y * w[_VY + lane])
     return fma(x, x, y * y), out
@@ -78,7 +78,7 @@ def _distance(w, lane):
 
 @inlined
 def _way(w, target, lane):
-    """Return the disphasing angle less its target, on the circle, and its rise in a step."""
+    """Return the disphasing angle less its target, wrapped, and its increase over a step."""
     off = w[_PSI_1 + lane] - w[_PSI_2 + lane] - target[lane]
     drift = w[_AT.step + lane] * (w[_W_1 + lane] - w[_W_2 + lane])
     return fma(-_TURN, nearest(off * _PER_TURN), off), drift
@@ -86,9 +86,9 @@ def _way(w, target, lane):
 
 @kernel
 def _entry(off_0, drift_0, off, drift, band):
-    """Return where in a step an angle last comes into its band, -1 if it does not.
+    """Return where in a step an angle last enters its band, -1 if it does not.
 
-    Between the ends of the step it is a cubic, which may leave the band and return.
+    Within the step it is a cubic, which may leave the band and return.
     """
     if abs(off_0) > band >= abs(off):
         side = 1.0 if off_0 > 0 else -1.0
@@ -105,14 +105,14 @@ def _entry(off_0, drift_0, off, drift, band):
 
 @kernel
 def note_entries(w, target, step, band, notes):
-    """Note when angles come into their band; nearly always a look at all lanes is enough."""
+    """Record when angles enter their bands; almost always one check of all lanes is enough."""
     some = 0
     for lane in range(LANES):
         off, drift = _way(w, target, lane)
         off_0, drift_0 = notes[_OFF * LANES + lane], notes[_DRIFT * LANES + lane]
         notes[_NEW_OFF * LANES + lane], notes[_NEW_DRIFT * LANES + lane] = off, drift
         size_0, size = abs(off_0), abs(off)
-        # A cubic is nowhere further from both its ends.
+        # A bound of how far the cubic rises above both its ends.
         room = 4 / 27 * (abs(drift_0) + abs(drift))
         higher = size_0 if size_0 > size else size
         returns = (drift_0 * drift < 0.0) & (higher <= band) & (higher + room > band)
@@ -134,7 +134,7 @@ def note_entries(w, target, step, band, notes):
 
 @kernel
 def note_step(c, w, notes):
-    """Take in a step, whose end is the state."""
+    """Record a step that ends at the present state."""
     for lane in range(LANES):
         w_1, w_2 = w[_W_1 + lane], w[_W_2 + lane]
         lag_1 = c[_SYNCHRONOUS_1 * LANES + lane] - w_1
@@ -166,7 +166,7 @@ def note_step(c, w, notes):
         far_0, out_0 = notes[_FAR * LANES + lane], notes[_OUT * LANES + lane]
         far, out = _distance(w, lane)
         notes[_FAR * LANES + lane], notes[_OUT * LANES + lane] = far, out
-        # The square of the displacement is a cubic in a step; its vertex where its rate vanishes.
+        # The squared displacement is a cubic in a step; its vertex is where its rate vanishes.
         turned = (out_0 > 0.0) & (out < 0.0)
         part = out_0 / (out_0 - out) if turned else 1.0
         rest = 1.0 - part

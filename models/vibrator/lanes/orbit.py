@@ -1,10 +1,10 @@
 """Synchronous running of the rigid machine as a periodic orbit, by Newton's method.
 
-The machine knows no clock, so the period T is an unknown and psi_1 = 0 anchors the start of the
+The machine is autonomous, so the period T is an unknown and psi_1 = 0 anchors the start of the
 revolution: the other nine components of the state and T are such that after T the body is where it
-was and both vibrators have turned once. The derivatives of the end by the start also give the
-Floquet multipliers. They cost several times the motion itself, and only the last ones have to be
-true: to come close, those of a third as many steps do, kept from step to step.
+was and both vibrators have turned once. The derivatives of the end with respect to the start also
+give the Floquet multipliers. They cost several times the motion itself, and only the last ones must
+be accurate: to come close, derivatives from a third as many steps suffice, kept between iterations.
 """
 
 from typing import NamedTuple
@@ -21,14 +21,14 @@ from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, slopes, 
 from models.vibrator.lanes.tangents import FREE, revolve
 
 ITERATIONS = 10
-_CLOSE = 1e-6  # of a revolution: a step this small was the last but for rounding
-_BOLDEST = 0.5  # largest step of psi_2 [rad]
+_CLOSE = 1e-6  # of a revolution: after a step this small only rounding errors are left
+_BOLDEST = 0.5  # longest step of psi_2 [rad]
 
-# While the derivatives are not renewed, steps shrink by a factor only.
-_NEAR = 0.05  # a first step up to this may be made with coarse derivatives
-_SHRINKING = 0.25  # more slowly is too slow
+# While the derivatives are kept, convergence is only linear.
+_NEAR = 0.05  # longest first step made with coarse derivatives
+_SHRINKING = 0.25  # factor per step; slower convergence is given up
 _CHORDS = 8
-_CLOSE_ENOUGH = 1e-7  # for one step with true derivatives to leave nothing but rounding
+_CLOSE_ENOUGH = 1e-7  # for one step with accurate derivatives to leave only rounding errors
 
 _TURN = np.where(np.isin(np.arange(STATE), (3, 4)), 2 * np.pi, 0.0)
 _combine = combiner(STATE)
@@ -43,13 +43,13 @@ class Orbits(NamedTuple):
     Attributes
     ----------
     found : ndarray of bool, shape (n,)
-        Everything else is meaningless where False.
+        The other fields are meaningless where False.
     state : ndarray, shape (n, 10)
         At psi_1 = 0.
     period : ndarray, shape (n,)
         [s]
     multiplier : ndarray, shape (n,)
-        Largest modulus of a Floquet multiplier but for the trivial 1.
+        Largest modulus of the Floquet multipliers except the trivial 1.
     """
 
     found: NDArray[np.bool_]
@@ -60,7 +60,7 @@ class Orbits(NamedTuple):
 
 @kernel
 def _follow(constants, start, h, each, trace, work):
-    """Set trace, shape (n, samples, 10), to the states after each so many steps."""
+    """Set `trace`, shape (n, samples, 10), to the states after every `each` steps."""
     c, w, step_size = work
     y, new = w[_Y : _Y + _WHOLE], w[_NEW : _NEW + _WHOLE]
     k_1, k_2, k_3 = w[_K : _K + _WHOLE], w[_K_2 : _K_2 + _WHOLE], w[_K_3 : _K_3 + _WHOLE]
@@ -88,7 +88,7 @@ def _follow(constants, start, h, each, trace, work):
 
 
 def _sampled(constants: Array, state: Array, period: Array, samples: int, each: int) -> Array:
-    """Return the states of a period at equal times, so many steps apart."""
+    """Return the states over a period at equal times, `each` steps apart."""
     trace = np.empty((len(state), samples, STATE))
     work = aligned(CONSTANTS * LANES), aligned(_SIZE), aligned(LANES)
     _follow(constants, state, (period / (samples * each))[:, None], each, trace, work)
@@ -108,7 +108,7 @@ def follow(constants: Array, state: Array, period: Array, steps: int) -> Array:
     Returns
     -------
     ndarray, shape (n, steps, 10)
-        The last of them a period after `state`.
+        The last one a period after `state`.
     """
     return _sampled(constants, state, period, steps, 1)
 
@@ -119,7 +119,7 @@ def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Or
     Parameters
     ----------
     constants : ndarray, shape (n, CONSTANTS)
-        Of `models.vibrator.lanes.fixed_steps.pack`.
+        See `models.vibrator.lanes.packed.pack`.
     state : ndarray, shape (n, 10)
         Guess, at psi_1 = 0.
     period : ndarray, shape (n,)
@@ -147,7 +147,7 @@ def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Or
         step *= np.minimum(1.0, _BOLDEST / np.maximum(size, 1e-300))[:, None, None]
         out.state[left[:, None], FREE] += step[:, :-1, 0]
         out.period[left] += step[:, -1, 0]
-        # Newton's next error is of the order of the square of this step.
+        # The next error of Newton's method is of the order of this step squared.
         done = regular & (size < _CLOSE) & (out.period[left] > 0)
         out.found[left[done]] = True
         out.multiplier[left[done]] = largest_multiplier(end[done])
@@ -158,10 +158,10 @@ def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Or
 
 
 def _approach(constants: Array, state: Array, period: Array, steps: int) -> None:
-    """Improve guesses near an orbit in place; leave the others as they are.
+    """Improve guesses near an orbit in place; leave the others unchanged.
 
-    The derivatives are those at the guess, with a third of the steps: each next error is a fraction
-    of the one before, and where it is not a small one the guess was not near.
+    The derivatives are those at the guess, with a third of the steps: convergence is linear, and
+    where it is slow the guess was not near an orbit.
     """
     end = revolve(constants, state, period, max(steps // 3, 1))
     inverse, regular = solve(_matrix(end), np.tile(np.eye(STATE), (len(state), 1, 1)))
@@ -187,22 +187,22 @@ def _approach(constants: Array, state: Array, period: Array, steps: int) -> None
 
 
 def _is_sound(end: Array) -> NDArray[np.bool_]:
-    """Tell which motions and derivatives are numbers, and not out of all bounds."""
+    """Return which motions and derivatives are finite and within bounds."""
     return np.abs(end).max(axis=(1, 2)) < 1e12
 
 
 def _miss(start: Array, end: Array) -> Array:
-    """Return what the end lacks of the start a turn later, as columns."""
+    """Return the start plus one turn less the end, as columns."""
     return (start + _TURN - end)[:, :, None]
 
 
 def _matrix(end: Array) -> Array:
-    """Return the derivatives of the end less the start by nine components and the period."""
+    """Return the derivatives of end less start with respect to nine components and the period."""
     matrix = end[:, :, 1:].copy()
     matrix[:, FREE, np.arange(len(FREE))] -= 1
     return matrix
 
 
 def _size(step: Array, period: Array) -> Array:
-    """Return how far steps go, of psi_2 [rad] and of the period as a fraction."""
+    """Return the lengths of steps: that in psi_2 [rad] plus the relative one in the period."""
     return np.abs(step[:, 3, 0]) + np.abs(step[:, -1, 0]) / period

@@ -78,7 +78,7 @@ def slopes(c, h, y, k):
 
 @kernel
 def load(table, first, out):
-    """Bring up to LANES rows of an (n, q) table into lanes; spare lanes repeat the last row."""
+    """Load up to LANES rows of an (n, q) table into lanes; spare lanes repeat the last row."""
     last = table.shape[0] - 1
     for lane in range(LANES):
         for i in range(table.shape[1]):
@@ -87,7 +87,7 @@ def load(table, first, out):
 
 @kernel
 def store(lanes, first, table):
-    """Bring lanes back into their rows of an (n, q) table."""
+    """Store lanes back into their rows of an (n, q) table."""
     for n in range(first, min(first + LANES, table.shape[0])):
         for i in range(table.shape[1]):
             table[n, i] = lanes[i * LANES + n - first]

@@ -1,8 +1,8 @@
-"""A revolution of rigid machines with its derivatives by the start, sixteen machines abreast.
+"""A revolution of sixteen rigid machines with its derivatives with respect to the start.
 
 A step first takes the state through its stages and keeps their Jacobians; then the derivatives go
-through the whole step column by column, each in registers, eight machines to a vector: all that a
-column needs is in the fastest cache then, which it would not be stage by stage.
+through the whole step column by column, each in registers, eight machines to a vector. That way all
+that a column needs stays in the fastest cache; stage by stage it would not.
 """
 
 import numpy as np
@@ -30,9 +30,9 @@ _, (_A21,), (_A31, _A32), (_A41, _A42, _A43), (_A51, _A52, _A53, _A54), _LAST = 
 _A61, _A62, _A63, _A64, _A65 = _LAST
 _B1, _B2, _B3, _B4, _B5, _B6 = TSITOURAS_5.b
 
-# One flat array has the Jacobians of the stages by rows, times the step; the step; the column at
-# work; and all columns: only with offsets known to the compiler is `_carry` vectorised. A gap of
-# half a row after each Jacobian and column spreads what one half needs over all of the cache.
+# One flat array holds the Jacobians of the stages by rows, times the step; the step; the current
+# column; and all columns: `_carry` is vectorised only if the compiler knows all offsets. A gap of
+# half a row after each Jacobian and column spreads what one half needs over the whole cache.
 _JACOBIAN = 5 * STATE * LANES + _HALF
 _J_2, _J_3, _J_4, _J_5, _J_6 = (i * _JACOBIAN for i in range(1, STAGES))
 _STEP = STAGES * _JACOBIAN
@@ -88,7 +88,7 @@ def _linearise(c, h, y, k, jacobian):
 
 @inlined
 def _row(w, o, z):
-    """Return one row of a Jacobian times a column, in two sums that do not wait for each other."""
+    """Return one row of a Jacobian times a column, in two independent sums."""
     first = fma(w[o + 2 * LANES], z[2], fma(w[o], z[0], w[o + LANES] * z[1]))
     first += fma(w[o + 3 * LANES], z[3], w[o + 4 * LANES] * z[4])
     second = fma(w[o + 7 * LANES], z[7], fma(w[o + 5 * LANES], z[5], w[o + 6 * LANES] * z[6]))
@@ -132,7 +132,7 @@ def _add(z, factor, k):
 
 @kernel
 def _carry(w):
-    """Take all columns through the step whose Jacobians are known."""
+    """Take all columns through the step with these Jacobians."""
     for first in range(0, LANES, _HALF):
         for column in range(COLUMNS):
             o = _TANGENTS + column * _WIDTH + first
@@ -182,7 +182,7 @@ def _carry(w):
 
 @kernel
 def _begin(h, w):
-    """Set the step, and the columns to those of the identity but for psi_1."""
+    """Set the step, and the columns to those of the identity except that of psi_1."""
     w[_STEP:_COLUMN] = h
     w[_TANGENTS:_BLOCK] = 0.0
     column = 0
@@ -222,7 +222,7 @@ def _revolve(constants, start, h, steps, end, work):
 
 
 def revolve(constants: Array, start: Array, period: Array, steps: int) -> Array:
-    """Return where n machines are after a period, and how that depends on the start and on time.
+    """Return the states of n machines after a period, with derivatives by the start and by time.
 
     Parameters
     ----------
@@ -235,8 +235,8 @@ def revolve(constants: Array, start: Array, period: Array, steps: int) -> Array:
     Returns
     -------
     ndarray, shape (n, 10, 11)
-        Of each machine, by columns: the state, its derivatives by the components of the start but
-        for psi_1, and its rates.
+        By columns: the state, its derivatives with respect to the components of the start except
+        psi_1, and its rates.
     """
     end = np.empty((len(start), STATE, 2 + COLUMNS))
     work = (
@@ -252,7 +252,7 @@ def revolve(constants: Array, start: Array, period: Array, steps: int) -> Array:
 
 
 def monodromy(machines: Machines, state: Array, period: Array, steps: int) -> Array:
-    """Return how the states after a period depend on those at its start.
+    """Return the derivatives of the states after a period with respect to those at its start.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def monodromy(machines: Machines, state: Array, period: Array, steps: int) -> Ar
     Returns
     -------
     ndarray, shape (n, 10, 10)
-        Derivatives of the components by those at the start, zero by psi_1.
+        Zero with respect to psi_1.
     """
     out = np.zeros((len(state), STATE, STATE))
     out[:, :, FREE] = revolve(machines.constants, state, period, steps)[:, :, 1:-1]

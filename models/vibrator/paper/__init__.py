@@ -1,10 +1,10 @@
-"""What reproduces the paper, and no row of a study needs.
+"""Code that reproduces the paper; studies do not need it.
 
 Reading order:
 
     table1          prints its Table 1
-    centre          the centre of mass that its formulas mean
+    centre          the centre of mass to which its formulas refer
     closed_forms    its formulas for one disturbance at a time
-    criterion       the integral criterion that they come from
-    moments         the vibratory moments that both are about
+    criterion       the integral criterion from which they derive
+    moments         the vibratory moments that both approximate
 """

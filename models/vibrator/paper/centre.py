@@ -1,6 +1,6 @@
-"""The body about its mass centre WITH both unbalanced masses, as the closed formulas mean it.
+"""The body about its mass centre WITH both unbalanced masses, as the closed formulas require.
 
-Lengths and inertias taken about C, the mass centre of the bare body, make K up to a fifth wrong.
+Lengths and inertias about C, the mass centre of the bare body, cause errors of up to 20 % in K.
 Arguments may be numbers or arrays that broadcast.
 """
 
@@ -35,7 +35,7 @@ class Centre(NamedTuple):
 
     @property
     def distance(self) -> Any:
-        """D = sqrt(R^2 + r^2), to each shaft if they are not off centre [m]."""
+        """D = sqrt(R^2 + r^2), the distance to each shaft if they are not off centre [m]."""
         return np.hypot(self.along, self.half)
 
 
@@ -47,7 +47,7 @@ def combined_centre(
     shaft_half_angle: Any,
     axis_offset: Any = 0.0,
 ) -> Centre:
-    """Return mass, inertia and shafts about the mass centre that the formulas mean.
+    """Return mass, inertia and shafts about the mass centre to which the formulas refer.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def combined_centre(
 
 
 def reduced_mass(mass: Any, stiffness: Any, speed: Any) -> Any:
-    """Return M' = M - k/w^2 [kg]: a mass as its springs leave it at speed w [rad s-1]."""
+    """Return M' = M - k/w^2 [kg]: the effective mass on springs at speed w [rad s-1]."""
     return mass - stiffness / speed**2
 
 

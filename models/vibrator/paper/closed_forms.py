@@ -1,7 +1,7 @@
 """Closed formulas of Michalczyk & Cieplok 2014 for one disturbance at a time, undamped.
 
 Each holds for identical motors at a known common speed, far from resonance, under the conditions
-it states; `models.vibrator.theory.averaged` needs none of them. Lengths and inertias are those of
+stated; `models.vibrator.theory.averaged` needs none of these. Lengths and inertias are those of
 `models.vibrator.paper.centre`; angles are those of the stable state, in (-pi, pi]. Arguments may be
 numbers or arrays that broadcast.
 """
@@ -27,7 +27,7 @@ def synchronising_coefficient(distance: Any, inertia: Any, mass_xi: Any, mass_et
     Returns
     -------
     array_like
-        [kg-1]; dphi = 0 is stable where it is positive, else dphi = pi.
+        [kg-1]; dphi = 0 is stable where B > 0, otherwise dphi = pi.
     """
     return distance**2 / inertia + 1 / mass_eta - 1 / mass_xi
 
@@ -52,7 +52,7 @@ def conveyor_moment(
 ) -> Any:
     """Return K of the conveyor on leaf springs, eq. (2) [N m].
 
-    The deck moves along the working axis only, and the motor set with it; across, the set moves
+    The deck moves only along the working axis, together with the motor set; across it the set moves
     alone on its springs; nothing rotates.
 
     Parameters
@@ -80,7 +80,7 @@ def speed_coefficient(
     unbalance: Any,
     speed: Any,
 ) -> Any:
-    """Return a_el + a_o of eq. (3) [N m s]: loss of torque of one vibrator per gain of speed.
+    """Return a_el + a_o of eq. (3) [N m s]: the drop of one vibrator's torque per unit of speed.
 
     a_el = 2 p M_zn/(w_s - w_u) of the motor near its synchronous speed and a_o = 2 rho m e w of
     the bearings; torques in N m, speeds in rad s-1, bearing constant in m, unbalance in kg m.
@@ -90,12 +90,12 @@ def speed_coefficient(
 
 
 def disphasing_of_motors(speed_difference: Any, speed_coefficient: Any, moment: Any) -> Any:
-    """Return dphi of motors that would run at two speeds if left alone, eqs. (4) and (6).
+    """Return dphi of motors that would run at different speeds if uncoupled, eqs. (4) and (6).
 
     Parameters
     ----------
     speed_difference : array_like
-        w_ust1 - w_ust2, of the steady speeds each would have without the other [rad s-1].
+        w_ust1 - w_ust2, difference of the steady speeds without coupling [rad s-1].
     speed_coefficient : array_like
         a_el + a_o [N m s].
     moment : array_like
@@ -148,8 +148,8 @@ def angular_amplitude(angle: Any, unbalance: Any, centre: Centre, inertia: Any) 
 def disphasing_of_mounts(coefficient: Any, speed: Any, *mounts: tuple[Any, Any]) -> Any:
     """Return dphi of a motor set on elastic mounts, eq. (9) [rad].
 
-    B sin dphi + sum (w^2/k_psi) sin(dphi - 2 psi) = 0, for a set without mass, unbalanced masses
-    included. Equal mounts along psi and psi + pi/2 cancel.
+    B sin dphi + sum (w^2/k_psi) sin(dphi - 2 psi) = 0, neglecting the mass of the set, including
+    the unbalanced masses. Equal mounts along psi and psi + pi/2 cancel.
 
     Parameters
     ----------
@@ -170,7 +170,8 @@ def disphasing_of_mounts(coefficient: Any, speed: Any, *mounts: tuple[Any, Any])
 def critical_rotational_stiffness(half: Any, speed: Any, coefficient: Any) -> Any:
     """Return k_o = r^2 w^2/B of eqs. (10) and (11) [N m rad-1].
 
-    On a softer rotational mount the vibrators lock at pi instead of 0. For a set without inertia.
+    On a softer rotational mount the vibrators lock at pi instead of 0. Valid for a set without
+    inertia.
 
     Parameters
     ----------
@@ -222,13 +223,13 @@ def disphasing_of_supports(
     mass_xi: Any,
     mass_eta: Any,
 ) -> Any:
-    """Return dphi of unlike supports, of supports out of level and of an axis off centre [rad].
+    """Return dphi of unequal supports, supports out of level and an axis off centre [rad].
 
     B sin dphi = (k_x - k_y) sin 2beta/(w^2 M_xi' M_eta')
                  - 2R (k_x h_c cos beta - k_y x_c sin beta)/(w^2 M_xi' J') + 2 w_off R/J'
 
-    where (x_c, y_c) leads from C to the combined centre and h_c = h + y_c. First order in what
-    disturbs, for light damping; the paper has no such formula.
+    where (x_c, y_c) leads from C to the combined centre and h_c = h + y_c. First order in the
+    disturbances, for light damping; the paper has no such formula.
 
     Parameters
     ----------

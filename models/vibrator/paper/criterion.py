@@ -1,9 +1,9 @@
 """Blekhman's integral criterion of stable synchronisation, eq. (1), evaluated from the motion.
 
-The stable phase difference of identical motors minimises D = <E - V> + <E_w - V_w>, the mean
-over a period of kinetic less potential energy of the linear body, and of what couples the
-vibrators to it: the elastic mounts. Only the conservative machine has such a function: supports
-and mounts are taken without damping, the deck without feed.
+The stable phase difference of identical motors minimises D = <E - V> + <E_w - V_w>, the mean over a
+period of kinetic less potential energy of the linear body and of the elastic mounts that couple the
+vibrators to it. Only a conservative machine has such a function: damping of supports and mounts is
+neglected, and the deck is empty.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from models.vibrator.parameters import Params, Rows
 from models.vibrator.theory.averaged import Motion, steady_motion
 
-_INSTANTS = 16  # of a period; energies are of second order, so their mean is exact
+_INSTANTS = 16  # per period; energies are quadratic in harmonic motion, so their mean is exact
 
 
 def _mean_square(*parts: NDArray[np.complex128]) -> NDArray[np.float64]:
@@ -27,7 +27,7 @@ def _stretch(stiffness: NDArray[np.float64], *parts: NDArray[np.complex128]) -> 
 
 
 def _kinetic(p: Rows, w: NDArray[np.float64], q: Motion) -> NDArray[np.float64]:
-    """Return the mean kinetic energy, each unbalanced mass on its shaft."""
+    """Return the mean kinetic energy, with each unbalanced mass on its shaft."""
     cos, sin = np.cos(p.working_angle), np.sin(p.working_angle)
     along = p.shaft_distance * np.cos(p.shaft_half_angle)
     half = p.shaft_distance * np.sin(p.shaft_half_angle)
@@ -55,7 +55,7 @@ def _potential(p: Rows, q: Motion) -> NDArray[np.float64]:
 
 
 def integral(p: Rows, speed: ArrayLike, angle: ArrayLike) -> NDArray[np.float64]:
-    """Return D of eq. (1) at given speed and phase difference.
+    """Return D of eq. (1) at a given speed and phase difference.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def integral(p: Rows, speed: ArrayLike, angle: ArrayLike) -> NDArray[np.float64]
 
 
 def minimising_angle(p: Rows, speed: ArrayLike) -> NDArray[np.float64]:
-    """Return the phase difference that minimises D, that is where identical motors lock.
+    """Return the phase difference that minimises D, at which identical motors lock.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def minimising_angle(p: Rows, speed: ArrayLike) -> NDArray[np.float64]:
     ndarray, shape (n,)
         dphi in (-pi, pi] [rad].
     """
-    # D(dphi) is a constant and a first harmonic, so three values fix it.
+    # D(dphi) is a constant plus a first harmonic, so three values determine it.
     thirds = 2 * np.pi / 3 * np.arange(3)
     harmonic = sum(integral(p, speed, a) * np.exp(1j * a) for a in thirds)
     angle = np.angle(-np.asarray(harmonic))

@@ -1,4 +1,4 @@
-"""The vibratory moments themselves, whose difference the paper's formulas approximate."""
+"""The vibratory moments, whose difference the paper's formulas approximate."""
 
 import math
 
@@ -25,7 +25,7 @@ def _brake(bodies, speed, angle, out):
 def vibratory_moments(
     p: Rows, speed: ArrayLike, angle: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the mean moments by which the shaking body drives the two rotors.
+    """Return the mean moments with which the vibrating body drives the two rotors.
 
     Parameters
     ----------

@@ -2,10 +2,10 @@
 
 Reading order; a module imports only those above it:
 
-    regimes        what may become of a machine
+    regimes        possible outcomes of a start
     synchronous    the motion that fast rows are expected to reach
-    last_second    what is measured of those that reach none
-    fast           many rigid machines, abreast
-    track          a run-up of one machine, sampled as it goes
+    last_second    measures of rows that reach none
+    fast           many rigid machines at a time
+    track          a run-up of one machine, sampled on the way
     exact          any machines, one after the other
 """

@@ -1,10 +1,10 @@
 """From standstill to the outcome with the exact propagator, one machine after the other.
 
-For machines on flexible mounts, with feed or with exact kinematics, and as the yardstick of
-rigid ones. A run-up is watched in looks of eight turns. Once the vibrators keep step, their
-synchronous running is found as a periodic orbit; the run stops as soon as it stays near that orbit,
-if it is stable, and vibration of the body on its springs can no longer make the largest
-displacement; it goes on to the end where it does not.
+For machines on flexible mounts, with feed or with exact kinematics, and as the yardstick of rigid
+ones. A run-up is monitored in looks of eight turns. Once the vibrators keep step, their synchronous
+running is found as a periodic orbit. If the orbit is stable, the run stops as soon as it stays near
+it and free vibration of the body can no longer exceed the largest displacement; otherwise it
+continues to the end.
 """
 
 import math
@@ -33,33 +33,33 @@ from models.vibrator.start.track import LAST, Track
 from uq.contract import Status
 
 SAMPLES_PER_TURN = 32  # at the larger synchronous speed
-TURNS = 8  # in a look
+TURNS = 8  # per look
 LOOK = SAMPLES_PER_TURN * TURNS
-BUDGET = 150_000  # steps of one machine, searches of orbits included: some two seconds
-_LOOKING = 10  # steps that a look is worth beside those it takes
-_NEAR = 0.03  # of the orbit's disphasing angle: certain to stay [rad]
+BUDGET = 150_000  # steps of one machine, including orbit searches: about two seconds
+_LOOKING = 10  # overhead of a look, in steps
+_NEAR = 0.03  # of the orbit's disphasing angle: certain to stay there [rad]
 _ALIKE = 0.01  # of the orbit's speed, likewise
-_STEADY = 0.02  # range of the disphasing angle in a look that is worth a search [rad]
+_STEADY = 0.02  # range of the disphasing angle in a look below which a search is worth while [rad]
 _LOCKED = 0.2  # range in the last second below which motors are locked [rad]
 
 
 def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
-    """Switch on n machines and see what becomes of them.
+    """Switch on n machines and find their outcomes.
 
     Parameters
     ----------
     p : Params
         Each field an ndarray of shape (n,).
     settings : Settings
-        `propagator` and `steps_per_turn` do not matter here.
+        `propagator` and `steps_per_turn` are not used.
 
     Returns
     -------
     outcome : Outcome
     status : ndarray of int8, shape (n,)
-        `OUT_OF_BUDGET` where the steps end before the longest start simulated; what is known is
-        then of the last second before, if there is one. `NON_FINITE` where the motion is not
-        finite; nothing is known of it.
+        `OUT_OF_BUDGET` where the steps run out before the end of the longest start simulated; the
+        outcome then describes the last second before, if there is one. `NON_FINITE` where the
+        motion is not finite; its outcome is unknown.
     """
     n = len(p.body_mass)
     out, status = Outcome.nothing(n), np.zeros(n, np.int8)
@@ -101,7 +101,7 @@ def _switch_on(params: Params, settings: Settings, out: Outcome) -> Status:
         if track.count >= next_search and not arriving and _is_steady(machine.system, track):
             orbit = _search(machine, guess, state, settings.tolerance) or orbit
             guess = None
-            # Each search costs some dozens of turns; where they fail, ever fewer.
+            # Each search costs dozens of turns; where they fail, they become ever rarer.
             next_search = 4 * track.count
     _describe_end(machine, track, orbit, state, settings.tolerance, out)
     return Status.OK
@@ -113,7 +113,7 @@ def _search(
     state: NDArray[np.float64],
     tolerance: float,
 ) -> Orbit | None:
-    """Look for a stable orbit at working speed: near the guess, else near the state."""
+    """Search for a stable orbit at working speed: near the guess, else near the state."""
     m = machine.system
     slowest = CAPTURED_BELOW * max(m.rigid.synchronous_speed_1, m.rigid.synchronous_speed_2)
     for near in (guess, anchored(machine, state, tolerance)):
@@ -146,7 +146,7 @@ def _is_steady(m: System, track: Track) -> bool:
 
 
 def _stays_at(orbit: Orbit, track: Track) -> bool:
-    """Whether the last look was so near a stable orbit that the machine will not leave it."""
+    """Whether the last look was so near to a stable orbit that the machine will not leave it."""
     states = track.last(LOOK)
     mean = orbit.measures.disphasing
     ratio = _speeds(states, track.interval) * orbit.period / (2 * np.pi)
@@ -165,7 +165,7 @@ def _approaches(orbit: Orbit, track: Track) -> bool:
 
 
 def _describe_orbit(orbit: Orbit, track: Track, out: Outcome) -> None:
-    """Set the outcome of a machine that has come to an orbit."""
+    """Set the outcome of a machine that has reached an orbit."""
     seen = orbit.measures
     out.disphasing[:], out.multiplier[:] = seen.disphasing, orbit.multiplier
     _describe(seen, track, out)
@@ -187,7 +187,7 @@ def _describe(seen: Measures, track: Track, out: Outcome) -> None:
 
 
 def _describe_last_second(m: System, track: Track, out: Outcome) -> bool:
-    """Set the outcome of a machine that is at no orbit; tell whether its motors are locked."""
+    """Set the outcome of a machine on no orbit; return whether its motors are locked."""
     states = track.last()
     seen = measure(m, states, track.interval)
     _describe(seen, track, out)
@@ -209,7 +209,7 @@ def _describe_end(
     tolerance: float,
     out: Outcome,
 ) -> None:
-    """Set the outcome of a machine that is not known to have come to an orbit."""
+    """Set the outcome of a machine that is not known to have reached an orbit."""
     locked = _describe_last_second(machine.system, track, out)
     out.synchronisation_time[:] = np.inf
     if not locked:
@@ -228,7 +228,7 @@ def _describe_end(
 
 
 def _describe_unfinished(m: System, track: Track, out: Outcome) -> Status:
-    """Set the outcome of a machine whose steps are used up."""
+    """Set the outcome of a machine whose step budget is used up."""
     if track.time >= LAST:
         _describe_last_second(m, track, out)
     out.synchronisation_time[:], out.censored[:] = track.time, True

@@ -1,10 +1,9 @@
-"""From standstill to the outcome: the fast road for rigid machines.
+"""From standstill to the outcome: the fast way for rigid machines.
 
 The averaged theory proposes the synchronous motion, Newton's method finds it as a periodic orbit,
-and the run-up only has to tell whether it is reached: it stops as soon as the disphasing angle
-stays near that of a stable orbit, and goes on to the end where it does not. Vibration of the body
-on its springs dies away more slowly: the run also waits until it can no longer make the largest
-displacement.
+and the run-up only has to show whether it is reached: it stops as soon as the disphasing angle
+stays near that of a stable orbit, and otherwise continues to the end. Free vibration of the body
+dies away more slowly: the run also waits until it can no longer exceed the largest displacement.
 """
 
 from typing import Any, NamedTuple
@@ -31,8 +30,8 @@ from uq.contract import Status
 
 LOOK = 96  # steps between two looks at a run
 BUDGET = 1000  # looks
-_STEADY = 0.02  # range of the disphasing angle in a look that is worth a search for an orbit [rad]
-_RUNS = 3  # of a machine, each towards an orbit that the one before has shown
+_STEADY = 0.02  # range of the disphasing angle in a look below which a search is worth while [rad]
+_RUNS = 3  # of a machine, each towards an orbit found in the one before
 
 
 class _Plan(NamedTuple):
@@ -43,7 +42,7 @@ class _Plan(NamedTuple):
     step : ndarray, shape (n,)
         [s]
     looks : ndarray of int, shape (n,)
-        Until the last second begins.
+        Until the start of the last second.
     over : ndarray of bool, shape (n,)
         Whether the budget ends the run before its time.
     """
@@ -54,7 +53,7 @@ class _Plan(NamedTuple):
 
     @staticmethod
     def made(machines: Machines, settings: Settings) -> "_Plan":
-        """Choose steps that are short enough, and fill the time in whole looks."""
+        """Choose steps that are short enough and divide the time into whole looks."""
         per_turn = settings.steps_per_turn or STEPS
         turn = 2 * np.pi / machines.synchronous_speed.max(axis=1)
         step = np.minimum(turn / per_turn, STABLE / machines.fastest)
@@ -66,7 +65,7 @@ class _Plan(NamedTuple):
 
 
 def outcomes(p: Rows, settings: Settings) -> tuple[Outcome, NDArray[np.int8]]:
-    """Switch on n rigid machines and see what becomes of them.
+    """Switch on n rigid machines and find their outcomes.
 
     Parameters
     ----------
@@ -108,9 +107,9 @@ def _run(
     settings: Settings,
     final: bool,
 ) -> NDArray[np.intp]:
-    """Run machines from standstill; return those to be run again, towards another orbit.
+    """Run machines from standstill; return those to run again, towards another orbit.
 
-    In a final run there are none.
+    After a final run there are none.
     """
     again = [np.empty(0, np.intp)]
     some, n = machines.take(rows), len(rows)
@@ -161,7 +160,7 @@ def _run(
 
 
 def _is_near(known: Known, rows: Any, low: Array, high: Array, speed: Array) -> Any:
-    """Tell which machines have stayed so near a stable orbit that they will not leave it."""
+    """Return which machines have stayed so near to a stable orbit that they will not leave it."""
     target = known.disphasing[rows]
     with np.errstate(invalid="ignore"):
         turns = 2 * np.pi * np.round(((low + high) / 2 - target) / (2 * np.pi))
@@ -174,7 +173,7 @@ def _is_near(known: Known, rows: Any, low: Array, high: Array, speed: Array) -> 
 def _note_locked(known: Known, live: Live, out: Outcome) -> None:
     rows = live.rows
     describe(live.machines, known.take(rows), out, rows)
-    # One whose angle leaves the band in every revolution keeps leaving it.
+    # An angle that leaves the band in one revolution leaves it in every one.
     out.synchronisation_time[rows] = np.where(known.ripple[rows] < BAND, live.came, np.inf)
     out.max_excursion[rows] = np.sqrt(live.far)
     out.regime[rows] = locked_regime(known.disphasing[rows])

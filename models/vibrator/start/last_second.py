@@ -1,4 +1,4 @@
-"""The last second of a run that has not led to a known orbit: means, and what they say."""
+"""The last second of a run that has not reached a known orbit: means, and the regime they show."""
 
 from typing import NamedTuple
 
@@ -33,8 +33,8 @@ from models.vibrator.start.regimes import (
 from models.vibrator.start.synchronous import Known, describe, search
 
 LAST = 1.0  # [s]
-STEPS = 12  # in a turn at synchronous speed, unless the machine is stiff
-_CLOSELY = 48  # in a turn of the last second, whose extremes are those of the steps
+STEPS = 12  # per turn at synchronous speed, unless the machine is stiff
+_CLOSELY = 48  # per turn in the last second, whose extremes are those of the steps
 NEAR = 0.03  # of the expected disphasing angle: the same motion [rad]
 _LOCKED = 0.2  # range of the disphasing angle below which motors are locked [rad]
 _LONGEST = 1 << 20  # steps
@@ -49,11 +49,11 @@ class Live(NamedTuple):
     machines : Machines
     state : ndarray, shape (n, 10)
     came : ndarray, shape (n,)
-        When the disphasing angle last came into its band [s].
+        When the disphasing angle last entered its band [s].
     far : ndarray, shape (n,)
         Largest squared displacement of C so far [m2].
     neared : ndarray, shape (n,)
-        When one was last comparable to that [s].
+        When the displacement was last comparable to that [s].
     """
 
     rows: NDArray[np.intp]
@@ -72,7 +72,7 @@ class Live(NamedTuple):
 def learn(
     part: Machines, state: Array, rows: NDArray[np.intp], known: Known, settings: Settings
 ) -> NDArray[np.bool_]:
-    """Search for the orbit near which machines are; tell where there is a new one."""
+    """Search for orbits near the machines' states; return where a new one was found."""
     speed, angle = state[:, 8:10].mean(axis=1), state[:, 3] - state[:, 4]
     other = search(part, speed, angle, np.ones(len(rows), bool), settings.steps_per_turn)
     with np.errstate(invalid="ignore"):
@@ -85,21 +85,21 @@ def learn(
 def run_last_second(
     live: Live, time: Array, known: Known, out: Outcome, settings: Settings, final: bool
 ) -> NDArray[np.bool_]:
-    """Run the last second; tell which machines turned out to be locked elsewhere than expected.
+    """Run the last second; return which machines are locked elsewhere than expected.
 
     Parameters
     ----------
     live : Live
         Its states are updated in place.
     time : ndarray, shape (n,)
-        So far [s].
+        Time so far [s].
     known : Known
-        Learns where they are locked.
+        Updated where they are locked.
     out : Outcome
         Updated in place.
     settings : Settings
     final : bool
-        Whether nothing more can be learnt: locked machines are taken as they are.
+        Whether this is the last run: locked machines are then recorded as they are.
 
     Returns
     -------
@@ -143,7 +143,7 @@ def run_last_second(
             near = np.abs(wrapped(mean - target)) < NEAR
             coming = known.found[where] & ~near & (off[1] < off[0])
         there = near | coming | final
-        # Locked, but on no orbit that was found: the means of the last second must do.
+        # Locked, but on no orbit found: use the means of the last second.
         known.found[where[~there]] = False
         known.disphasing[where[~there]] = mean[~there]
         again[i[locked[~there]]] = True
@@ -159,7 +159,7 @@ def run_last_second(
 def _note_means(
     rows: NDArray[np.intp], notes: Array, speed: Array, part: Machines, out: Outcome
 ) -> None:
-    """Note the outputs of machines that are not locked, so far as is known."""
+    """Record the outputs of machines that are not locked, as far as they are known."""
 
     def half(low: int) -> Array:
         return (notes[:, low + 1] - notes[:, low]) / 2

@@ -1,4 +1,4 @@
-"""What becomes of a machine that is switched on: the numbers of n machines, however found."""
+"""The outcome of switching on n machines, whichever propagator computes it."""
 
 from typing import Any, NamedTuple
 
@@ -12,11 +12,11 @@ LOCKED_0, LOCKED_PI, ASYNCHRONOUS, CAPTURED, STALLED = range(len(REGIMES))
 STALLED_BELOW = 0.05  # of the synchronous speed
 CAPTURED_BELOW = 0.8
 BAND = 0.05  # of the disphasing angle about its mean, when synchronised [rad]
-COMPARABLE = 0.75  # of the largest displacement: what may, in another phase, exceed it
+COMPARABLE = 0.75  # fraction of the largest displacement that may, at another phase, exceed it
 
 
 class Outcome(NamedTuple):
-    """The steady state that n machines reach, and how they reach it.
+    """The steady state that n machines reach, and the way to it.
 
     Attributes
     ----------
@@ -27,9 +27,9 @@ class Outcome(NamedTuple):
     speed, power_1, power_2 : ndarray, shape (n,)
         [rad s-1, W, W]
     synchronisation_time : ndarray, shape (n,)
-        [s]; infinite where they do not lock, the time simulated where that is not known.
+        [s]; infinite where they do not lock, the time simulated where this is unknown.
     censored : ndarray of bool, shape (n,)
-        Where it is not known.
+        Where it is unknown.
     max_excursion : ndarray, shape (n,)
         [m]
     regime : ndarray of int8, shape (n,)
@@ -51,7 +51,7 @@ class Outcome(NamedTuple):
 
     @staticmethod
     def nothing(n: int) -> "Outcome":
-        """Return what is known of n machines before they are run."""
+        """Return the outcome of n machines before they are run: unknown."""
         known = {"censored": np.zeros(n, bool), "regime": np.full(n, -1, np.int8)}
         return Outcome(**{name: known.get(name, np.full(n, np.nan)) for name in Outcome._fields})
 
@@ -72,7 +72,7 @@ def unlocked_regime(
     synchronous_1: NDArray[np.float64],
     synchronous_2: NDArray[np.float64],
 ) -> NDArray[np.int8]:
-    """Return the regime of machines that are not locked at speed, by their mean speeds."""
+    """Return the regime of unlocked machines from their mean speeds."""
     slower = np.minimum(speed_1 / synchronous_1, speed_2 / synchronous_2)
     regime = np.where(slower < CAPTURED_BELOW, CAPTURED, ASYNCHRONOUS)
     return np.where(slower < STALLED_BELOW, STALLED, regime).astype(np.int8)

@@ -18,11 +18,11 @@ from models.vibrator.theory import averaged
 
 STEPS = 24  # of the orbit, unless the machine is stiff
 LADDER = tuple(base << k for k in range(7) for base in (24, 36))
-_FINE = 16  # points per step at which extremes are looked for
+_FINE = 16  # points per step among which extremes are sought
 
 
 class Known(NamedTuple):
-    """The stable synchronous motion that is known of n machines.
+    """The known stable synchronous motion of n machines.
 
     Attributes
     ----------
@@ -30,11 +30,11 @@ class Known(NamedTuple):
         Whether one is known.
     orbits : Orbits
     steps : ndarray of int, shape (n,)
-        With which they were found.
+        Per revolution, with which they were found.
     disphasing : ndarray, shape (n,)
         Mean disphasing angle in (-pi, pi] [rad], NaN if none is known.
     ripple : ndarray, shape (n,)
-        Largest departure of the disphasing angle from its mean in a revolution [rad].
+        Largest deviation of the disphasing angle from its mean in a revolution [rad].
     """
 
     found: NDArray[np.bool_]
@@ -44,21 +44,21 @@ class Known(NamedTuple):
     ripple: Array
 
     def learn(self, rows: Any, other: "Known") -> None:
-        """Take over what is known of the machines in `rows`."""
+        """Copy what is known of the machines in `rows`."""
         self.found[rows], self.steps[rows] = other.found, other.steps
         self.disphasing[rows], self.ripple[rows] = other.disphasing, other.ripple
         for mine, new in zip(self.orbits, other.orbits, strict=True):
             mine[rows] = new
 
     def take(self, rows: Any) -> "Known":
-        """Return what is known of some of the machines."""
+        """Return what is known of the machines in `rows`."""
         orbits = Orbits._make(field[rows] for field in self.orbits)
         others = (field[rows] for field in (self.steps, self.disphasing, self.ripple))
         return Known(self.found[rows], orbits, *others)
 
 
 def propose(machines: Machines, steps: int) -> Known:
-    """Find the stable synchronous orbits that the averaged theory tells of.
+    """Find the stable synchronous orbits predicted by the averaged theory.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
 
 
 def _harmonic(p: Rows, speed: Array, angle: Array) -> Array:
-    """Return the state at psi_1 = 0 of harmonic motion at constant speed."""
+    """Return the state at psi_1 = 0 for harmonic motion at constant speed."""
     motion = averaged.steady_motion(p, speed, angle)
     state = np.zeros((len(speed), STATE))
     for i, amplitude in enumerate((motion.x, motion.y, motion.alpha)):
@@ -128,7 +128,7 @@ def _harmonic(p: Rows, speed: Array, angle: Array) -> Array:
 
 
 def describe(machines: Machines, known: Known, out: Outcome, rows: NDArray[np.intp]) -> None:
-    """Note the outputs of machines that run on their orbits, where these are known.
+    """Record the outputs of machines on their orbits, where these are known.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def describe(machines: Machines, known: Known, out: Outcome, rows: NDArray[np.in
     out : Outcome
         Updated in place.
     rows : ndarray of int, shape (n,)
-        Where in it the n machines are.
+        Indices of the n machines in it.
     """
     for count in np.unique(known.steps[known.found]).tolist():
         i = np.flatnonzero(known.found & (known.steps == count))
@@ -184,7 +184,7 @@ def deck_ends(m: Rigid, trace: Array) -> tuple[Array, Array]:
 
 
 def _half_range(samples: Array) -> Array:
-    """Return half the peak-to-peak of periodic signals, by their trigonometric interpolant."""
+    """Return half the peak-to-peak value of periodic signals by trigonometric interpolation."""
     count = samples.shape[1]
     fine = np.fft.irfft(np.fft.rfft(samples, axis=1), _FINE * count, axis=1) * _FINE
     return np.ptp(fine, axis=1) / 2

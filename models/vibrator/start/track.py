@@ -1,4 +1,4 @@
-"""A run-up of one vibrator, sampled as it goes."""
+"""A run-up of one vibrator, sampled on the way."""
 
 import math
 
@@ -12,7 +12,7 @@ LAST = 1.0  # [s]
 
 
 class Track:
-    """A run-up sampled at equal intervals of time, as far as it has gone.
+    """A run-up sampled at equal intervals of time, up to the present.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ class Track:
     interval : float
         [s]
     look : int
-        Intervals that `last` will be asked for, if more than a second's.
+        Largest number of intervals requested from `last`, if more than a second.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Track:
     excursion : float
         Largest displacement of C so far [m].
     neared : float
-        When one was last comparable to that [s].
+        When the displacement was last comparable to that [s].
     """
 
     def __init__(self, state: NDArray[np.float64], interval: float, look: int) -> None:
@@ -65,11 +65,11 @@ class Track:
 
     @property
     def time(self) -> float:
-        """Of the last sample [s]."""
+        """Time of the last sample [s]."""
         return self.count * self.interval
 
     def last(self, intervals: int = 0) -> NDArray[np.float64]:
-        """Return the last states, at the ends of so many intervals; 0 for the last second."""
+        """Return the states at both ends of the last intervals; 0 for those of the last second."""
         wanted = (intervals or self._second) + 1
         first, found = len(self._parts), 0
         while first and found < wanted:
@@ -78,9 +78,9 @@ class Track:
         return np.concatenate(self._parts[first:])[-wanted:]
 
     def last_time_off(self, mean: float) -> float:
-        """Return the last time psi_1 - psi_2 is out of the band about its mean, 0 if never.
+        """Return when psi_1 - psi_2 was last outside the band about its mean, 0 if never.
 
-        An angle that leaves the band between two samples counts.
+        Excursions between two samples count.
         """
         angle, rate = np.concatenate(self._angles, axis=1)
         off = wrapped(angle - mean)

@@ -1,10 +1,10 @@
-"""The averaged theory: at which angle and speed the vibrators run together.
+"""The averaged theory: the angle and speed at which the vibrators run synchronously.
 
 Reading order; a module imports only those above it:
 
-    feed              the mass that a feed thrown by the deck adds to it
-    linear_machine    what the response of a machine needs
-    receptance        how it moves when its vibrators turn at one speed
-    balance           torques of motors and of the shaking body
+    feed              the apparent mass of a feed thrown by the deck
+    linear_machine    constants of a machine's linear response
+    receptance        the response when both vibrators turn at one speed
+    balance           torques of the motors and of the vibrating body
     averaged          the speed and the angle at which they balance
 """

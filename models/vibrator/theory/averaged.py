@@ -1,19 +1,19 @@
 """The averaged theory of synchronous running: one formula for every disturbance.
 
-With both vibrators at the mean speed w and psi_1 - psi_2 = dphi, the shaking body brakes or drives
-rotor i by the vibratory moment
+With both vibrators at the mean speed w and psi_1 - psi_2 = dphi, the vibrating body brakes or
+drives rotor i with the vibratory moment
 
     L_i = (w^2/2) Im(m e_i H_i^* . q e^(-j psi_i)),    q = w^2 G(w) sum_i m e_i H_i e^(j psi_i),
 
-and synchronous running is where motor torque less bearing torque balances it, T_i(w) + L_i = 0.
-At given w the difference of the two balances is c + rho cos(dphi - delta) = 0: where it has
-solutions, just one of the two is restoring, d(L_1 - L_2)/d dphi < 0. That leaves one equation for
-w, the sum of the balances along the restoring dphi.
+and synchronous running is where motor torque less bearing torque balances it, T_i(w) + L_i = 0. At
+given w the difference of the two balances is c + rho cos(dphi - delta) = 0: of its two solutions,
+where they exist, one is restoring, d(L_1 - L_2)/d dphi < 0. That leaves one equation for w, the sum
+of the balances along the restoring dphi.
 
-Forces are taken at the undeflected geometry and to first harmonic; the linear body is treated
-exactly. What is left out, the ripple of the speeds within a revolution, changes dphi of the
-nominal machine by up to 5e-5 rad, its speed by 4e-5 and its amplitudes by 0.25 %. Feed on the deck
-is taken at its declared throw coefficient, however much its own weight damps the deck.
+Forces are evaluated at the undeflected geometry and to first harmonic; the linear body is treated
+exactly. The neglected ripple of the speeds within a revolution changes dphi of the nominal machine
+by up to 5e-5 rad, its speed by 4e-5 and its amplitudes by 0.25 %. Feed on the deck has its declared
+throw coefficient, however much its own weight damps the deck.
 """
 
 import cmath
@@ -30,10 +30,10 @@ from models.vibrator.theory.linear_machine import machines
 from models.vibrator.theory.receptance import respond
 
 _SECANTS = 12
-_NEAR = 0.9  # of the larger synchronous speed: where the secants may look
-_CLOSE = 1e-10  # a step this small, over that speed, is the last
-_SPEEDS = 200  # looked at where the secants fail, geometrically spaced
-_SLOWEST = 0.05  # of the larger synchronous speed: slower is stalled
+_NEAR = 0.9  # of the larger synchronous speed: lower limit of the secant search
+_CLOSE = 1e-10  # last step of the secants, over that speed
+_SPEEDS = 200  # geometrically spaced, searched where the secants fail
+_SLOWEST = 0.05  # of the larger synchronous speed: stalled below
 
 
 class Disphasing(NamedTuple):
@@ -48,8 +48,8 @@ class Disphasing(NamedTuple):
     exists : ndarray of bool, shape (n,)
         Whether the torque balances have a solution; if not, all numbers are NaN.
     stable : ndarray of bool, shape (n,)
-        Whether it is stable as a solution of the averaged equations
-        I_i psi_i'' = T_i(psi_i') + L_i, the body following at once.
+        Whether it is stable as a solution of the averaged equations I_i psi_i'' = T_i(psi_i') +
+        L_i, with a body that follows instantly.
     angular_amplitude : ndarray, shape (n,)
         Amplitude of the body's rotation [rad].
     power_1, power_2 : ndarray, shape (n,)
@@ -88,7 +88,7 @@ class Motion(NamedTuple):
 
 @kernel
 def _by_secants(a, motor_1, motor_2, top):
-    """Return the speed of a state just below the top, NaN if the secants do not lead there."""
+    """Return the speed of a state just below the top, NaN if the secants do not converge to one."""
     w = top
     at = balance(a, motor_1, motor_2, w)
     slope = -motor_1.breakdown / motor_1.slip**2 - motor_2.breakdown / motor_2.slip**2
@@ -107,7 +107,7 @@ def _by_secants(a, motor_1, motor_2, top):
 
 @kernel
 def _by_bisection(a, motor_1, motor_2, low, high):
-    """Return the speed between one where the sum is positive and one where it is not."""
+    """Return the root between a speed at which the sum is positive and one at which it is not."""
     middle = 0.5 * (low + high)
     while low < middle < high:
         if balance(a, motor_1, motor_2, middle).sum > 0.0:
@@ -120,9 +120,9 @@ def _by_bisection(a, motor_1, motor_2, low, high):
 
 @kernel
 def _solve(a, motor_1, motor_2):
-    """Return the fastest stable state's speed and true, else the fastest state's (or NaN), false.
+    """Return the speed of the fastest stable state and True, else of the fastest (or NaN), False.
 
-    A state that is stable has a positive sum just below it.
+    Just below a stable state the sum is positive.
     """
     top = max(motor_1.synchronous, motor_2.synchronous)
     w = _by_secants(a, motor_1, motor_2, top)
@@ -179,7 +179,7 @@ def _move(bodies, speed, angle, out):
 
 
 def broadcast(p: Rows, *more: ArrayLike) -> tuple[Params, list[NDArray[np.float64]]]:
-    """Return Params of equally long contiguous arrays, and whatever goes with them."""
+    """Return Params of contiguous arrays of equal length, with `more` broadcast likewise."""
     columns = np.array(np.broadcast_arrays(*np.atleast_1d(*p, *more)), float)
     return Params._make(columns[: len(p)]), list(columns[len(p) :])
 
@@ -196,14 +196,14 @@ def disphasing(p: Rows) -> Disphasing:
     -------
     Disphasing
         Of several stable states the fastest, which is the one at working speed; a slower one is
-        running caught at a resonance. Of a machine that has no stable state, the fastest unstable
-        one. Not looked for: states faster than both synchronous speeds, slower than 0.05 of the
-        larger, or with dphi where the moments do not restore it.
+        captured at a resonance (Sommerfeld effect). For a machine without a stable state, the
+        fastest unstable one. Not searched: states faster than both synchronous speeds, slower than
+        0.05 of the larger, or with a dphi at which the moments are not restoring.
 
     Notes
     -----
-    Below 0.9 of the larger synchronous speed states are looked for between 200 speeds, so two that
-    lie closer than 1.5 % of the speed, at a narrow resonance, may be missed.
+    Below 0.9 of the larger synchronous speed states are sought between 200 speeds, so two states
+    less than 1.5 % apart in speed, at a narrow resonance, may be missed.
     """
     p, _ = broadcast(p)
     n = len(p.body_mass)
@@ -248,9 +248,9 @@ def feed_gravity(p: Rows) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (n,)
-        g = A_y w^2/k_p [m s-2] with A_y the vertical amplitude of the empty deck at the feed, both
-        vibrators in phase, at the mean w of the two synchronous speeds: defined whether or not
-        the vibrators synchronise.
+        g = A_y w^2/k_p [m s-2] with A_y the vertical amplitude of the empty deck at the feed, for
+        vibrators in phase at the mean w of the two synchronous speeds: defined whether or not the
+        vibrators synchronise.
     """
     p, _ = broadcast(p)
     speed = (p.synchronous_speed_1 + p.synchronous_speed_2) / 2

@@ -44,9 +44,9 @@ class Balance(NamedTuple):
     cos, sin : float
         Of dphi.
     reached : bool
-        Whether the moments can hold the difference of the torques.
+        Whether the moments can balance the difference of the torques.
     alpha : complex
-        Body rotation over w^2, by e^(j psi_1).
+        Body rotation over w^2, as a factor of e^(j psi_1).
     """
 
     sum: float
@@ -119,8 +119,8 @@ def moments(a, g, w, cos, sin):
 def balance(a, motor_1, motor_2, w):
     """Return the `Balance` of machine `a` at speed w.
 
-    Where the moments cannot hold the motors together, dphi is where they come closest to it: so
-    the sum is a continuous function of w.
+    Where the moments cannot synchronise the motors, dphi is where they come closest to it, which
+    makes the sum a continuous function of w.
     """
     g = respond(a, w)
     t1, t2 = torque(motor_1, w), torque(motor_2, w)
@@ -146,7 +146,7 @@ def balance(a, motor_1, motor_2, w):
 
 @kernel
 def is_stable(a, motor_1, motor_2, w, at):
-    """Whether I_i psi_i'' = T_i + L_i is stable at its solution (Routh), L_i at the mean speed."""
+    """Whether the solution of I_i psi_i'' = T_i + L_i is stable (Routh); L_i at the mean speed."""
     step = 1e-6 * w
     l1, l2, _, _ = moments(a, respond(a, w + step), w + step, at.cos, at.sin)
     slope_1 = (torque(motor_1, w + step) - torque(motor_1, w)) / step

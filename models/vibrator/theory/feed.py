@@ -1,4 +1,4 @@
-"""The feed thrown by the deck: bouncing once per turn, and what it does to the motion of the deck.
+"""The feed thrown by the deck once per turn, and its effect on the motion of the deck.
 
 The deck moves as y = A_y sin tau. The feed leaves it where sin tau_1 = 1/k_p, flies freely, lands
 at tau_3 without rebound and rides until it leaves again. With n_1 the first Fourier coefficient
@@ -7,8 +7,8 @@ of the contact force over feed weight, the harmonic part of the force equals tha
     kappa m_n,    kappa = -j n_1/k_p,
 
 fixed to the deck: kappa = 1 while the feed never leaves it. The imaginary part of kappa takes
-energy from the deck (Im kappa < 0); the real part makes it heavier in the vertical direction, and
-that is what drives the vibrators apart.
+energy from the deck (Im kappa < 0); the real part makes it heavier in the vertical direction, which
+drives the vibrators apart.
 """
 
 import cmath
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from models.numerics.jit import kernel
 
 LARGEST_THROW = math.sqrt(1 + math.pi**2)
-"""Throw coefficient where the flight lasts a whole turn: single-stroke motion ends here."""
+"""Throw coefficient at which the flight lasts a whole turn, the limit of single-stroke motion."""
 
 
 @kernel
@@ -30,7 +30,8 @@ def _landing(throw):
     if not 1.0 < throw <= LARGEST_THROW:
         return math.nan, math.nan
     start = math.asin(1 / throw)
-    # Above the deck is convex, then concave up to a whole turn: from there Newton is monotonic.
+    # The height above the deck is convex, then concave up to a whole turn: from there Newton's
+    # method converges monotonically.
     flight = 2 * math.pi
     for _ in range(60):
         height = (
@@ -55,7 +56,7 @@ def _riding(tau, throw):
 
 @kernel
 def _contact(throw, riding):
-    """Return n_1 of one feed, of its impact alone or with the force while it rides."""
+    """Return n_1 of one feed, of its impact only or including the force while it rides."""
     if throw <= 1.0:
         return 1j * throw if riding else 0j
     start, end = _landing(throw)
@@ -93,7 +94,7 @@ def flight(throw_coefficient: Any) -> tuple[NDArray[np.float64], NDArray[np.floa
     -------
     lift_off, landing : ndarray
         tau_1 and tau_3 [rad], in the shape of `throw_coefficient`; NaN up to 1, where the feed
-        never leaves the deck, and above `LARGEST_THROW`, where a flight outlasts the turn.
+        never leaves the deck, and above `LARGEST_THROW`, where a flight outlasts a turn.
     """
     throw = np.asarray(throw_coefficient, float)
     out = np.empty((throw.size, 2))
@@ -111,8 +112,8 @@ def contact_coefficient(throw_coefficient: Any, riding: bool = True) -> NDArray[
     throw_coefficient : array_like
         k_p [1].
     riding : bool
-        Whether the force counts while the feed rides, as it must; the paper keeps the impact
-        alone.
+        Whether to include the force while the feed rides, as is correct; the paper keeps only the
+        impact.
 
     Returns
     -------
@@ -126,7 +127,7 @@ def contact_coefficient(throw_coefficient: Any, riding: bool = True) -> NDArray[
 
 
 def apparent_mass(throw_coefficient: Any) -> NDArray[np.complex128]:
-    """Return kappa = -j n_1/k_p, the mass ratio of the feed as the deck feels it.
+    """Return kappa = -j n_1/k_p, the ratio of the feed's apparent mass to its mass.
 
     Parameters
     ----------

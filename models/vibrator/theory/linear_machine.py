@@ -1,4 +1,4 @@
-"""The machine as the averaged theory sees it: what its linear response needs beyond the speed."""
+"""The machine in the averaged theory: constants of its linear response."""
 
 from typing import Any, NamedTuple
 
@@ -11,16 +11,16 @@ from models.vibrator.theory.feed import apparent_mass
 
 
 class Machine(NamedTuple):
-    """What the response of a machine needs beyond the speed; n machines if fields are arrays.
+    """Constants of a machine's linear response; n machines if the fields are arrays.
 
     Attributes
     ----------
     c, s : float
         Cosine and sine of the working angle.
     along, across, half : float
-        R, w_C and r: where the shafts are [m].
+        R, w_C and r, the positions of the shafts [m].
     mass, inertia : float
-        Of everything that shakes, about C [kg, kg m2].
+        Of everything that vibrates, about C [kg, kg m2].
     set_mass, set_inertia : float
         Of the motor set, unbalanced masses included, about the midpoint of the shafts.
     stiffness_x, damping_x, stiffness_y, damping_y, offset, spacing : float
@@ -30,7 +30,7 @@ class Machine(NamedTuple):
     slide_stiffness, slide_damping, turn_stiffness, turn_damping : float
         Mounts; a rigid one has infinite stiffness and no damping.
     feed, feed_loss, feed_position : float
-        Real and imaginary part of the apparent mass of the feed [kg], and where it is [m].
+        Real and imaginary part of the apparent mass of the feed [kg], and its position [m].
     unbalance_1, unbalance_2 : float
         m e_i [kg m].
     """

@@ -10,7 +10,7 @@ with m e_i w^2 Re(H_i e^(j psi_i)),
 
 upper signs for vibrator 1. The motor set is its own mass m_0, J_0 and the two unbalanced masses.
 Its centre is the midpoint of the shafts, about which its rotational mount turns, so slide and turn
-do not meet. It moves with the body wherever it does not move on its mounts.
+are not coupled. Otherwise it moves with the body.
 """
 
 import math
@@ -29,7 +29,7 @@ class Response(NamedTuple):
     slide_1, turn_1, slide_2, turn_2 : complex
         Of the motor set on its mounts.
     q_11, q_12, q_21, q_22 : complex
-        q_ij = H_i^* . (displacement by vibrator j) [m N-1]: how j shakes the axis of i.
+        q_ij = H_i^* . (displacement by vibrator j) [m N-1]: the response of i's axis to j.
     """
 
     xi_1: complex
@@ -57,7 +57,7 @@ def reciprocal(z):
 
 @kernel
 def _compliance(stiffness, damping, inertia, w):
-    """Return the receptance of the set on one mount, the body held."""
+    """Return the receptance of the set on one mount, with the body fixed."""
     if not stiffness < math.inf:
         return 0j
     return reciprocal(complex(stiffness - w * w * inertia, w * damping))
@@ -86,7 +86,7 @@ def respond(a, w):
     ya += feed * (c * reach)
     aa += feed * (reach * reach)
 
-    # exciting forces H_i, and H_i^* which weighs the displacements
+    # exciting forces H_i, and their conjugates, which weight the displacements
     arm_1, arm_2 = -(a.across + a.half), -(a.across - a.half)
     x1, y1, a1 = 1 + 0j, -1j, complex(arm_1, -R)
     x2, y2, a2 = 1 + 0j, 1j, complex(arm_2, R)

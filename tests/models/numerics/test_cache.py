@@ -1,9 +1,11 @@
 """Compiled code is kept for each machine: an edit reaches all that it concerns, and only that."""
 
+import ast
 import importlib
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from models.numerics import cache
@@ -156,3 +158,30 @@ def test_what_a_factory_makes_belongs_to_what_it_was_made_for(house):
     edit(helper, "first: float\n    last: float", "last: float\n    first: float")
     assert result("house.beam", "last") == (1.0, False)
     assert result("house.beam", "end") == (1.0, False)
+
+
+def fields_of_arguments(source):
+    """Yield the attributes of their arguments that kernels read, but for those of arrays."""
+    kernels = (
+        node
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.FunctionDef)
+        and {"kernel", "lean", "inlined"} & {ast.unparse(one) for one in node.decorator_list}
+    )
+    for function in kernels:
+        arguments = {argument.arg for argument in function.args.args}
+        for node in ast.walk(function):
+            owner = node
+            while isinstance(owner, ast.Attribute | ast.Subscript):
+                owner = owner.value
+            is_read = isinstance(node, ast.Attribute) and not hasattr(np.ndarray, node.attr)
+            if is_read and isinstance(owner, ast.Name) and owner.id in arguments:
+                yield f"{function.name}: {ast.unparse(node)}"
+
+
+def test_kernels_that_machines_share_read_no_field_of_an_argument():
+    """It could be that of a machine's tuple, whose edits leave the shared kernel as it is."""
+    found = [one for path in NUMERICS.glob("*.py") for one in fields_of_arguments(path.read_text())]
+    assert found == []
+    reading = "@kernel\ndef rate(y, p):\n    return y.size * p[0].stiffness"
+    assert [*fields_of_arguments(reading)] == ["rate: p[0].stiffness"]

@@ -1,8 +1,8 @@
-"""Failed rows computed again, with other numerical settings if need be."""
+"""A result with more samples, or with its failed rows computed again."""
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +16,49 @@ from uq.rows import results
 from uq.rows.workload import workload_of
 from uq.running import runner
 from uq.running.options import DEFAULTS, RunOptions
+from uq.study.changes import refusal_to_extend
 from uq.study.definition import Study
 from uq.upkeep.stored_study import study_of
+
+
+def extend(
+    path: Path, samples: int, model: str | None = None, options: RunOptions = DEFAULTS
+) -> xr.Dataset:
+    """Add samples to a result; nothing is computed again.
+
+    Parameters
+    ----------
+    path : Path
+        A result, complete or not.
+    samples : int
+        Total base size of each replicate.
+    model : str, optional
+        Where its model lives, if it is not installed.
+    options : RunOptions
+
+    Returns
+    -------
+    xarray.Dataset
+        The same bits as if it had had this many samples from the start.
+
+    Raises
+    ------
+    InputError
+        When the design cannot be extended, or there are more samples already.
+    RunError
+        As in `uq.running.runner.run`.
+    """
+    study = study_of(path, model)
+    there = study.design.samples
+    if samples < there:
+        raise InputError(f"--samples {samples}: {path} has {there} already; ask for more")
+    problem = refusal_to_extend(study)
+    if samples > there and problem:
+        raise InputError(f"{path}: {problem}")
+    study = study.with_samples(samples)
+    # This many are wanted, whatever the precision: [design] until does not apply.
+    design = study.design.model_copy(update={"until": None})
+    return runner.run_study(replace(study, design=design), path, options)
 
 
 def rerun_failed(
@@ -57,11 +98,8 @@ def rerun_failed(
     if not failed:
         options.say(f"{path}: no row failed; nothing to do")
         return ds
-    differing = {
-        name: getattr(changed, name)
-        for name in settings
-        if getattr(changed, name) != getattr(study.settings, name)
-    }
+    new, old = asdict(changed), asdict(study.settings)
+    differing = {name: new[name] for name in settings if new[name] != old[name]}
     plain = json.loads(json.dumps(differing))  # as read back later
     with store.keep(study, path, options.fresh, plain, options.say, options.mixed) as kept:
         workload = workload_of(study)._replace(settings=changed)
