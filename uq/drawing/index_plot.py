@@ -122,7 +122,7 @@ def subject(ds: xr.Dataset, name: str) -> str:
     if threshold:
         unit = time_unit(float(threshold))
         at = f"{float(threshold) / unit.seconds:g} {unit.name}"
-        words = f"whether the {words.removeprefix('the ')}, is below {at}"
+        words = f"whether the {words.removeprefix('the ')}{',' * bool(place)} is below {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
     return sentence(words, width=56)
