@@ -24,7 +24,7 @@ def test_another_study_is_refused_with_what_changed(
     code, said = call("run", study, *MODEL)
     assert code == 2
     assert said == (
-        f"{ROWS}: holds rows of another study ({sentence}); choose another output, or start anew "
+        f"{ROWS}: holds rows of another study ({sentence}); choose another output, or start over "
         "with --fresh\n"
     )
     assert before == {path.name for path in ROWS.iterdir()}
@@ -101,7 +101,7 @@ def test_rows_of_an_edited_model_are_mixed_on_request_alone(
     injected("code of the model edited between runs", 2)
     refused = (
         f"{OUT}: holds rows that other code of model 'patient' computed, although its version is "
-        "the same; start anew with uq run --fresh, or go on with --mixed\n"
+        "the same; start over with uq run --fresh, or continue with --mixed\n"
     )
     before = {path.name for path in ROWS.iterdir()} - {"lock"}
     assert call("run", study, *options) == (2, refused)

@@ -209,8 +209,8 @@ def test_a_result_of_another_version_of_the_model_is_not_taken_for_this_one(uq, 
         ended = uq(*verb)
         assert ended.code == 2
         assert ended.err == (
-            "out.nc: was computed with another model (version 0 of model 'ishigami', now 1); run "
-            "the study anew, into another output or with --fresh\n"
+            "out.nc: was computed with another model (version 0 of model 'ishigami', now 1); rerun "
+            "the study, into another output or with --fresh\n"
         )
 
 

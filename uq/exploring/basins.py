@@ -109,8 +109,7 @@ def _compared_outputs(model: Model, by: Sequence[str] | None) -> tuple[str, ...]
     names = tuple(model.outputs)
     if by is None:
         return tuple(name for name in names if name not in {f"{other}_error" for other in names})
-    unknown = [name for name in by if name not in names]
-    if unknown:
+    if unknown := [name for name in by if name not in names]:
         raise InputError(*(f"by: {unknown_name('output', name, model, names)}" for name in unknown))
     return tuple(name for name in names if name in by or model.outputs[name].is_category)
 

@@ -52,6 +52,10 @@ class Dispatcher:
     ----------
     store : MemoryStore or DiskStore
         The rows that have arrived.
+    rows, left : int
+        Rows to be computed, and those of them that have not arrived.
+    row_seconds : float
+        Cost of a row [s], by the latest rows; 0 if unknown.
     """
 
     def __init__(
@@ -68,25 +72,10 @@ class Dispatcher:
         self._evaluate = evaluate
         stop = store.total if stop is None else stop
         self._todo = deque((a, min(b, stop)) for a, b in store.missing if a < stop)
-        self._rows = sum(b - a for a, b in self._todo)
-        self._untaken = self._left = self._rows
-        self._row_seconds = 0.0
+        self.rows = sum(b - a for a, b in self._todo)
+        self._untaken = self.left = self.rows
+        self.row_seconds = 0.0
         self._dashboard = ""
-
-    @property
-    def complete(self) -> bool:
-        """Whether all rows have arrived."""
-        return self._left == 0
-
-    @property
-    def seconds(self) -> float:
-        """Work of all rows to be computed, at the cost of the latest [s]."""
-        return self._row_seconds * self._rows
-
-    @property
-    def seconds_left(self) -> float:
-        """Work left, at the cost of the latest rows [s]."""
-        return self._row_seconds * self._left
 
     def pilot(self, share: float) -> None:
         """Run the first rows here, in growing chunks, until a chunk takes long enough.
@@ -104,14 +93,14 @@ class Dispatcher:
 
     def finish_here(self) -> None:
         """Run the remaining rows without workers."""
-        while not self.complete:
+        while self.left:
             self._here(self._chunk_rows())
 
     def finish_on(self, crew: "Workers") -> None:
         """Run the remaining rows on workers, and here until a local worker is there."""
         self._dashboard = crew.dashboard
         sent = SentChunks(self.workload, crew, self._options.row_limit)
-        while not self.complete:
+        while self.left:
             threads = crew.threads
             sharing = max(1, threads or crew.own)
             # Only as many chunks are sent as keep the workers busy.
@@ -120,7 +109,7 @@ class Dispatcher:
             if crew.own and not threads and self._untaken:
                 self._here(self._shared(sharing))
             for start, some, chunk, seconds in sent.returned():
-                self._row_seconds = seconds / len(some.x)
+                self.row_seconds = seconds / len(some.x)
                 self._keep(start, some, chunk)
             self.store.keep_up()
 
@@ -132,7 +121,7 @@ class Dispatcher:
         began = time.perf_counter()
         chunk = self._evaluate(some.x, some.seed, start)
         seconds = time.perf_counter() - began
-        self._row_seconds = seconds / len(some.x)
+        self.row_seconds = seconds / len(some.x)
         self._keep(start, some, chunk)
         return seconds
 
@@ -147,7 +136,7 @@ class Dispatcher:
     def _keep(self, start: int, some: Rows, chunk: Chunk) -> None:
         self.store.preview.add(chunk)
         self.store.add(start, some, chunk)
-        self._left -= len(some.x)
+        self.left -= len(some.x)
         self.report_progress()  # at once: an interrupt reports how many rows are kept
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
@@ -164,11 +153,11 @@ class Dispatcher:
     def _chunk_rows(self) -> int:
         limit, wish = self._options.row_limit, self._options.chunk_rows
         most = _CHUNK_BYTES // row_bytes(self.workload)
-        if limit and self._row_seconds:  # chunks of sound rows must not be stopped
-            most = max(1, min(most, int(_LIMIT_SHARE * limit / self._row_seconds)))
+        if limit and self.row_seconds:  # chunks of sound rows must not be stopped
+            most = max(1, min(most, int(_LIMIT_SHARE * limit / self.row_seconds)))
         if wish:
             return whole_groups(self.workload, min(wish, most) if limit else wish)
-        good = chunk_rows(self.workload, self._row_seconds)
+        good = chunk_rows(self.workload, self.row_seconds)
         return min(whole_groups(self.workload, most), good)
 
     def _shared(self, threads: int) -> int:

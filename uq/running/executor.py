@@ -1,6 +1,5 @@
 """Who computes rows: this computer, and dask workers if the work is worth starting them."""
 
-from collections.abc import Callable
 from contextlib import ExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Self
@@ -13,7 +12,7 @@ from uq.interrupts import in_background
 from uq.rows.evaluate import Chunk, evaluate
 from uq.rows.workload import Workload
 from uq.running.dispatch import Dispatcher
-from uq.running.isolation import Evaluate, isolated
+from uq.running.isolation import Action, Evaluate, isolated
 from uq.running.options import RunOptions
 
 if TYPE_CHECKING:
@@ -50,10 +49,7 @@ class Executor:
     evaluate: Evaluate
 
     def __init__(
-        self,
-        workload: Workload,
-        options: RunOptions,
-        compiling: Callable[[], object] = lambda: None,
+        self, workload: Workload, options: RunOptions, compiling: Action = lambda: None
     ) -> None:
         options.check()
         self._workload, self._options = workload, options
@@ -84,17 +80,18 @@ class Executor:
             return
         if not workers and self._crew is None:
             dispatcher.pilot(share=1)
-        # Not worth starting workers, together with the rows before.
-        short = self._crew is None and self._seconds + dispatcher.seconds_left < SHORT_SECONDS
+        # Work that is not worth starting workers, with the rows before.
+        seconds = self._seconds + dispatcher.row_seconds * dispatcher.left
+        short = self._crew is None and seconds < SHORT_SECONDS
         if workers == 0 or (workers is None and short):
             dispatcher.finish_here()
-        elif not dispatcher.complete:
+        elif dispatcher.left:
             known = workers is None and self._crew is None
             crew = self._started(dispatcher)
             if not known:
                 dispatcher.pilot(share=1 / 8)  # while they start
             dispatcher.finish_on(crew)
-        self._seconds += dispatcher.seconds
+        self._seconds += dispatcher.row_seconds * dispatcher.rows
 
     def _started(self, dispatcher: Dispatcher) -> "Workers":
         from uq.running.local_cluster import CORES, local_workers

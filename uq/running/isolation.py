@@ -39,6 +39,8 @@ _DYING_SECONDS = 5.0
 _POLL_SECONDS = 0.2  # so that an interrupt is seen
 
 
+Action = Callable[[], object]
+
 Evaluate = Callable[[NDArray[np.float64], NDArray[np.uint64], int], Chunk]
 """``evaluate(x, seed, start)`` -> chunk, as `uq.rows.evaluate.evaluate` for one model."""
 
@@ -54,7 +56,7 @@ def spec_of(workload: "Workload") -> child.ModelSpec:
 
 @contextmanager
 def isolated(
-    workload: "Workload", limit: float | None = None, compiling: Callable[[], object] = lambda: None
+    workload: "Workload", limit: float | None = None, compiling: Action = lambda: None
 ) -> Iterator[Evaluate]:
     """Yield a function that computes rows of a workload in a separate process.
 
@@ -84,10 +86,7 @@ class Isolated:
     """
 
     def __init__(
-        self,
-        spec: child.ModelSpec,
-        limit: float | None = None,
-        compiling: Callable[[], object] = lambda: None,
+        self, spec: child.ModelSpec, limit: float | None = None, compiling: Action = lambda: None
     ) -> None:
         self.spec = spec
         self.limit = limit

@@ -2,7 +2,7 @@
 
 import subprocess
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from math import ceil, gcd
@@ -20,7 +20,7 @@ from uq.rows.workload import Workload, workload_of
 from uq.running import executor
 from uq.running.dispatch import CHUNK_SECONDS, chunk_rows, whole_groups
 from uq.running.environment import command, inherited
-from uq.running.isolation import Evaluate, isolated
+from uq.running.isolation import Action, Evaluate, isolated
 from uq.running.options import RunOptions
 from uq.store import row_bytes
 from uq.study.definition import Study
@@ -72,7 +72,7 @@ class Cost(NamedTuple):
 
 
 def pilot(
-    study: Study, workers: int | None = None, compiling: Callable[[], object] = lambda: None
+    study: Study, workers: int | None = None, compiling: Action = lambda: None
 ) -> tuple[Cost, xr.Dataset]:
     """Run a few rows of a study, in as many processes as the whole run would use.
 

@@ -46,7 +46,7 @@ def adopt(store: DiskStore, study: Study, path: Path, all_rows: bool) -> None:
             if numbers.size:
                 part = some.isel(sample=numbers - first)
                 rows, chunk = _inputs(study, part, first), _outputs(study, part, numbers)
-                store.adopt(blocks_of(numbers), rows, chunk, made, settings)
+                store.adopt(blocks_of(numbers), rows, chunk, (made, settings))
 
 
 def variants(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], NDArray[np.bool_]]]:

@@ -1,7 +1,7 @@
 """Rows kept on disk as they arrive, whatever happens to the process."""
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,9 @@ from uq.study.definition import Study
 _WRITING_SHARE = 1 / 20  # of the time, unless single chunks take longer
 _FIRST_COST = 0.01  # of writing [s], before it is known: a very short run writes once
 _PENDING_BYTES = 8_000_000  # in memory at most
+
+Origin = tuple[dict[str, str], dict[str, Any]]
+"""Processor and versions that computed rows, and their settings that differ from the study's."""
 
 
 class DiskStore(Tally):
@@ -136,18 +139,11 @@ class DiskStore(Tally):
         if (due or large) and not self.shapes_all_wrong:
             self._write()
 
-    def adopt(
-        self,
-        blocks: list[Block],
-        rows: Rows,
-        chunk: Chunk,
-        made: dict[str, str],
-        settings: dict[str, Any],
-    ) -> None:
+    def adopt(self, blocks: list[Block], rows: Rows, chunk: Chunk, origin: Origin) -> None:
         """Write rows that were computed earlier; they count as found."""
         with self._explained():
             data = pack(self.row_type, rows, chunk.columns, chunk.status)
-            self._take(self._save(blocks, data, chunk.failures, made, settings))
+            self._take(self._save(blocks, data, chunk.failures, origin))
         self.found = self.done
 
     def dataset(self) -> xr.Dataset:
@@ -187,19 +183,14 @@ class DiskStore(Tally):
         began = time.monotonic()
         with self._explained():
             blocks, data = joined(self._pending)
-            failures = self._pending_failures
-            self._records.append(self._save(blocks, data, failures, self._made, self.settings))
+            origin = self._made, self.settings
+            self._records.append(self._save(blocks, data, self._pending_failures, origin))
         self._pending, self._pending_failures = [], {}
         self._written = time.monotonic()
         self._cost = self._written - began
 
     def _save(
-        self,
-        blocks: list[Block],
-        data: NDArray[Any],
-        failures: Failures,
-        made: Mapping[str, str],
-        settings: Mapping[str, Any],
+        self, blocks: list[Block], data: NDArray[Any], failures: Failures, origin: Origin
     ) -> RowsRecord:
         """Write a chunk file, then its line in the journal."""
         _, failed, status = self.counts(*unpack(data)[1:])
@@ -210,8 +201,8 @@ class DiskStore(Tally):
             failed=failed,
             status=status,
             failures=failures,
-            made=dict(made),
-            settings=dict(settings),
+            made=origin[0],
+            settings=origin[1],
         )
         record = record.model_copy(update={"sha256": save(self._file(record), data)})
         self._journal.append(record.model_dump(mode="json"))
@@ -234,7 +225,9 @@ class DiskStore(Tally):
         self.count(record.rows, record.failed, record.status, record.failures)
 
     def _file(self, record: RowsRecord) -> Path:
-        return self.folder / f"{self._study.identity[:16]}-{record.file_name}"
+        """Return the path of a chunk file: no record can name another file."""
+        first, last = record.blocks[0][0], record.blocks[-1][1]
+        return self.folder / f"{self._study.identity[:16]}-{first}-{last}.rows"
 
     def _load(self, record: RowsRecord) -> NDArray[Any] | None:
         return load(self._file(record), self.row_type, record.rows, record.sha256)

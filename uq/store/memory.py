@@ -21,6 +21,8 @@ class MemoryStore(Tally):
 
     Attributes
     ----------
+    missing : list of (int, int)
+        Blocks of rows that are missing at the start: all.
     reach : int
         Number after the last row that is there at the start: 0.
     """
@@ -29,12 +31,8 @@ class MemoryStore(Tally):
 
     def __init__(self, workload: Workload) -> None:
         super().__init__(workload)
+        self.missing = [(0, self.total)]
         self._data = np.empty(self.total, self.row_type)
-
-    @property
-    def missing(self) -> list[tuple[int, int]]:
-        """Blocks of rows that are missing at the start."""
-        return [(0, self.total)]
 
     def add(self, start: int, rows: Rows, chunk: Chunk) -> None:
         """Keep the rows from `start` on.

@@ -21,7 +21,7 @@ from uq.study.changes import refusal_to_extend, what_changed
 from uq.study.code import is_other_code, made_here
 from uq.study.definition import Study
 
-_REMEDY = "choose another output, or start anew with --fresh"
+_REMEDY = "choose another output, or start over with --fresh"
 
 
 @contextmanager
@@ -150,7 +150,7 @@ def _check_code(study: Study, path: Path, found: History | None) -> None:
     if any(is_other_code(one, study.model_reference) for one in made):
         raise InputError(
             f"{path}: holds rows that other code of model '{study.model.name}' computed, although "
-            "its version is the same; start anew with uq run --fresh, or go on with --mixed"
+            "its version is the same; start over with uq run --fresh, or continue with --mixed"
         )
 
 

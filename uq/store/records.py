@@ -102,11 +102,6 @@ class RowsRecord(BaseModel):
         """Numbers of the rows, in the order of the file."""
         return np.concatenate([np.arange(*block) for block in self.blocks])
 
-    @property
-    def file_name(self) -> str:
-        """Name of the chunk file after the study's hash: no record can name another file."""
-        return f"{self.blocks[0][0]}-{self.blocks[-1][1]}.rows"
-
 
 class History(NamedTuple):
     """The records of a journal in which a run has started.

@@ -35,7 +35,7 @@ def study_of(path: Path, model: str | None = None) -> Study:
     if study.identity != identity:
         change = what_changed(text, version, study)
         raise InputError(
-            f"{path}: was computed with another model ({change}); run the study anew, into another"
+            f"{path}: was computed with another model ({change}); rerun the study, into another"
             " output or with --fresh"
         )
     return study
