@@ -29,6 +29,7 @@ test: $(TEST)
 	@$(BIN)/mypy
 	@$(BIN)/python -m pytest -n logical --maxprocesses 8 --dist loadfile -m "not slow"
 
+# Statistics at scale, exact propagators, every notebook and fault: half an hour to an hour.
 slow: $(TEST)
 	@$(BIN)/python -m pytest -m slow
 

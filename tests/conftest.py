@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import pytest
 
+import models.numerics.jit  # noqa: F401  (before numba: all tests compile as the command does)
 from uq.cli import main
 
 

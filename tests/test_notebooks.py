@@ -16,20 +16,14 @@ NOTEBOOKS = sorted((HOUSE / "notebooks").glob("*.ipynb"))
 FEWER = "7"
 """A seventh of the rows: fewer have no sensitivities to show."""
 
-QUICK = ("06-your-own-machine",)
-"""The others need the compiled kernels of the machines."""
-
 
 def outputs(notebook):
     return [output for cell in notebook.cells for output in cell.get("outputs", ())]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("default")
-@pytest.mark.parametrize(
-    "path",
-    [pytest.param(path, marks=[pytest.mark.slow] * (path.stem not in QUICK)) for path in NOTEBOOKS],
-    ids=lambda path: path.stem,
-)
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs(path, tmp_path, monkeypatch):
     # A copy: results of reduced size are not to take the place of those of the reader.
     monkeypatch.setenv("NOTEBOOK_FEWER", FEWER)

@@ -36,7 +36,10 @@ def one_bit_flipped(content):
     return content[:middle] + bytes([content[middle] ^ 4]) + content[middle + 1 :]
 
 
-@pytest.mark.parametrize("damage", [truncated, emptied, one_bit_flipped])
+@pytest.mark.parametrize(
+    "damage",
+    [*(pytest.param(one, marks=pytest.mark.slow) for one in (truncated, emptied)), one_bit_flipped],
+)
 def test_a_damaged_chunk_file_is_computed_again(study, undisturbed, kept, call, injected, damage):
     kept[1].write_bytes(damage(kept[1].read_bytes()))
     words = damage.__name__.replace("_", " ")
@@ -50,6 +53,7 @@ def test_a_damaged_chunk_file_is_computed_again(study, undisturbed, kept, call, 
     assert OUT.read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_a_missing_chunk_file_is_computed_again(study, undisturbed, kept, call, injected):
     kept[1].unlink()
     injected("chunk file missing")
@@ -68,7 +72,7 @@ def test_rows_may_be_computed_in_any_order(study, undisturbed, under_way, call, 
     assert OUT.read_bytes() == undisturbed
 
 
-@pytest.mark.parametrize("bytes_cut", [1, 30])
+@pytest.mark.parametrize("bytes_cut", [pytest.param(1, marks=pytest.mark.slow), 30])
 def test_a_journal_that_was_cut_loses_its_last_record_only(
     study, undisturbed, kept, call, injected, bytes_cut
 ):
@@ -86,6 +90,7 @@ def test_a_journal_that_was_cut_loses_its_last_record_only(
     assert OUT.read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_a_record_that_was_changed_does_not_count(study, undisturbed, kept, call, injected):
     journal = ROWS / "journal"
     lines = journal.read_bytes().split(b"\n")
@@ -131,6 +136,7 @@ def disk(folder):
     subprocess.run(["umount", str(place)], check=True)
 
 
+@pytest.mark.slow
 def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call, disk, injected):
     out, rows, filler = (disk / name for name in ("out.nc", "out.nc.rows", "filler"))
     filler.write_bytes(bytes(900_000))
@@ -156,6 +162,7 @@ def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call
     assert out.read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_a_read_only_folder_is_refused(study, undisturbed, call, injected):
     as_nobody = {"UQ_TEST_USER": "65534"} if os.geteuid() == 0 else {}
     with tempfile.TemporaryDirectory() as name:
@@ -181,6 +188,7 @@ def test_a_read_only_folder_is_refused(study, undisturbed, call, injected):
         closed.chmod(0o700)
 
 
+@pytest.mark.slow
 def test_paths_with_blanks_and_accents(study, undisturbed, start, call, folder, injected):
     place = folder / "étude nº 1" / "mes résultats" / "durée de vie.nc"
     run = start("run", study, *MODEL, "-o", place, "--chunk-rows", "9", UQ_TEST_SECONDS="0.002")

@@ -10,8 +10,14 @@ import uq
     ("old", "new", "sentence"),
     [
         ("seed = 5", "seed = 6", "[design] seed = 5, now 6"),
-        ("upper = 0.9}", "upper = 0.8}", "[uncertain.x1] upper = 0.9, now 0.8"),
-        ("x2 =", "# x2 =", '[uncertain.x2] distribution = "uniform", now nothing'),
+        pytest.param(
+            *("upper = 0.9}", "upper = 0.8}", "[uncertain.x1] upper = 0.9, now 0.8"),
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            *("x2 =", "# x2 =", '[uncertain.x2] distribution = "uniform", now nothing'),
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_another_study_is_refused_with_what_changed(
@@ -44,6 +50,7 @@ def test_comments_and_analysis_may_change(study, undisturbed, under_way, call, i
     assert call("verify", OUT, *MODEL[:2])[0] == 0
 
 
+@pytest.mark.slow
 def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, under_way, call, injected):
     few = study.read_text().replace("samples = 1500", "samples = 900")
     many = study.read_text()
@@ -63,6 +70,7 @@ def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, under_w
     assert OUT.read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_an_extension_may_be_killed(study, undisturbed, start, call, injected):
     assert call("run", study, *MODEL, "--samples", "600")[0] == 0
     before = OUT.read_bytes()
@@ -78,6 +86,7 @@ def test_an_extension_may_be_killed(study, undisturbed, start, call, injected):
     assert OUT.read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call, injected):
     study = write_study(
         model="patient", uncertain=("x1", "x2"), method="latin-hypercube", samples=800
@@ -90,6 +99,7 @@ def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call, 
     assert "a 'latin-hypercube' design cannot be extended: all its rows change" in said
 
 
+@pytest.mark.slow
 def test_rows_of_an_edited_model_are_mixed_on_request_alone(
     study, under_way, call, folder, injected
 ):

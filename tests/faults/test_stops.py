@@ -18,7 +18,7 @@ RANDOM = random.Random(2026)
 
 @pytest.mark.parametrize("kills", [2, pytest.param(30, marks=pytest.mark.slow)])
 def test_kills_after_some_rows_were_kept(study, under_way, call, injected, kills):
-    samples = 300 + 100 * kills
+    samples = 100 + 100 * kills
     study.write_text(study.read_text().replace("samples = 1500", f"samples = {samples}"))
     assert call("run", study, *MODEL, "-o", "undisturbed.nc") == (0, "")
     done = 0
@@ -38,6 +38,7 @@ def test_kills_after_some_rows_were_kept(study, under_way, call, injected, kills
     assert [path.name for path in OUT.parent.iterdir()] == [OUT.name]
 
 
+@pytest.mark.slow
 def test_a_kill_before_any_row_was_kept(study, undisturbed, start, call, injected):
     run = start("run", study, *MODEL, UQ_TEST_SECONDS="0.02")
     until(ROWS.exists)
@@ -48,7 +49,8 @@ def test_a_kill_before_any_row_was_kept(study, undisturbed, start, call, injecte
     assert OUT.read_bytes() == undisturbed
 
 
-@pytest.mark.parametrize("kills", [1, pytest.param(10, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("kills", [1, 10])
 def test_kills_during_the_merge(write_study, start, call, injected, kills):
     study = write_study(model="linear", uncertain=("x1", "x2", "x3"), samples=200_000)
     options = ("--workers", "0", "--quiet", "--chunk-rows", "2000")
@@ -78,6 +80,7 @@ def wanting(half_width, text):
     return text.replace("seed = 5", f"seed = 5\nuntil = {{output='y', half_width={half_width}}}")
 
 
+@pytest.mark.slow
 def test_kills_of_a_run_that_stops_when_it_knows_enough(study, under_way, call, injected):
     study.write_text(wanting(0.03, study.read_text()))
     assert call("run", study, *MODEL, "-o", "undisturbed.nc") == (0, "")
@@ -115,7 +118,9 @@ def test_another_wish_after_a_kill_changes_no_row(study, under_way, call, folder
     assert OUT.read_bytes() == (folder / "whole.nc").read_bytes()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
+)
 def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     study, undisturbed, start, call, injected, number
 ):
@@ -126,8 +131,8 @@ def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     code, said = run.wait()
     assert code == 128 + number
     told = re.fullmatch(
-        rf"interrupted after (\d+) of 1500 rows, kept in {ROWS}; the same command goes on from "
-        r"there\n",
+        rf"interrupted after (\d+) of 1500 rows, kept in {ROWS}; the same command resumes "
+        r"the run\n",
         said,
     )
     assert told
@@ -165,6 +170,7 @@ def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_w
     assert OUT.read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_a_lock_that_names_nobody_says_what_to_do(study, undisturbed, under_way, call):
     under_way(study).kill()
     (ROWS / "lock").write_text("")
@@ -175,6 +181,7 @@ def test_a_lock_that_names_nobody_says_what_to_do(study, undisturbed, under_way,
     assert OUT.read_bytes() == undisturbed
 
 
+@pytest.mark.slow
 def test_a_lock_of_another_host_is_respected(study, under_way, call, injected):
     under_way(study).kill()
     (ROWS / "lock").write_text("1\nelsewhere\n")

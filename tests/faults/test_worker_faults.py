@@ -96,9 +96,9 @@ CHILD, WORKER = "uq.running.child", "uq.running.dask_worker"
 @pytest.mark.parametrize(
     ("fault", "module", "times", "all_of_them"),
     [
-        ("worker killed", WORKER, 3, False),
-        ("all workers killed", WORKER, 2, True),
-        ("process of a worker killed", CHILD, 4, True),
+        ("worker killed", WORKER, 1, False),
+        pytest.param("all workers killed", WORKER, 2, True, marks=pytest.mark.slow),
+        pytest.param("process of a worker killed", CHILD, 4, True, marks=pytest.mark.slow),
     ],
 )
 def test_killed_processes_leave_no_trace(
@@ -155,6 +155,7 @@ class Unlucky(isolation.Isolated):
         return super()._answer(connection, limit)
 
 
+@pytest.mark.slow
 def test_a_row_is_not_guilty_because_its_process_was_killed_twice(study_of, undisturbed, injected):
     study = study_of(seconds=0.2, samples=2)
     work = workload_of(study)
@@ -179,10 +180,20 @@ FAULTS = {
     "segfault": (FAULTY, {"how": "segfault"}, Status.CRASHED, "Segmentation fault"),
     "killed": (FAULTY, {"how": "kill"}, Status.CRASHED, "Killed"),
 }
+QUICK = ("raise", "nan", "shape", "segfault", "hang")
+"""One of each status."""
 
 
-@pytest.mark.parametrize("workers", [None, pytest.param(2, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize(
+    ("fault", "workers"),
+    [
+        pytest.param(
+            fault, workers, marks=[pytest.mark.slow] * (workers == 2 or fault not in QUICK)
+        )
+        for fault in FAULTS
+        for workers in (None, 2)
+    ],
+)
 def test_guilty_rows_get_their_status_and_the_others_their_values(
     study_of, undisturbed, monkeypatch, injected, fault, workers
 ):
@@ -243,7 +254,7 @@ def test_a_time_limit_needs_a_process_to_stop(uq, study_of):
 
 
 def test_too_many_failed_rows_are_an_exit_code_after_the_result(uq, study_of, folder):
-    study = study_of("linear", samples=50, fail_how="exit", fail_above=0.8)
+    study = study_of("linear", samples=10, fail_how="exit", fail_above=0.8)
     ended = uq("run", study.path, "--workers", 1)
     assert ended.code == 1
     assert "crashed" in ended.out
@@ -328,6 +339,7 @@ def test_surroundings_change_no_bit(study_of, undisturbed, folder, injected, sur
     assert open_result(folder / "results" / "small.nc").identical(expected)
 
 
+@pytest.mark.slow
 def test_everything_listens_on_this_computer_alone(study_of):
     listening = set()
 
@@ -342,6 +354,7 @@ def test_everything_listens_on_this_computer_alone(study_of):
     assert listening == {"127.0.0.1"}
 
 
+@pytest.mark.slow
 def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
     monkeypatch.setattr(local_cluster, "_DEATHS_AT_MOST", 3)
     stop = threading.Event()

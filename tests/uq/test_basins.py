@@ -152,6 +152,7 @@ def test_workers_give_the_bits_of_this_process():
     np.testing.assert_array_equal(here["y"][:19], (x1 + 0.25 + 3.0 * x3 + 2.0)[:19])
 
 
+@pytest.mark.slow
 def test_workers_take_part():
     axes = {"x1": (0.0, 1.0, 12), "x2": (0.0, 1.0, 10)}
     ds = uq.basins("sample_models:PROCESS", axes, settings={"seconds": 0.03}, workers=2)
@@ -165,6 +166,7 @@ def test_a_model_that_workers_would_not_find_runs_here(monkeypatch):
     assert set(ds["y"].values) == {float(os.getpid())}
 
 
+@pytest.mark.slow
 def test_a_plain_script_needs_no_guard(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(

@@ -75,13 +75,13 @@ def test_run_ends_with_the_summary_and_what_to_type_next(uq, write_study, folder
 
 
 def test_quiet_means_quiet(uq, write_study):
-    ended = uq("run", write_study(), "--quiet")
+    ended = uq("run", write_study(), "--quiet", "--workers", 0)
     assert ended == (0, "", "")
 
 
 def test_samples_can_be_set_for_one_run(uq, write_study):
     path = write_study(method="sobol", samples=8)
-    assert uq("run", path, "--samples", "32", "-o", "out.nc", "--quiet").code == 0
+    assert uq("run", path, "--samples", "32", "-o", "out.nc", "--quiet", "--workers", 0).code == 0
     assert api.open_result("out.nc").sizes["sample"] == 32
     ended = uq("run", path, "--samples", "33", "-o", "out.nc")
     assert ended.code == 2
@@ -129,7 +129,15 @@ def test_lives_fits_and_regimes_are_shown(uq, folder):
 
 
 def test_summary_and_sensitivity_as_json(uq, write_study):
-    uq("run", write_study(method="saltelli", samples=16, replicates=4), "-o", "out.nc", "--quiet")
+    uq(
+        "run",
+        write_study(method="saltelli", samples=16, replicates=4),
+        "-o",
+        "out.nc",
+        "--quiet",
+        "--workers",
+        0,
+    )
     summary = strict_json(uq("summary", "out.nc", "--json").out)
     assert summary["samples"] == 320
     assert set(summary["outputs"]["y"]["quantiles"]) == {"0.05", "0.5", "0.95"}
@@ -142,7 +150,7 @@ def test_summary_and_sensitivity_as_json(uq, write_study):
 
 
 def test_plot_draws_beside_the_result(uq, write_study, folder):
-    uq("run", write_study(), "-o", "out.nc", "--quiet")
+    uq("run", write_study(), "-o", "out.nc", "--quiet", "--workers", 0)
     ended = uq("plot", "out.nc")
     assert ended.code == 0
     drawn = ended.out.splitlines()

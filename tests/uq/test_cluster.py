@@ -47,7 +47,10 @@ def tidy(folder, monkeypatch):
 
 @pytest.mark.parametrize(
     ("model", "parameters", "workers"),
-    [("ishigami", ("x1", "x2", "x3"), 1), ("sample_models:KINDS", ("x1",), 2)],
+    [
+        pytest.param("ishigami", ("x1", "x2", "x3"), 2, marks=pytest.mark.slow),
+        ("sample_models:KINDS", ("x1",), 1),
+    ],
 )
 def test_workers_give_the_bits_of_this_process(write_study, tidy, model, parameters, workers):
     path = write_study(method="saltelli", samples=128, replicates=2, uncertain=parameters)
@@ -56,6 +59,7 @@ def test_workers_give_the_bits_of_this_process(write_study, tidy, model, paramet
     assert runner.compute(study, workers=workers, chunk_rows=100).identical(here)
 
 
+@pytest.mark.slow
 def test_all_workers_work(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=400), "sample_models:PROCESS")
     ds = runner.compute(study, workers=2, chunk_rows=2)
@@ -64,6 +68,7 @@ def test_all_workers_work(write_study, tidy):
     assert float(os.getpid()) not in ds["y"].values
 
 
+@pytest.mark.slow
 def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeypatch):
     monkeypatch.setenv("UQ_TEST", "1")
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
@@ -78,7 +83,9 @@ def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeyp
     assert runner.compute(study, workers=0)["y"].values[0] != ds["y"].values[0]
 
 
-@pytest.mark.parametrize(("seconds", "processes"), [(60.0, 1), (0.1, 3)])
+@pytest.mark.parametrize(
+    ("seconds", "processes"), [(60.0, 1), pytest.param(0.1, 3, marks=pytest.mark.slow)]
+)
 def test_workers_are_started_for_longer_studies_only(
     write_study, tidy, monkeypatch, seconds, processes
 ):
@@ -102,6 +109,7 @@ def test_a_worker_that_died_is_replaced(tidy):
             time.sleep(0.05)
 
 
+@pytest.mark.slow
 def test_an_existing_cluster_is_used(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=100), "sample_models:PROCESS")
     with local_cluster.local_workers(1) as crew:
@@ -113,6 +121,7 @@ def test_an_existing_cluster_is_used(write_study, tidy):
     assert len(set(ds["y"].values)) == 2
 
 
+@pytest.mark.slow
 def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
     study = load_study(write_study())
     with monkeypatch.context() as hasty:
@@ -157,6 +166,7 @@ def test_a_worker_that_differs_is_refused_with_its_first_rows():
         evaluate_rows(ModelSpec("ishigami", "1", ()), later, None, x, seed, 0)
 
 
+@pytest.mark.slow
 def test_a_script_needs_no_main_guard(write_study, folder):
     path = write_study(samples=200)
     temporary = folder / "temporary"
@@ -185,6 +195,7 @@ def test_a_script_needs_no_main_guard(write_study, folder):
     }
 
 
+@pytest.mark.slow
 def test_a_notebook_with_a_running_event_loop_can_use_workers(write_study, tidy):
     path = write_study(samples=200)
 
@@ -194,6 +205,7 @@ def test_a_notebook_with_a_running_event_loop_can_use_workers(write_study, tidy)
     assert asyncio.run(cell()).identical(uq.open_result("out.nc"))
 
 
+@pytest.mark.slow
 def test_a_worker_ends_with_its_parent(folder):
     program = (
         "import os, time\n"

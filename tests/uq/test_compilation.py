@@ -42,13 +42,20 @@ numba.njit(lambda x: x)(1)
 """
 
 
-@pytest.mark.parametrize("program", [LATE, f"import numba\n{LATE}", LOOKED_FOR, NEVER])
+@pytest.mark.parametrize(
+    "program",
+    [
+        pytest.param(one, marks=[pytest.mark.slow] * (one != LATE))
+        for one in (LATE, f"import numba\n{LATE}", LOOKED_FOR, NEVER)
+    ],
+)
 def test_compilation_is_heard_of(program):
     program = f"from uq.compilation import compilation\n{program}"
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert (ended.returncode, ended.stderr) == (0, "")
 
 
+@pytest.mark.slow
 def test_who_looks_at_a_terminal_is_told(folder):
     ours, theirs = pty.openpty()
     command = [COMMAND, "simulate", "sample_models:SPINNING", "--json"]

@@ -98,7 +98,7 @@ def test_methods_for_independent_inputs_are_refused_and_others_named():
     assert said.endswith("those that do not are 'delta' or 'pawn' or 'quantile' or 'regional'")
     ds = computed(study_of(given))
     assert sensitivities(ds)["method"] == "delta"
-    with pytest.raises(InputError, match="'rbd-fast' supposes independent inputs.*delta, pawn, "):
+    with pytest.raises(InputError, match="'rbd-fast' assumes independent inputs.*delta, pawn, "):
         sensitivities(ds, "rbd-fast")
 
 

@@ -68,7 +68,9 @@ def test_first_order_indices_by_rbd_fast_are_the_known_ones_and_openturns(model)
     assert found == pytest.approx(list(rank.getFirstOrderIndices()), abs=0.1)
 
 
-@pytest.mark.parametrize("model", CASES)
+@pytest.mark.parametrize(
+    "model", [pytest.param(one, marks=[pytest.mark.slow] * (one != "linear")) for one in CASES]
+)
 def test_expansion_gives_the_known_indices_and_those_of_openturns(model):
     ds = plain(model)
     entry = entry_of(ds, "hdmr")

@@ -62,7 +62,7 @@ def test_an_endless_study_file_is_refused(uq):
 
 
 def test_texts_from_a_file_do_nothing_to_the_terminal(uq, write_study, folder):
-    path = write_study()
+    path = write_study(method="morris", samples=8, replicates=2)
     text = json.dumps(ESCAPE)
     path.write_text(path.read_text().replace("[study]", f"[study]\ndescription = {text}"))
     for verb in (("check", path), ("run", path, "-o", "out.nc"), ("summary", "out.nc")):

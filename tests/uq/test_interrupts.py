@@ -101,7 +101,7 @@ def check_ended(process, sentence):
     assert Path("results").exists() == err.endswith("; the same command resumes the run\n")
 
 
-@pytest.mark.parametrize("send", [to_process, to_group])
+@pytest.mark.parametrize("send", [to_process, pytest.param(to_group, marks=pytest.mark.slow)])
 def test_while_a_kernel_runs(started, send):
     process, mark = started("SPINNING", "--workers", "0", seconds=100.0)
     wait_until(mark.exists)
@@ -110,6 +110,7 @@ def test_while_a_kernel_runs(started, send):
     check_ended(process, "interrupted; nothing was written")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", [("--workers", "0"), ()])
 def test_while_a_kernel_compiles(started, options):
     process, _ = started("COMPILING", *options)
@@ -118,7 +119,7 @@ def test_while_a_kernel_compiles(started, options):
     check_ended(process, "interrupted; nothing was written")
 
 
-@pytest.mark.parametrize("send", [to_process, to_group])
+@pytest.mark.parametrize("send", [pytest.param(to_process, marks=pytest.mark.slow), to_group])
 def test_while_workers_work(started, send):
     process, _ = started("SLEEPING", "--workers", "2", "--chunk-rows", "4", seconds=0.05)
     wait_until(lambda: len(workers_of(process)) == 2)
@@ -130,6 +131,7 @@ def test_while_workers_work(started, send):
     assert not any(worker.is_running() for worker in workers)
 
 
+@pytest.mark.slow
 def test_while_workers_start(started):
     process, _ = started("SLEEPING", "--workers", "2", "--chunk-rows", "1", seconds=0.05)
     wait_until(lambda: workers_of(process))
@@ -137,7 +139,9 @@ def test_while_workers_start(started):
     check_ended(process, "interrupted")
 
 
-@pytest.mark.parametrize("delay", [0.2, 0.5, 0.8, 1.2, 1.6])
+@pytest.mark.parametrize(
+    "delay", [0.5, *(pytest.param(one, marks=pytest.mark.slow) for one in (0.2, 0.8, 1.2, 1.6))]
+)
 def test_while_modules_are_loaded(started, delay):
     process, _ = started("SLEEPING", "--workers", "0", seconds=1.0)
     time.sleep(delay)
@@ -145,6 +149,7 @@ def test_while_modules_are_loaded(started, delay):
     check_ended(process, "interrupted")
 
 
+@pytest.mark.slow
 def test_a_request_to_terminate_is_obeyed_too(started):
     process, mark = started("SLEEPING", "--workers", "0", seconds=1.0)
     wait_until(mark.exists)
@@ -154,6 +159,7 @@ def test_a_request_to_terminate_is_obeyed_too(started):
     assert err.startswith("interrupted")
 
 
+@pytest.mark.slow
 def test_a_child_that_computes_ends_with_a_process_that_is_killed(started):
     process, mark = started("SLEEPING", seconds=100.0)
     wait_until(mark.exists)
@@ -167,6 +173,7 @@ def test_a_child_that_computes_ends_with_a_process_that_is_killed(started):
     shutil.rmtree("results")
 
 
+@pytest.mark.slow
 def test_in_a_script_it_is_the_exception_of_python(started):
     program = (
         "import signal, uq\n"
@@ -186,6 +193,7 @@ def test_in_a_script_it_is_the_exception_of_python(started):
     assert process.returncode == 0
 
 
+@pytest.mark.slow
 def test_a_terminal_shows_progress_and_gets_its_cursor_back(started):
     ours, theirs = pty.openpty()
     process, _ = started("SLEEPING", "--workers", "0", seconds=0.05, stderr=theirs)

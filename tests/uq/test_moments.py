@@ -96,7 +96,14 @@ def test_every_reader_is_told():
     assert np.isnan(value)
 
 
-@pytest.mark.parametrize(("design", "method"), [("saltelli", "sobol"), ("monte-carlo", "hdmr")])
+@pytest.mark.parametrize(
+    ("design", "method"),
+    [
+        ("saltelli", "sobol"),
+        ("monte-carlo", "rbd-fast"),
+        pytest.param("monte-carlo", "hdmr", marks=pytest.mark.slow),
+    ],
+)
 def test_a_variance_that_does_not_exist_is_not_apportioned(design, method):
     ds = linear(method=design, samples=1024)
     share = stats.rankdata(ds["y"].values) / (ds.sizes["sample"] + 1)

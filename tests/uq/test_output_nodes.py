@@ -52,6 +52,14 @@ def result(uq, write_study):
     return Path("results/small.nc")
 
 
+@pytest.fixture
+def drawn_once(uq, write_study):
+    """Return a result of which there is one figure."""
+    study = write_study(method="morris", samples=8, replicates=2)
+    uq("run", study, "--workers", "0", "--quiet")
+    return Path("results/small.nc")
+
+
 LINES = """
 run small.toml --workers 0 -o node
 run small.toml --workers 0 --fresh -o node
@@ -90,18 +98,18 @@ def test_a_name_too_long_is_refused(uq, result, folder, length):
         assert state(folder) == before
 
 
-def test_basins_and_figures_refuse_too(uq, result, folder):
+def test_basins_and_figures_refuse_too(uq, drawn_once, folder):
     what = device(folder / "node")
     axes = {"x1": (0.0, 1.0, 2)}
     with pytest.raises(InputError, match=f"^node: is {what}, not a file; "):
         api.basins(sample_models.KINDS, axes, output="node")
-    assert "inputs.png" in uq("plot", result, "-o", "figures").out
-    (folder / "figures" / "inputs.svg").unlink()
-    what = fifo(folder / "figures" / "inputs.svg")
-    ended = uq("plot", result, "-o", "figures")
+    assert "morris-y.png" in uq("plot", drawn_once, "-o", "figures").out
+    (folder / "figures" / "morris-y.svg").unlink()
+    what = fifo(folder / "figures" / "morris-y.svg")
+    ended = uq("plot", drawn_once, "-o", "figures")
     assert (ended.code, ended.err.count("\n")) == (2, 1)
-    assert ended.err.startswith(f"figures/inputs.svg: is {what}, not a file; ")
-    assert uq("plot", result, "-o", "node").code == 2
+    assert ended.err.startswith(f"figures/morris-y.svg: is {what}, not a file; ")
+    assert uq("plot", drawn_once, "-o", "node").code == 2
 
 
 @pytest.mark.parametrize("there", [True, False])
@@ -140,10 +148,10 @@ def test_a_result_behind_a_link_goes_on(uq, result, folder):
     assert uq("verify", result).code == 0
 
 
-def test_figures_go_into_a_folder_behind_a_link(uq, result, folder):
+def test_figures_go_into_a_folder_behind_a_link(uq, drawn_once, folder):
     (folder / "figures").symlink_to("disk/figures")
-    assert uq("plot", result, "-o", "figures").code == 0
-    assert (folder / "disk" / "figures" / "inputs.png").is_file()
+    assert uq("plot", drawn_once, "-o", "figures").code == 0
+    assert (folder / "disk" / "figures" / "morris-y.png").is_file()
 
 
 def test_standard_output_is_no_place_for_a_file(uq, result, folder):

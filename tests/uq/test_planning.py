@@ -14,6 +14,7 @@ from uq.study.definition import load_study
 NORMAL = 'distribution = "uniform", lower = 0.0, upper = 1.0'
 
 
+@pytest.mark.slow
 def test_the_cost_of_rows_that_sleep(write_study, monkeypatch):
     monkeypatch.setattr(planning, "PILOT_SECONDS", 0.5)
     more = "[settings]\nseconds = 0.01"
@@ -38,6 +39,7 @@ def test_a_small_study_is_run_whole(write_study):
     assert pilot["y"].values.tolist() == runner.compute(study, workers=0)["y"].values.tolist()
 
 
+@pytest.mark.slow
 def test_the_size_of_the_result_is_right(write_study, folder):
     study = load_study(write_study(samples=20_000))
     cost, _ = planning.pilot(study, workers=1)
@@ -80,7 +82,8 @@ def test_widths_are_those_that_come_out(write_study, method, replicates):
     assert ("S1" in expected.indices) == (method == "saltelli")
 
 
-def test_plan_shows_all_of_it(uq, write_study):
+def test_plan_shows_all_of_it(uq, write_study, monkeypatch):
+    monkeypatch.setattr(planning, "_load_seconds", lambda: 1.0)
     path = write_study(model="linear", uncertain=("x1",), more="[settings]\nfail_above = 0.6")
     shown = uq("plan", path, "--workers", 1)
     assert shown.code == 0
@@ -90,7 +93,7 @@ def test_plan_shows_all_of_it(uq, write_study):
     assert header.split() == ["mean", "0.05", "0.5", "0.95"]
     assert any(line.startswith("  y ") and len(line.split()) == 5 for line in lines)
     assert max(map(len, shown.out.splitlines())) <= 80
-    plan = json.loads(uq("plan", path, "--json", "--samples", 128).out)
+    plan = json.loads(uq("plan", path, "--json", "--samples", 128, "--workers", 1).out)
     assert plan["rows"] == 128
     assert plan["pilot"]["failed"] > 0
     assert set(plan) == {

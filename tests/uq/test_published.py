@@ -40,7 +40,9 @@ def values(found):
     return [one["value"] for one in found.values()]
 
 
-@pytest.mark.parametrize("method", PORTFOLIO)
+@pytest.mark.parametrize(
+    "method", [pytest.param(one, marks=[pytest.mark.slow] * (one == "hdmr")) for one in PORTFOLIO]
+)
 def test_indices_of_a_portfolio_are_the_published_ones(method):
     found = entry(result("published:PORTFOLIO", PORTFOLIO_LAWS, *PORTFOLIO[method]), method)
     for kind, truth in portfolio_indices().items():

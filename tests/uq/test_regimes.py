@@ -138,7 +138,7 @@ def test_indices_within_a_regime_suppose_no_independent_inputs():
     assert entry["delta"]["x1"]["value"] > entry["dummy"]["delta"] > 0
     with pytest.raises(InputError, match="within a regime the inputs depend on each other"):
         sensitivities(ds, "rbd-fast", regime="fast")
-    with pytest.raises(InputError, match="supposes independent inputs"):
+    with pytest.raises(InputError, match="assumes independent inputs"):
         sensitivities(kinds("saltelli", 64, 4), regime="fast")
 
 

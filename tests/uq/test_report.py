@@ -57,6 +57,17 @@ def read(ds):
     return Page(page(ds, "OUT.nc"))
 
 
+@pytest.fixture(scope="module")
+def asked():
+    return kinds(samples=100, analysis=ASKED)
+
+
+@pytest.fixture(scope="module")
+def text(asked):
+    """Return a report with all that there is to say."""
+    return page(asked, "OUT.nc")
+
+
 ASKED = {
     "thresholds": {"life": 1.0},
     "tolerance": {"coverage": 0.9, "confidence": 0.9},
@@ -64,9 +75,8 @@ ASKED = {
 }
 
 
-def test_a_report_says_all_there_is_to_say():
-    ds = kinds(samples=200, analysis=ASKED)
-    found = read(ds)
+def test_a_report_says_all_there_is_to_say(asked, text):
+    ds, found = asked, Page(text)
     words = found.plain_words
     for expected in (
         "kinds, version 1",
@@ -100,8 +110,8 @@ def test_a_report_says_all_there_is_to_say():
     assert drawn == 12 + 2 * len(judged) + 2
 
 
-def test_links_lead_somewhere_and_names_are_unique():
-    found = read(kinds(samples=200, analysis=ASKED))
+def test_links_lead_somewhere_and_names_are_unique(text):
+    found = Page(text)
     ids = [value for name, value in found.attributes if name == "id"]
     assert len(ids) == len(set(ids))
     links = {value for name, value in found.attributes if name == "href" and value[0] == "#"}
@@ -110,8 +120,7 @@ def test_links_lead_somewhere_and_names_are_unique():
     assert used and set(used) <= set(ids)
 
 
-def test_a_report_needs_no_network_and_no_other_file():
-    text = page(kinds(samples=100, analysis=ASKED), "OUT.nc")
+def test_a_report_needs_no_network_and_no_other_file(text):
     assert "://" not in text and "@import" not in text
     loaded = [(n, v) for n, v in Page(text).attributes if n in ("src", "href", "data", "srcset")]
     assert all(value.startswith(("#", "data:image/png")) for _, value in loaded)
@@ -132,7 +141,7 @@ def test_names_from_a_file_are_text():
 
 
 def test_the_same_result_gives_the_same_text():
-    ds = kinds(samples=64)
+    ds = asking(kinds(samples=64), outputs=["angle", "regime"])
     assert page(ds, "a.nc") == page(ds, "a.nc")
 
 
@@ -146,7 +155,7 @@ def test_numbers_are_told_as_one_reads_them():
     words = read(computed(study_of(tables))).plain_words
     assert "0.523599 " in words and words.count("0.5235987755982988") == 1  # in the study's text
     assert words.count("set in this study, under [fixed]") == 1  # the others are nominal
-    ds = kinds(samples=40)
+    ds = asking(kinds(samples=40), outputs=["regime"])
     ds = ds.assign(regime=ds["regime"].copy(data=np.zeros(40, np.int8)))
     assert re.search(r"slow 40 100\.0 % .* fast 0 0\.0 %", read(ds).plain_words)
 
@@ -225,7 +234,7 @@ def test_a_large_study_makes_a_small_page():
 
 
 def test_report_on_the_command_line(uq, folder, monkeypatch):
-    write_result(kinds(samples=50), folder / "out.nc")
+    write_result(linear("morris", samples=8, replicates=2), folder / "out.nc")
     ended = uq("report", "out.nc")
     assert (ended.code, ended.out, ended.err) == (0, "out.html\n", "")
     text = (folder / "out.html").read_text()

@@ -70,7 +70,7 @@ def test_a_trajectory_is_written_and_drawn(uq, folder):
 
 
 def test_a_trajectory_overwrites_nothing_but_a_trajectory(uq, write_study, folder):
-    uq("run", write_study(), "-o", "study.nc", "--quiet")
+    uq("run", write_study(), "-o", "study.nc", "--quiet", "--workers", 0)
     xr.Dataset({"trajectory": ("time", [0.0, 1.0])}).to_netcdf("foreign.nc")
     api.simulate("linear").to_netcdf("row.nc")
     Path("notes.txt").write_text("precious")

@@ -69,7 +69,7 @@ def test_rows_that_are_not_those_of_the_design_are_refused(method):
     ds = result(method, 64)
     a = ds["a"].values.copy()
     a[5] += 1e-3
-    with pytest.raises(InputError, match="the rows are not those of its design"):
+    with pytest.raises(InputError, match="the rows differ from those of a"):
         sensitivities(ds.assign(a=("sample", a, ds["a"].attrs)))
 
 

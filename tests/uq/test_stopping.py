@@ -81,7 +81,15 @@ def whole(path):
     return path.read_bytes()
 
 
-@pytest.mark.parametrize("design", [{}, {"method": "saltelli", "replicates": 4, "samples": 512}])
+@pytest.mark.parametrize(
+    "design",
+    [
+        {},
+        pytest.param(
+            {"method": "saltelli", "replicates": 4, "samples": 512}, marks=pytest.mark.slow
+        ),
+    ],
+)
 def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, design):
     of = study(0.1, **design)
     once = runner.run(of, "once.nc")
@@ -148,6 +156,7 @@ def test_the_budget_is_that_of_the_file(folder):
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_workers_stay_from_look_to_look(folder, monkeypatch):
     started = []
     local = local_cluster.local_workers

@@ -16,7 +16,9 @@ COMMAND = Path(sys.executable).with_name("uq")
 FULL, CLOSED = "No space left on device", "Bad file descriptor"
 
 
-@pytest.fixture(params=[True, False], ids=["buffered", "unbuffered"])
+@pytest.fixture(
+    params=[True, pytest.param(False, marks=pytest.mark.slow)], ids=["buffered", "unbuffered"]
+)
 def shell(request, folder):
     """Return a function that has a shell run ``uq ARGUMENTS``, with redirections."""
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
@@ -32,7 +34,16 @@ def shell(request, folder):
     return call
 
 
-@pytest.mark.parametrize("verb", ["schema", "models linear", "--version", "run --help"])
+@pytest.mark.parametrize(
+    "verb",
+    [
+        "schema",
+        *(
+            pytest.param(verb, marks=pytest.mark.slow)
+            for verb in ("models linear", "--version", "run --help")
+        ),
+    ],
+)
 def test_output_that_is_lost_is_a_line(shell, verb):
     lost = "uq: standard output cannot be written: "
     assert shell(f"{verb} > /dev/full") == (1, f"{lost}{FULL}\n")
@@ -47,6 +58,7 @@ def test_a_mistake_keeps_its_exit_code(shell):
     assert (code, told[: len(said)], told.count("\n")) == (2, said, 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shell", [True], indirect=True)
 def test_a_run_without_any_stream_writes_a_sound_result(shell, write_study):
     study = write_study(samples=8)

@@ -54,7 +54,8 @@ def test_a_parameter_that_is_infinite_unless_given_stays_fixed():
 @pytest.mark.parametrize("name", model_names())
 def test_every_parameter_is_explained(name):
     model = find_model(name)
+    text = template(model)
     for parameter in model.parameter_names:
         declared = model.parameter(parameter)
-        assert declared.meaning in template(model)
-        assert f"[{declared.unit}]" in template(model)
+        assert declared.meaning in text
+        assert f"[{declared.unit}]" in text

@@ -20,7 +20,7 @@ def test_a_tied_parameter_has_the_value_of_the_other_and_no_column():
     # y = x1 + 2 x2 = 3 x1: all the variance is x1's.
     (entry,) = sensitivities(ds)["outputs"].values()
     assert entry["S1"].keys() == {"x1"} and entry["S1"]["x1"]["value"] == pytest.approx(1, abs=0.1)
-    assert "x2 equals x1: the index of x1 is of both" in entry["notes"]
+    assert "x2 equals x1: the index of x1 is that of both" in entry["notes"]
 
 
 def test_a_scaled_parameter_is_the_other_times_a_factor_of_its_own():

@@ -14,12 +14,15 @@ from uq.running import isolation
 
 RAISING = '[settings]\nfail_above = 0.5\nfail_how = "raise"\n[analysis]\nmax_failed = 1.0'
 
+QUIETLY = ("--quiet", "--workers", 0)
+"""Without a process of its own: nothing here depends on who computes."""
+
 
 @pytest.fixture
 def result(uq, write_study):
     """Make a result some of whose rows failed."""
     path = write_study(model="linear", samples=200, uncertain=("x1", "x2"), more=RAISING)
-    assert uq("run", path, "-o", "out.nc", "--quiet").code == 0
+    assert uq("run", path, "-o", "out.nc", *QUIETLY).code == 0
     return path
 
 
@@ -36,14 +39,14 @@ def result(uq, write_study):
 def test_extended_is_the_same_as_asked_for_at_once(uq, write_study, design):
     path = write_study(model="linear", more=RAISING, **design)
     more = 2 * design["samples"]
-    uq("run", path, "-o", "out.nc", "--quiet")
-    assert uq("extend", "out.nc", "--samples", more, "--quiet") == (0, "", "")
-    uq("run", path, "-o", "once.nc", "--samples", more, "--quiet")
+    uq("run", path, "-o", "out.nc", *QUIETLY)
+    assert uq("extend", "out.nc", "--samples", more, *QUIETLY) == (0, "", "")
+    uq("run", path, "-o", "once.nc", "--samples", more, *QUIETLY)
     assert Path("out.nc").read_bytes() == Path("once.nc").read_bytes()
 
 
 def test_what_cannot_be_extended_says_why(uq, write_study):
-    uq("run", write_study(method="latin-hypercube"), "-o", "out.nc", "--quiet")
+    uq("run", write_study(method="latin-hypercube"), "-o", "out.nc", *QUIETLY)
     before = Path("out.nc").read_bytes()
     ended = uq("extend", "out.nc", "--samples", 128)
     assert ended.code == 2
@@ -58,13 +61,13 @@ def test_what_cannot_be_extended_says_why(uq, write_study):
 
 
 def test_a_grown_study_extends_its_result(uq, write_study):
-    uq("run", write_study(samples=40), "-o", "out.nc", "--quiet")
+    uq("run", write_study(samples=40), "-o", "out.nc", *QUIETLY)
     path = write_study(samples=100)
     ended = uq("run", path, "-o", "out.nc")
     assert ended.err == "out.nc: 40 of 100 rows were already done\n"
     words = " ".join(ended.out.split())
     assert re.search(r"out.nc: 60 rows computed in [0-9.]+ s; 40 were there already", words)
-    uq("run", path, "-o", "once.nc", "--quiet")
+    uq("run", path, "-o", "once.nc", *QUIETLY)
     assert Path("out.nc").read_bytes() == Path("once.nc").read_bytes()
 
 
@@ -83,7 +86,7 @@ def test_failed_rows_are_run_again_with_changed_settings(uq, result):
     expected = after["x1"] + 2 * after["x2"] + 3 * 0.5 + 4 * 0.5
     assert np.allclose(after["y"].values[~still], expected.values[~still], rtol=1e-14)
     assert uq("verify", "out.nc").code == 0
-    assert uq("rerun", "out.nc", "--failed", "--setting", "fail_above=2.0", "--quiet").code == 0
+    assert uq("rerun", "out.nc", "--failed", "--setting", "fail_above=2.0", *QUIETLY).code == 0
     last = api.open_result("out.nc")
     settings = {"no": "no"} | {f"changed-{i}": last["rerun"].attrs[f"changed_{i}"] for i in (1, 2)}
     labels = np.array(last["rerun"].attrs["flag_meanings"].split())[last["rerun"].values]
@@ -94,10 +97,11 @@ def test_failed_rows_are_run_again_with_changed_settings(uq, result):
     assert (last["status"] == Status.OK).all()
     assert uq("verify", "out.nc").code == 0
     assert "no row failed" in uq("rerun", "out.nc", "--failed").err
-    assert uq("extend", "out.nc", "--samples", 300, "--quiet").code == 0
+    assert uq("extend", "out.nc", "--samples", 300, *QUIETLY).code == 0
     assert np.array_equal(api.open_result("out.nc")["rerun"].values[:200], last["rerun"].values)
 
 
+@pytest.mark.slow
 def test_endless_rows_are_stopped_when_extending_and_running_again(uq, write_study, monkeypatch):
     monkeypatch.setattr(isolation, "_FIRST_SECONDS", 0.5)
     more = '[settings]\nfail_above = 0.85\nfail_how = "hang"'
@@ -114,7 +118,7 @@ def test_endless_rows_are_stopped_when_extending_and_running_again(uq, write_stu
 
 def test_failed_rows_run_again_as_they_were_change_no_bit(uq, result):
     before = Path("out.nc").read_bytes()
-    assert uq("rerun", "out.nc", "--failed", "--quiet").code == 0
+    assert uq("rerun", "out.nc", "--failed", *QUIETLY).code == 0
     assert Path("out.nc").read_bytes() == before
 
 
@@ -178,7 +182,7 @@ def test_verify_finds_a_flipped_bit_wherever_it_is(uq, result):
 
 @pytest.mark.parametrize("variable", ["", "y"])
 def test_verify_finds_words_that_were_changed(uq, write_study, variable):
-    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    uq("run", write_study(samples=12), "-o", "out.nc", *QUIETLY)
     with netCDF4.Dataset("out.nc", "a") as file:
         owner = file[variable] if variable else file
         owner.setncattr("source" if owner is file else "units", "else")
@@ -188,7 +192,7 @@ def test_verify_finds_words_that_were_changed(uq, write_study, variable):
 
 
 def test_verify_finds_rows_that_would_come_out_otherwise_and_names_versions(uq, write_study):
-    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    uq("run", write_study(samples=12), "-o", "out.nc", *QUIETLY)
     with netCDF4.Dataset("out.nc", "a") as file:
         file["y"][3] += 1e-12
         file.setncattr("numpy", "0.9")
@@ -201,7 +205,7 @@ def test_verify_finds_rows_that_would_come_out_otherwise_and_names_versions(uq, 
 
 
 def test_a_result_of_another_version_of_the_model_is_not_taken_for_this_one(uq, write_study):
-    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    uq("run", write_study(samples=12), "-o", "out.nc", *QUIETLY)
     with netCDF4.Dataset("out.nc", "a") as file:
         file.setncattr("model_version", "0")
         file.setncattr("study_identity", "0" * 64)
@@ -215,7 +219,7 @@ def test_a_result_of_another_version_of_the_model_is_not_taken_for_this_one(uq, 
 
 
 def test_a_result_of_other_code_goes_further_on_request_alone(uq, write_study):
-    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    uq("run", write_study(samples=12), "-o", "out.nc", *QUIETLY)
     with netCDF4.Dataset("out.nc", "a") as file:
         file.setncattr("code", "0")
     verb = ("extend", "out.nc", "--samples", 20)
@@ -227,7 +231,7 @@ def test_a_result_of_other_code_goes_further_on_request_alone(uq, write_study):
 
 
 def test_rows_of_other_versions_are_named_in_the_result(uq, write_study):
-    uq("run", write_study(samples=12), "-o", "out.nc", "--quiet")
+    uq("run", write_study(samples=12), "-o", "out.nc", *QUIETLY)
     with netCDF4.Dataset("out.nc", "a") as file:
         file.setncattr("numpy", "0.9")
     ended = uq("extend", "out.nc", "--samples", 20)

@@ -90,8 +90,14 @@ def strict(found):
     return json.loads(json.dumps(found, allow_nan=False))
 
 
-@pytest.mark.parametrize("damage", DAMAGES[1:])
-@pytest.mark.parametrize(("design", "method"), FED)
+@pytest.mark.parametrize(
+    ("design", "method", "damage"),
+    [
+        pytest.param(*one, damage, marks=[pytest.mark.slow] * (one[1] == "hdmr" and i < 2))
+        for i, damage in enumerate(DAMAGES[1:])
+        for one in FED
+    ],
+)
 def test_sensitivity(design, method, damage):
     ds = damaged(result(design, ROWS.get(method, 128)), damage)
     try:

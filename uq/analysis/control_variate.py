@@ -1,7 +1,7 @@
-"""Control variates: what a correlated quantity of known mean says about an estimate.
+"""Control variates: an estimate corrected by a correlated quantity of known mean.
 
-The mean of n rows is corrected by the error that the same rows make on something cheap, whose mean
-many more rows tell: m - b (c_n - c_M).
+The mean of n rows is corrected by their error in a cheap quantity, whose mean is known from many
+more rows: m - b (c_n - c_M).
 """
 
 from typing import NamedTuple
@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 FEWEST = 5
-"""Hits, or misses, from which a control says more of a share than the rows themselves."""
+"""With fewer hits, or misses, a control does not improve a share."""
 
 _AGAINST = 5  # hits that count against a control
 _UPPER_TAIL = 0.5 + intervals.CONFIDENCE / 2
@@ -30,8 +30,8 @@ class Controlled(NamedTuple):
     ----------
     estimate : Estimate
     reduction : float
-        Variance of the plain estimate over that of this one: how many times more rows would have
-        done the same.
+        Variance of the plain estimate over that of this one: how many times more rows would be as
+        good.
     """
 
     estimate: Estimate
@@ -44,7 +44,7 @@ def controlled_mean(values: Floats, kept: Mask, controls: Floats, many: Floats) 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Of independent rows; only those kept are looked at.
+        Of independent rows; only those kept are used.
     kept : ndarray of bool, shape (n,)
         Where there is a value. The share of such rows is an estimate too: the mean is a ratio.
     controls : ndarray, shape (n, k)
@@ -82,19 +82,18 @@ def controlled_share(hits: Mask, kept: Mask, control: Floats, many: Floats) -> C
     Returns
     -------
     Controlled
-        The control counts where it exceeds what as many rows exceed as there are hits. The interval
-        is that of a share (`uq.intervals.binomial_interval`) for the number of independent plain
-        rows that would do as well. With fewer than `FEWEST` hits, or misses, nothing shows what the
-        control is worth: the plain rows alone count.
+        A hit of the control is a value beyond a limit that as many rows exceed as there are hits.
+        The interval is that of a share (`uq.intervals.binomial_interval`) for the equivalent number
+        of independent plain rows. With fewer than `FEWEST` hits, or misses, the value of the
+        control is unknown, and the estimate is that of the plain rows.
 
     Notes
     -----
     Half a row is added to each of the four cases (hit or not, control beyond or not) where the
     variance is estimated, as in [1]_ for two shares of the same rows: control and hits may agree in
-    every row by chance. What the control adds is counted as k/(k + 5) of what it seems to, k the
-    number of hits: it is seen in these alone. Measured with 300 rows, 5 to 18 hits expected and
-    correlations of 0.5 to 0.999, the intervals then hold the truth in 95 to 99 % of cases, without
-    it in 91 to 96 %.
+    every row by chance. The gain of the control, seen in the k hits alone, is reduced to k/(k + 5)
+    of its estimate. Measured with 300 rows, 5 to 18 hits expected and correlations of 0.5 to 0.999,
+    the intervals then cover the truth in 95 to 99 % of cases, without it in 91 to 96 %.
 
     References
     ----------
@@ -104,12 +103,10 @@ def controlled_share(hits: Mask, kept: Mask, control: Floats, many: Floats) -> C
     n, count = len(hits), int(hits[kept].sum())
     plain = float(hits[kept].mean())
     rarer = min(count, int(kept.sum()) - count)
-    if rarer < FEWEST:
-        return Controlled(Estimate(plain, *intervals.share_interval(hits[kept])), 1.0)
     known = ~np.isnan(control)
     oriented = _orientation(hits[kept & known], control[kept & known])
     beyond = _limit(oriented * control[known], count)
-    if beyond is None:
+    if rarer < FEWEST or beyond is None:
         return Controlled(Estimate(plain, *intervals.share_interval(hits[kept])), 1.0)
     here, there = (1.0 * (oriented * some > beyond) for some in (control, many))
     errors = np.where(kept, hits - plain, 0.0) / kept.mean()
@@ -132,7 +129,7 @@ def _orientation(hits: Mask, control: Floats) -> float:
 
 
 def _limit(control: Floats, count: int) -> float | None:
-    """Return what `count` values lie beyond, or None where none or all do."""
+    """Return the limit that `count` values exceed, or None where none or all do."""
     if not 0 < count < len(control):
         return None
     near = np.partition(control, (-count - 1, -count))[[-count - 1, -count]]
@@ -140,7 +137,7 @@ def _limit(control: Floats, count: int) -> float | None:
 
 
 def _regressed(errors: Floats, controls: Floats, weight: Floats, many: int) -> tuple[Floats, float]:
-    """Return the slope of errors on controls that is best for so many cheap rows, and its use.
+    """Return the best slope of errors on controls for `many` cheap rows, and the reduction.
 
     Variance n^-1 Var(e - b c) + M^-1 Var(b c) is least for the slope of regression times
     M/(n + M), and is then Var(e)/n times 1 - R^2 M/(n + M).

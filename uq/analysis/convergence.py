@@ -1,4 +1,4 @@
-"""Is it enough? Estimates as the rows came in, and the other errors beside that of sampling."""
+"""Convergence: estimates as the rows came in, and the error of sampling beside other errors."""
 
 from collections.abc import Iterator
 
@@ -22,7 +22,7 @@ _FEWEST = 16  # samples
 
 
 def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
-    """Estimate everything from the first samples of a result, ever more of them.
+    """Estimate everything from the first samples of a result, in increasing numbers.
 
     Parameters
     ----------
@@ -84,9 +84,10 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
         all of them had the same sign; ``warning``, not empty where `own` is the larger: then more
         rows do not help.
     """
-    found = summarise(ds).outputs
+    found, names = summarise(ds).outputs, output_names(ds)
+    plain = [name for name in names if name not in {error_name(one) for one in names}]
     lines = {}
-    for element in named_elements(ds, output) if output else elements_of(ds, list(_own(ds))):
+    for element in named_elements(ds, output) if output else elements_of(ds, plain):
         if element.name not in found:
             continue
         label, one = "mean", found[element.name].find("mean")
@@ -95,27 +96,18 @@ def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
         known = one is not None and one.estimate.has_interval
         sampling = (one.estimate.high - one.estimate.low) / 2 if one and known else np.nan
         own = _own_error(ds, element)
-        lines[element.name] = (label, sampling, own, _warning(element, sampling, own))
+        words = _WARNING.format(own=own, units=element.units, sampling=sampling)
+        lines[element.name] = (label, sampling, own, words if own > sampling else "")
     columns = ["estimate", "sampling", "own", "warning"]
     return pd.DataFrame(
         list(lines.values()), index=pd.Index(list(lines), name="output"), columns=columns
     )
 
 
-def _warning(element: Element, sampling: float, own: float) -> str:
-    if not own > sampling:
-        return ""
-    return (
-        f"the rows' own error ({own:.3g} {element.units}) is larger than that of sampling"
-        f" ({sampling:.3g}): more rows do not help, finer settings or longer averages do"
-    )
-
-
-def _own(ds: xr.Dataset) -> Iterator[str]:
-    """Yield the outputs that are not themselves the error of another."""
-    names = output_names(ds)
-    errors = {error_name(name) for name in names}
-    return (name for name in names if name not in errors)
+_WARNING = (
+    "the rows' own error ({own:.3g} {units}) is larger than that of sampling ({sampling:.3g}): more"
+    " rows do not help, finer settings or longer averages do"
+)
 
 
 def _own_error(ds: xr.Dataset, element: Element) -> float:
@@ -131,7 +123,7 @@ def _sizes(ds: xr.Dataset) -> list[int]:
     if not (DESIGNS[method].append_only or are_independent(ds)):
         able = " or ".join(f"'{name}'" for name, design in DESIGNS.items() if design.append_only)
         raise InputError(
-            f"the first rows of a '{method}' design are not a design of that kind, so there are no"
+            f"the first rows of a '{method}' design are not a smaller one, so there are no"
             f" estimates from fewer samples; the designs that can be extended are {able}"
         )
     sizes = [size]
@@ -147,7 +139,7 @@ def _targets(ds: xr.Dataset) -> list[str]:
 
 
 def _method(ds: xr.Dataset) -> str | None:
-    """Return the method whose indices are estimated from the first rows, if these are enough."""
+    """Return the method whose indices are estimated from the first rows, if they suffice."""
     groups = len(np.unique(ds["group"])) * ds.attrs["replicates"]
     name = piloted_by(DESIGNS[ds.attrs["design"]])
     return name if name and groups >= METHODS[name].least else None

@@ -1,8 +1,8 @@
-"""What failed rows leave open: bounds with these rows at best and at worst, beside each estimate.
+"""Bounds of an estimate with the failed rows at best and at worst.
 
-A row that failed has a value that is not known, and rows often fail where something happens: the
-others may be anything but a fair sample. A tolerance bound counts them as the worst on each side;
-so do these bounds.
+The value of a failed row is unknown, and failures are often related to the output: the other rows
+may not be representative. A tolerance bound counts failed rows as the worst on each side; so do
+these bounds.
 """
 
 from collections.abc import Callable
@@ -28,19 +28,19 @@ def with_failed_at(element: Element, value: float) -> Element:
 
 
 def bounded(of_magnitude: bool = False) -> Callable[[Maker], Maker]:
-    """Give the statistics that a maker yields their bounds where rows failed.
+    """Add bounds to the statistics of a maker where rows failed.
 
     Parameters
     ----------
     of_magnitude : bool
-        Whether they are of the magnitude of an angle.
+        Whether they describe the magnitude of an angle.
 
     Returns
     -------
     callable
         Maker -> maker. The bounds are the ends of the 95 % interval with all failed rows at the
-        lowest and at the highest value there may be, which for a lifetime are 0 and never; NaN
-        where they leave no bound.
+        lowest and at the highest possible value, for a lifetime 0 and never; NaN where there is no
+        bound.
     """
 
     def wrap(make: Maker) -> Maker:
@@ -50,14 +50,10 @@ def bounded(of_magnitude: bool = False) -> Callable[[Maker], Maker]:
             if not element.failed.any():
                 return found
             least = 0.0 if element.is_lifetime or of_magnitude and element.is_angle else -np.inf
-            is_life = element.is_lifetime
-            lowest = make(with_failed_at(element, least), context)
-            highest = make(with_failed_at(element, np.inf), context)
+            ends = (make(with_failed_at(element, end), context) for end in (least, np.inf))
             return [
-                _with_bounds(one, high, low, is_life)
-                if one.falls
-                else _with_bounds(one, low, high, is_life)
-                for one, low, high in zip(found, lowest, highest, strict=True)
+                _with_bounds(one, element.is_lifetime, *(both[::-1] if one.falls else both))
+                for one, *both in zip(found, *ends, strict=True)
             ]
 
         return made
@@ -65,16 +61,16 @@ def bounded(of_magnitude: bool = False) -> Callable[[Maker], Maker]:
     return wrap
 
 
-def _with_bounds(one: Statistic, lowest: Statistic, highest: Statistic, is_life: bool) -> Statistic:
+def _with_bounds(one: Statistic, is_life: bool, lowest: Statistic, highest: Statistic) -> Statistic:
     bounds = _bounds(one.estimate, lowest.estimate, highest.estimate, is_life)
     otherwise = one.otherwise
     if otherwise and lowest.otherwise and highest.otherwise:
-        otherwise = _with_bounds(otherwise, lowest.otherwise, highest.otherwise, is_life)
+        otherwise = _with_bounds(otherwise, is_life, lowest.otherwise, highest.otherwise)
     return replace(one, failed=bounds, otherwise=otherwise)
 
 
 def _bounds(plain: Estimate, lowest: Estimate, highest: Estimate, is_life: bool) -> Estimate:
-    """Return both bounds; of an estimate without interval the estimates themselves."""
+    """Return both bounds: for an estimate without interval, the estimates themselves."""
     alone = not _has_end(plain)
 
     def bound(which: str, one: Estimate) -> tuple[float, bool]:

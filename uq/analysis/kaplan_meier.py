@@ -1,4 +1,4 @@
-"""The share of lives that outlives each time, some of them censored and some never ending."""
+"""The share that outlives each time, of lives some of which are censored or never end."""
 
 from typing import NamedTuple
 
@@ -39,12 +39,12 @@ def outliving(values: Floats, censored: Mask, time: Floats, known_at_once: bool)
     Notes
     -----
     With p the share of the n rows that end, and S the estimate of Kaplan and Meier among these,
-    the share that outlives t is 1 - p + p S(t). Given how many rows end, S has no bias worth the
-    name, so that the errors of p and S are uncorrelated, and the variance is
+    the share that outlives t is 1 - p + p S(t). Given how many rows end, the bias of S is
+    negligible, so that the errors of p and S are uncorrelated, and the variance is
     (1 - S)^2 p (1 - p) / n + p^2 Var(S), with Greenwood's Var(S). Without censored rows that is
     the variance of the share of all rows, F (1 - F) / n with F = p (1 - S).
 
-    Where never is learnt late, a row that never ends is at risk until the last time: p is 1.
+    Otherwise a row that never ends is at risk until the last time: p is 1.
     """
     never = np.isposinf(values)
     if not known_at_once:
@@ -59,14 +59,14 @@ def outliving(values: Floats, censored: Mask, time: Floats, known_at_once: bool)
 def kaplan_meier(values: Floats, censored: Mask, time: Floats) -> Outliving:
     """Return Kaplan and Meier's estimate from finite values, with Greenwood's variance.
 
-    scipy's ``ecdf`` has the first, but gives the second within its own intervals alone.
+    scipy's ``ecdf`` gives the first, but the second only within its own intervals.
     """
     ends, count = np.unique(values[~censored], return_counts=True)
     at_risk = len(values) - np.searchsorted(np.sort(values), ends)
     share = np.cumprod((at_risk - count) / at_risk)
     with np.errstate(divide="ignore", invalid="ignore"):
         variance = share**2 * np.cumsum(count / (at_risk * (at_risk - count)))
-    # All have ended: certain of these rows, unless some were lost from sight before.
+    # All have ended: certain for these rows, unless some were censored before.
     variance[share == 0] = np.nan if censored.any() else 0.0
     place = np.searchsorted(ends, time, side="right")
     return Outliving(np.append(1.0, share)[place], np.append(0.0, variance)[place])

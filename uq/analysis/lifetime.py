@@ -1,4 +1,4 @@
-"""Lifetimes: the share of rows that outlives each time."""
+"""Lifetimes: the probability of a longer life than each time."""
 
 from typing import Any, NamedTuple
 
@@ -29,14 +29,13 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     -------
     xarray.Dataset
         Dimensions: those of the output, and ``time`` [s], every time at which a row ended or was
-        last seen. ``survival``: the estimate of Kaplan and Meier. Where the output declares that a
+        censored. ``survival``: the estimate of Kaplan and Meier. Where the output declares that a
         life that never ends is known at once, it is that of the rows that end, times their share,
         plus the share that never does. ``low``, ``high``: its pointwise 95 % interval, for
         independent rows by the exponential Greenwood formula [1]_, else from the replicates; NaN
-        where nothing can be said. ``band_low``, ``band_high``: a 95 % band that holds the whole
-        curve, of independent rows only; see the attribute ``band``. ``never``: the share of rows
-        known never to end. Counts: ``rows``, ``censored``, and ``undefined`` and ``failed``, which
-        take no part.
+        where unknown. ``band_low``, ``band_high``: a simultaneous 95 % band, for independent rows
+        only; see the attribute ``band``. ``never``: the share of rows known never to end. Counts:
+        ``rows``, ``censored``, and ``undefined`` and ``failed``, which are excluded.
 
     Raises
     ------
@@ -81,10 +80,10 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
 
 
 BAND = (
-    "holds the whole curve with 95 % confidence: Kolmogorov's without censored rows, else Hall and"
+    "covers the whole curve with 95 % confidence: Kolmogorov's without censored rows, else Hall and"
     " Wellner's, which ends where fewer than 10 rows are at risk"
 )
-NO_BAND = "none: a band for a whole curve takes independent rows"
+NO_BAND = "none: a simultaneous band needs independent rows"
 
 _MEANINGS = {
     "survival": "probability of a longer life",
@@ -94,8 +93,8 @@ _MEANINGS = {
     "band_high": "upper end of the simultaneous 95 % band",
     "never": "share of rows that never end",
     "rows": "number of rows with a lifetime",
-    "censored": "number of rows of which only a lower bound is known",
-    "undefined": "number of rows whose lifetime has no meaning",
+    "censored": "number of rows with a lower bound only",
+    "undefined": "number of rows with an undefined lifetime",
     "failed": "number of rows that failed",
     "failed_low": "lower end of the pointwise 95 % interval if the failed rows had ended at once",
     "failed_high": "upper end of the pointwise 95 % interval if the failed rows never ended",
@@ -176,8 +175,8 @@ _FEW_ENDS = 4
 def _greenwood(estimate: Outliving) -> Ends:
     """Return the interval that is symmetric about the logarithm of -log(share).
 
-    Where few rows have ended, or are left, it is exact for a share that is known as well: there it
-    misses on one side in up to 13 % of samples.
+    Where few rows have ended, or are left, it is replaced by the exact interval of a share known as
+    well: there it misses on one side in up to 13 % of samples.
     """
     share, deviation = estimate.share, np.sqrt(estimate.variance)
     with np.errstate(divide="ignore", invalid="ignore"):

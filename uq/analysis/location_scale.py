@@ -2,7 +2,7 @@
 
 The logarithm of such a life is m + s w with w of a known law (the smallest extreme value, the
 normal one). In a = m/s and b = 1/s the likelihood is concave [1]_, so that Newton's method finds
-its one maximum. scipy fits one sample at a time, too slowly for the thousand refits of a bootstrap.
+its only maximum. scipy fits one sample at a time, too slowly for the refits of a bootstrap.
 
 References
 ----------
@@ -73,7 +73,7 @@ def fit(family: Family, x: Floats, ended: Mask) -> tuple[Floats, Floats]:
     Returns
     -------
     location, scale : ndarray, shape (k,)
-        NaN where Newton's method did not settle.
+        NaN where Newton's method did not converge.
     """
     centre, spread = x.mean(axis=1, keepdims=True), x.std(axis=1, keepdims=True)
     z = (x - centre) / spread
@@ -88,19 +88,18 @@ def fit(family: Family, x: Floats, ended: Mask) -> tuple[Floats, Floats]:
         determinant = aa * bb - ab**2
         step_a = -(bb * by_a - ab * by_b) / determinant
         step_b = -(aa * by_b - ab * by_a) / determinant
-        # Far from the maximum a whole step may overshoot into where exp(w) has no bounds.
+        # Far from the maximum a full step may overshoot to where exp(w) overflows.
         shorter = 1 / np.maximum(1, np.maximum(np.abs(step_a), 2 * np.abs(step_b) / b))
         a, b = a + shorter * step_a, b + shorter * step_b
         change = np.maximum(np.abs(step_a), np.abs(step_b) / b)
         if (change < _CLOSE).all():
             break
-    settled = change < _CLOSE
-    scale = np.where(settled, spread[:, 0] / b, np.nan)
+    scale = np.where(change < _CLOSE, spread[:, 0] / b, np.nan)
     return centre[:, 0] + scale * a, scale
 
 
 def anderson_darling(share: Floats, ended: Mask) -> Floats:
-    """Return how far the estimate of Kaplan and Meier lies from a law, tails included.
+    """Return the distance of the estimate of Kaplan and Meier from a law, tails included.
 
     Parameters
     ----------
@@ -132,5 +131,5 @@ def anderson_darling(share: Floats, ended: Mask) -> Floats:
 
     total = (integral(u) - integral(start)).sum(axis=1)
     last = u[:, -1]
-    # Beyond the last row F_n is 1 if that row ended; else it is not known, and nothing is added.
+    # Beyond the last row F_n is 1 if that row ended; else it is unknown, and nothing is added.
     return n * (total + np.where(ended[:, -1], -np.log(last) - (1 - last), 0.0))

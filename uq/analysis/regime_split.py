@@ -9,7 +9,7 @@ from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Replicates, scatter_interv
 from uq.tails import lacks_variance
 
 MIN_IN_REGIME = 2
-"""A regime with fewer rows has no variance of its own: it is left out."""
+"""A regime with fewer rows has no variance of its own, and is skipped."""
 
 
 def between_share(
@@ -28,12 +28,11 @@ def between_share(
     Returns
     -------
     Estimate
-        The correlation ratio; for independent rows less what chance makes of it (epsilon squared
-        [1]_). NaN where no two regimes have rows enough, or all values are the same,
-        or their tail is too heavy for a variance. Its interval is for independent rows by the
-        normal law of the estimate's influence function, and unknown
-        where an F-test finds no difference between the regimes: there the estimate has no normal
-        law. For replicates from their scatter.
+        The correlation ratio; for independent rows corrected for chance (epsilon squared [1]_). NaN
+        where fewer than two regimes have enough rows, all values are equal, or their tail is too
+        heavy for a variance. Its interval is, for independent rows, by the normal law of the
+        estimate's influence function, and unknown where an F-test finds no difference between the
+        regimes: there the estimate has no normal law. For replicates it is from their scatter.
 
     References
     ----------
@@ -70,7 +69,7 @@ def _independent(
         statistic = ratio / freedom[0] / ((1 - ratio) / freedom[1])
     if not half > 0 or stats.f.sf(statistic, *freedom) > 1 - CONFIDENCE:
         return value, np.nan, np.nan
-    # Fisher's transformation of the root, in which the estimate is as good as normal.
+    # Fisher's transformation of the root, in which the estimate is nearly normal.
     root = np.sqrt(value)
     wide = half / (2 * root * (1 - value))
     low, high = (np.tanh(np.arctanh(root) + side * wide) for side in (-1, 1))

@@ -1,4 +1,4 @@
-"""What tells the regimes of a result apart: inputs, outputs, and the variance between them."""
+"""The regimes of a result compared: inputs, outputs, and the variance between them."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -43,11 +43,11 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
         ``share_high``. Over ``regime`` and ``parameter``: ``input_quantile``, at each
         ``probability``, of the inputs of the rows in it (NaN where they do not reach it);
         ``distance``, of Kolmogorov and Smirnov, between these and the inputs of all other rows, and
-        ``distance_dummy``, the largest for inputs that play no part; NaN where one side has too few
-        rows. Over ``output`` and ``regime``: ``rows``, ``mean``, ``sd`` (NaN where too heavy a tail
-        has none). Over ``output``: ``between``, the share of its variance that lies between
-        regimes, with ``between_low`` and ``between_high``. Lifetimes stand as their logarithms, or
-        as their ranks where rows never end or are censored.
+        ``distance_dummy``, the largest for inputs without effect; NaN where one side has too few
+        rows. Over ``output`` and ``regime``: ``rows``, ``mean``, ``sd`` (NaN where the tail is too
+        heavy). Over ``output``: ``between``, the share of its variance that lies between
+        regimes, with ``between_low`` and ``between_high``. Lifetimes are replaced by their
+        logarithms, or by their ranks where rows never end or are censored.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def _numbers(rows: xr.Dataset) -> Iterator[Target]:
 
 
 def _distances(inputs: dict[str, Floats], target: Target) -> list[float]:
-    """Return the distance of each input, and the largest of inputs that play no part."""
+    """Return the distance of each input, and the largest of inputs without effect."""
     try:
         found = METHODS["regional"].indices(Sample.plain(target.values, inputs))
     except RefusedError:

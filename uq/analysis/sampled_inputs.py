@@ -1,4 +1,4 @@
-"""What the rows of a design make of the laws and rank correlations that were stated."""
+"""The laws and rank correlations of the inputs, as stated and as the rows have them."""
 
 from math import inf
 from typing import NamedTuple
@@ -18,10 +18,10 @@ from uq.study.input_checks import laws_of
 PROBABILITIES = (0.05, 0.5, 0.95)
 
 MAX_ROWS = 100_000
-"""Rows of a study that are drawn to see what becomes of its laws."""
+"""Rows of a study that are drawn for comparison with its laws."""
 
 EVERYWHERE = (-inf, inf)
-"""Bounds of a parameter cut off a millionth at most, which no table shows."""
+"""Bounds of a parameter cut off at most a millionth, which is negligible."""
 
 
 class SampledInput(NamedTuple):
@@ -122,7 +122,7 @@ def laws_and_values(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
     Returns
     -------
     dict of str to tuple of Law and ndarray
-        Of a parameter that is another times a factor, both of the factor.
+        For a parameter that is another times a factor, those of the factor.
     """
     plain = independent_rows(ds)
     if plain.sizes["sample"] == 0:

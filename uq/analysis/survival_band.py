@@ -1,4 +1,4 @@
-"""A band that holds a whole survival curve, beside the interval that holds one point of it."""
+"""A simultaneous confidence band of a survival curve."""
 
 import numpy as np
 from scipy import stats
@@ -12,10 +12,10 @@ POINTS = 500
 """Times at which they are drawn, spread evenly over the ends."""
 
 FEW_ENDS = 0.35
-"""The limiting law is too narrow: measured, by about this over the root of the number of ends."""
+"""The limiting law is too narrow by about this over the root of the number of ends (measured)."""
 
 AT_RISK = 10
-"""The band ends where fewer rows are at risk: the limiting law says little of so few."""
+"""The band ends where fewer rows are at risk: the limiting law does not hold for so few."""
 
 
 def simultaneous_band(
@@ -32,7 +32,7 @@ def simultaneous_band(
     Parameters
     ----------
     ending : float
-        Share p of the rows that end.
+        Share p of rows that end.
     among : ndarray, shape (k,)
         Kaplan and Meier's estimate S among these, at times that ascend.
     deviation : ndarray, shape (k,)
@@ -42,9 +42,9 @@ def simultaneous_band(
     rows : int
         All of them, independent.
     ended : int
-        Rows of which it is known when they ended.
+        Rows whose end is known.
     complete : bool
-        Whether it is known of all rows when, or that they never do.
+        Whether no row is censored.
 
     Returns
     -------

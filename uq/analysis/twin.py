@@ -1,6 +1,6 @@
-"""Two fidelities: the rows of a result, and many more of a cheap twin of the same model.
+"""Two fidelities: the rows of a result, and many more rows of a cheap twin of the same model.
 
-The twin is an output that the model can compute alone, or the same outputs under settings that make
+The twin is an output that the model can compute alone, or the same outputs with settings that make
 a row cheap, such as fewer modes.
 """
 
@@ -49,10 +49,10 @@ class Sharpened:
     ----------
     estimate : Estimate
         By control variates.
+    reduction : float
+        Variance of the plain estimate over that of this one.
     plain : Estimate
         From the rows of the result alone.
-    reduction : float
-        Variance of the plain estimate over that of the other.
     failed : Estimate, optional
         Ends of the plain interval with the failed rows at best and at worst, where rows failed.
     note : str
@@ -60,8 +60,8 @@ class Sharpened:
     """
 
     estimate: Estimate
-    plain: Estimate
     reduction: float
+    plain: Estimate
     failed: Estimate | None = None
     note: str = ""
 
@@ -120,7 +120,7 @@ def two_fidelities(ds: xr.Dataset, model: str | None = None) -> pd.DataFrame:
 
 
 def with_twin(ds: xr.Dataset, model: str | None = None) -> TwoFidelities:
-    """Return what `two_fidelities` makes a table of."""
+    """Return the estimates of `two_fidelities` as records."""
     study = study_from_text(ds.attrs["study"], "study of this result", model)
     twin = study.analysis.twin
     if not twin:
@@ -155,23 +155,17 @@ def _estimates(
         alone = moments(element.values[present]).mean
         if not alone.reason:
             found = controlled_mean(element.values, present, *map(_filled, (control, many)))
-            yield "mean", Sharpened(found.estimate, alone, found.reduction)
+            yield "mean", Sharpened(*found, alone)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         sides = event(element, threshold)
         if sides is None or not kept.any():
             continue
         for sign, hits in zip("><", sides, strict=True):
             found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
-            yield (
-                f"P({sign}{threshold!r})",
-                Sharpened(
-                    found.estimate,
-                    Estimate(float(hits[kept].mean()), *share_interval(hits[kept])),
-                    found.reduction,
-                    failed_share_bounds(hits, element.failed, None),
-                    _note_on_few(int(hits[kept].sum()), int(kept.sum())),
-                ),
-            )
+            plain = Estimate(float(hits[kept].mean()), *share_interval(hits[kept]))
+            failed = failed_share_bounds(hits, element.failed, None)
+            note = _note_on_few(int(hits[kept].sum()), int(kept.sum()))
+            yield f"P({sign}{threshold!r})", Sharpened(*found, plain, failed, note)
 
 
 def _note_on_few(hits: int, rows: int) -> str:
@@ -188,7 +182,7 @@ def _note_on_few(hits: int, rows: int) -> str:
 
 
 def _filled(control: Element) -> Floats:
-    """Return what a mean is controlled by, (n, 2): the value, and where there is none."""
+    """Return the controls of a mean, (n, 2): the value, and whether there is none."""
     finite = np.isfinite(control.values)
     return np.stack([np.where(finite, control.values, 0.0), ~finite], axis=1)
 
@@ -202,7 +196,7 @@ def _here(study: Study, ds: xr.Dataset) -> list[Element]:
 
 
 def _many(study: Study, start: int) -> list[Element]:
-    """Return the twin of the rows that would come next in the study: independent of all others."""
+    """Return the twin of the rows that come next in the study, independent of all others."""
     per_row = PER_ROW if isinstance(study.analysis.twin, str) else PER_ROW_OF_SETTINGS
     wanted = min(per_row * start, MOST_ROWS)
     per_sample = rows(study) // study.design.samples

@@ -1,7 +1,7 @@
-"""How wide the intervals of a study will be, from a few of its rows.
+"""The expected width of the intervals of a study, from a few of its rows.
 
-By the spread of independent rows. Intervals from replicates scatter, and good designs make them
-narrower than that: for these the width is about the most to be expected.
+From the spread of independent rows. Intervals from replicates scatter, and good designs make them
+narrower: for these the width is about the largest to expect.
 """
 
 from collections.abc import Mapping
@@ -14,7 +14,6 @@ from scipy import stats
 
 from uq.designs.registry import DESIGNS
 from uq.indices.targets import lightened, number_of
-from uq.methods.indices import Kind
 from uq.methods.method import Method
 from uq.methods.registry import METHODS, piloted_by
 from uq.methods.sample import Sample
@@ -37,7 +36,7 @@ _LEVEL = 0.975
 
 @dataclass(frozen=True)
 class Widths:
-    """Widths of the 95 % intervals of an element of an output; None where the pilot cannot tell.
+    """Widths of the 95 % intervals of an element of an output; None where the pilot is too small.
 
     Attributes
     ----------
@@ -80,20 +79,19 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
     groups = _groups(pilot, len(labels))
     method = piloted_by(DESIGNS[pilot.attrs["design"]])
     found = {}
+    outputs = shown_outputs(pilot, analysis)
     for whole, element in zip(
-        elements_of(pilot, shown_outputs(pilot, analysis)),
-        elements_of(independent_rows(pilot), shown_outputs(pilot, analysis)),
-        strict=True,
+        elements_of(pilot, outputs), elements_of(independent_rows(pilot), outputs), strict=True
     ):
+        own = factor if len(element.at_least) >= _ENOUGH_ROWS else None
+        limits = analysis.thresholds.get(element.output, ())
+        sample = Sample(lightened(number_of(whole)).values, {}, groups[None], tuple(labels))
         found[element.name] = Widths(
             units=element.units,
-            mean=_mean(element, rows, factor),
-            quantiles={p: _quantile(element.at_least, p, rows, factor) for p in analysis.quantiles},
-            thresholds={
-                t: _share(element, t, rows, factor)
-                for t in analysis.thresholds.get(element.output, ())
-            },
-            indices=_indices(whole, method, groups, labels, samples * replicates, factor)
+            mean=_mean(element, rows, own),
+            quantiles={p: _quantile(element.at_least, p, rows, own) for p in analysis.quantiles},
+            thresholds={t: _share(element, t, rows, own) for t in limits},
+            indices=_indices(sample, METHODS[method], samples * replicates, factor)
             if method
             else {},
         )
@@ -110,18 +108,18 @@ def _factor(independent: bool, replicates: int) -> float | None:
 def _mean(element: Element, rows: int, factor: float | None) -> float | None:
     values = element.at_least
     unbounded = element.never.any() or element.censored.any()
-    if factor is None or unbounded or len(values) < _ENOUGH_ROWS or lacks_variance(values):
+    if factor is None or unbounded or lacks_variance(values):
         return None
     return float(2 * factor * values.std(ddof=1) / np.sqrt(rows))
 
 
 def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> float | None:
-    if factor is None or len(values) < _ENOUGH_ROWS or not is_within(p, rows):
+    if factor is None or not is_within(p, rows):
         return None
     m = len(values)
     spread = np.sqrt(p * (1 - p))
     half = factor * spread / np.sqrt(rows)
-    # Neighbours in the pilot are too few to tell a slope; what is rarer than a row it cannot know.
+    # Too few neighbours in the pilot for a slope; what is rarer than one row is unknown.
     reach = min(max(half, 2 * spread / np.sqrt(m)), p - 1 / (m + 1), m / (m + 1) - p)
     if reach < half:
         return None
@@ -131,10 +129,10 @@ def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> floa
 
 
 def _share(element: Element, threshold: float, rows: int, factor: float | None) -> float | None:
-    values = element.for_thresholds[element.present]
-    if factor is None or len(values) < _ENOUGH_ROWS:
+    if factor is None:
         return None
-    # As with two more rows on each side: a pilot without a hit does not prove that there is none.
+    values = element.for_thresholds[element.present]
+    # Two more rows on each side: a pilot without a hit does not prove that there is none.
     p = (np.count_nonzero(values > threshold) + 2) / (len(values) + 4)
     return float(2 * factor * np.sqrt(p * (1 - p) / rows))
 
@@ -146,33 +144,16 @@ def _groups(pilot: xr.Dataset, blocks: int) -> NDArray[np.intp]:
 
 
 def _indices(
-    element: Element,
-    method: str,
-    groups: NDArray[np.intp],
-    labels: list[str],
-    n: int,
-    factor: float | None,
+    sample: Sample, method: Method, groups: int, factor: float | None
 ) -> dict[str, float | None]:
     """Return the widest interval of each kind of index, as of independent groups."""
-    target = lightened(number_of(element))
-    own = Sample(target.values, {}, groups[None], tuple(labels))
-    spreads = {} if target.refused else _spreads(METHODS[method], own)
+    whole = sample.grouped[sample.whole]
+    enough = factor is not None and len(whole) >= _ENOUGH_ROWS and whole.std() > 0
+    spreads = method.pilot(sample) if enough and method.pilot else {}
     return {
-        kind.key: _index(spreads.get(kind), n, factor)
-        for kind in METHODS[method].kinds
+        kind.key: float(2 * factor * spreads[kind] / np.sqrt(groups))
+        if factor is not None and kind in spreads
+        else None
+        for kind in method.kinds
         if not kind.of_pairs
     }
-
-
-def _spreads(method: Method, sample: Sample) -> dict[Kind, float]:
-    """Return what a few groups tell of each kind of index; nothing where they are too few."""
-    whole = sample.values[sample.groups][sample.whole]
-    enough = len(whole) >= _ENOUGH_ROWS and whole.std() > 0
-    return method.pilot(sample) if enough and method.pilot else {}
-
-
-def _index(spread: float | None, groups: int, factor: float | None) -> float | None:
-    """Return the widest interval of a kind of index, as of independent groups."""
-    if spread is None or factor is None:
-        return None
-    return float(2 * factor * spread / np.sqrt(groups))

@@ -33,7 +33,7 @@ from uq.drawing.panel import figure_of, grid, legend
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.methods.indices import RefusedError
-from uq.methods.regional import ks_distances
+from uq.methods.measures import ks_distances
 from uq.rows.elements import Element, Floats, independent_rows, named_elements, replicates_of
 from uq.tails import lacks_variance
 

@@ -5,15 +5,8 @@ from collections.abc import Sequence
 import xarray as xr
 
 from uq.errors import InputError, nearest
-from uq.indices.targets import (
-    Target,
-    all_targets,
-    category_targets,
-    lightened,
-    split_name,
-    targets,
-    with_tail_note,
-)
+from uq.indices import targets
+from uq.indices.targets import Target, category_targets, lightened, split_name, with_tail_note
 from uq.methods.registry import METHODS
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.variables import is_category
@@ -28,12 +21,12 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> l
         A result.
     method : str
     output : str or sequence of str, optional
-        Names; by default all that suit the method, of the outputs that the study wants to see.
+        Names; by default all that suit the method, of the outputs that the study asks for.
 
     Returns
     -------
     list of Target
-        Of several names those are left out that mean nothing here.
+        Of several names, unknown ones are skipped.
 
     Raises
     ------
@@ -68,7 +61,7 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> l
 
 
 def _named(ds: xr.Dataset, name: str) -> list[Target]:
-    """Return the targets that a user means by a name; none where it means nothing."""
+    """Return the targets that a user means by a name; none for an unknown name."""
     form, inside, _ = split_name(name)
     found = _targets(ds, _output_in(inside), every=True)
     if form:
@@ -87,5 +80,4 @@ def _targets(ds: xr.Dataset, name: str, every: bool = False) -> list[Target]:
     if is_category(ds, name) and ds[name].ndim == 1:
         return list(category_targets(ds, name))
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
-    make = all_targets if every else targets
-    return list(make(known, analysis_of(ds).thresholds))
+    return list(targets.targets(known, analysis_of(ds).thresholds, every))

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq.estimate import NOTHING, Estimate
-from uq.indices.sensitivities import TargetIndices, sensitivities
-from uq.methods.indices import Kind, Null
+from uq.estimate import NOTHING
+from uq.indices.sensitivities import sensitivities
+from uq.methods.indices import Null
 
 
 def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
@@ -42,16 +42,17 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
     found = sensitivities(ds, method)
     targets = list(found.targets.values())
     data: dict[str, Any] = {
-        "groups_dropped": ("output", [one.groups_dropped for one in targets]),
-        "refused": ("output", [one.refused for one in targets]),
+        name: ("output", [getattr(one, name) for one in targets])
+        for name in ("groups_dropped", "refused")
     }
     coords: dict[str, Any] = {"output": list(found.targets)}
-    # Those of a quantile have other names for a lifetime.
+    # The indices of quantiles have other names for a lifetime.
     kinds = {kind: list(own) for one in targets for kind, own in one.indices.values.items()}
     for kind, labels in kinds.items():
         dim = "pair" if kind.of_pairs else "parameter"
         coords[dim] = labels
-        table = [[_index(one, kind, label).numbers for label in labels] for one in targets]
+        own = [one.indices.values.get(kind, {}) for one in targets]
+        table = [[one.get(label, NOTHING).numbers for label in labels] for one in own]
         for end, numbers in zip(_ENDS, np.moveaxis(np.array(table), -1, 0), strict=True):
             data[f"{kind.key}{end}"] = (("output", dim), numbers)
     if any(one.indices.noise for one in targets):
@@ -67,7 +68,3 @@ def sensitivity(ds: xr.Dataset, method: str | None = None) -> xr.Dataset:
 
 
 _ENDS = ("", "_low", "_high")
-
-
-def _index(one: TargetIndices, kind: Kind, label: str) -> Estimate:
-    return one.indices.values.get(kind, {}).get(label, NOTHING)

@@ -1,4 +1,4 @@
-"""Events that happen in few rows: when their indices are refused, or come with a warning."""
+"""Events with few hits: when their indices are refused, or come with a warning."""
 
 import numpy as np
 import xarray as xr
@@ -8,14 +8,14 @@ from uq.methods.indices import RefusedError
 from uq.rows.elements import independent_rows, why_no_statistics
 
 FEWEST_HITS = 5
-"""Fewer in each replicate give no indices of an event."""
+"""With fewer in each replicate an event has no indices."""
 
 ENOUGH_HITS = 20
-"""With fewer in each replicate the indices are given with a warning."""
+"""With fewer in each replicate the indices come with a warning."""
 
 
 def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
-    """Return the warning for an event with few hits, or misses; any two values are an event.
+    """Return the warning for an event with few hits or misses; any two values are an event.
 
     Parameters
     ----------
@@ -35,14 +35,13 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
     """
     values, replicates = target.values, int(ds.attrs.get("replicates", 1))
     if not why_no_statistics(ds):
-        chosen = np.arange(ds.sizes["sample"])
-        values = values[independent_rows(ds.assign(place=("sample", chosen)))["place"].values]
+        values = independent_rows(ds.assign(hit=("sample", values)))["hit"].values
     known = values[np.isfinite(values)]
     hits = known > known.min(initial=np.inf)
     rarer = int(min(hits.sum(), (~hits).sum()))
     two_values = target.event or bool((known[hits] == known.max(initial=-np.inf)).all())
     if not two_values or not 0 < rarer < ENOUGH_HITS * replicates:
-        return ()  # with none the methods refuse themselves
+        return ()  # without any the method refuses
     side = "hits" if rarer == hits.sum() else "misses"
     each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
     more = ENOUGH_HITS * replicates / rarer

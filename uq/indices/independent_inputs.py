@@ -1,13 +1,12 @@
-"""The inputs of a result that vary on their own, each a column of its design."""
+"""The inputs of a result with a law of their own, each a column of its design."""
 
 import xarray as xr
 
 from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import factor_of
-from uq.rows.elements import Floats
+from uq.rows.elements import Floats, study_file_of
 from uq.study.file import Tied
 from uq.study.input_checks import laws_of
-from uq.study.reading import read_study_text
 
 
 def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
@@ -21,8 +20,8 @@ def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
     Returns
     -------
     dict of str to ndarray, shape (n,)
-        Without parameters that equal another; of one that is another times a factor, the factor.
-        Inputs with rank correlations are there all the same.
+        Without parameters that equal another; for one that is another times a factor, the factor.
+        With inputs that have rank correlations.
     """
     return {
         name: ds[name].values
@@ -33,8 +32,8 @@ def independent_inputs(ds: xr.Dataset) -> dict[str, Floats]:
 
 
 def why_dependent(ds: xr.Dataset) -> str:
-    """Return a clause that says why inputs cannot be taken for independent, or ""."""
-    study = read_study_text(ds.attrs["study"], "study of this result")
+    """Return a clause on why inputs are not assumed to be independent, or ""."""
+    study = study_file_of(ds)
     if study.dependence is not None:
         return "the inputs of this study depend on each other"
     if DESIGNS[study.design.method].imported and not study.design.independent:
@@ -43,14 +42,15 @@ def why_dependent(ds: xr.Dataset) -> str:
 
 
 def notes_on_inputs(ds: xr.Dataset) -> list[str]:
-    """Return sentences on what stands for what among the inputs of a result."""
-    entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
+    """Return sentences on what the indices of tied or dependent inputs mean."""
     notes = []
-    for name, entry in entries.items():
+    for name, entry in study_file_of(ds).uncertain.items():
         if isinstance(entry, Tied):
-            notes.append(f"{name} equals {entry.equals}: the index of {entry.equals} is of both")
+            notes.append(
+                f"{name} equals {entry.equals}: the index of {entry.equals} is that of both"
+            )
         elif entry.times is not None:
-            notes.append(f"{name} is {entry.times} times a factor: its index is of the factor")
+            notes.append(f"{name} is {entry.times} times a factor: its index is that of the factor")
     if why := why_dependent(ds):
-        notes.append(f"{why}: an input may owe its index to another")
+        notes.append(f"{why}: the index of an input may be due to another")
     return notes

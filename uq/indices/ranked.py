@@ -1,4 +1,4 @@
-"""The indices of a target as the lines of a table, which inputs without effect end."""
+"""The indices of a target as the lines of a table that ends with inputs without effect."""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -27,7 +27,7 @@ def lines(values: Values, nulls: Mapping[Kind, Null]) -> list[tuple[str, list[Es
     ----------
     values : dict of Kind to dict
     nulls : dict of Kind to Null
-        What inputs without effect reach; for pairs nothing is known of it.
+        What inputs without effect reach; not known for pairs.
 
     Returns
     -------

@@ -1,4 +1,9 @@
-"""The sample that a sensitivity method works on: where the rows of its design stand in a result."""
+"""The sample that a sensitivity method works on: the place of each row of its design in a result.
+
+The rows themselves do not show which input changes from row to row of a group: a factor recovered
+from a product is rounded, and seems to change where only what it multiplies does; a discrete input
+may keep its value in its own step. Therefore the points of the design are drawn once more.
+"""
 
 from dataclasses import replace
 
@@ -10,9 +15,9 @@ from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
-from uq.indices.steps import directions
 from uq.methods.sample import Sample
-from uq.rows.elements import flags
+from uq.rows.elements import Floats, flags, study_file_of
+from uq.study.file import Tied
 
 
 def sample_of(ds: xr.Dataset) -> Sample:
@@ -42,7 +47,7 @@ def sample_of(ds: xr.Dataset) -> Sample:
         sample,
         groups=groups.transpose(0, 2, 1) if layout.by_block else groups,
         blocks=blocks,
-        direction=directions(ds, groups) if layout.one_at_a_time else np.empty(0),
+        direction=_directions(ds, groups) if layout.one_at_a_time else np.empty(0),
     )
 
 
@@ -58,3 +63,46 @@ def _grouped_rows(ds: xr.Dataset) -> tuple[NDArray[np.intp], tuple[str, ...]]:
             order = order.reshape(ds.attrs["replicates"], -1, len(labels))
             return order, tuple(label for _, label in labels)
     raise InputError("rows of the design are missing: its indices need whole groups")
+
+
+def _directions(ds: xr.Dataset, order: NDArray[np.intp]) -> Floats:
+    """Return the steps of a design in which one input changes at a time: `Sample.direction`.
+
+    Raises
+    ------
+    InputError
+        When the rows are not those of the design.
+    """
+    entries = study_file_of(ds).uncertain
+    scales = {name: e.times for name, e in entries.items() if not isinstance(e, Tied)}
+    parameters = list(scales)
+    direction = np.sign(np.diff(_unit(ds, order, len(parameters)), axis=2))
+    changing = direction != 0
+    sound = bool((changing.sum(axis=-1) == 1).all())
+    for own, (name, times) in enumerate(scales.items()):
+        values = ds[name].values[order]
+        still = ~(changing[..., own] | changing[..., parameters.index(times or name)])
+        sound &= bool((values[..., 1:] == values[..., :-1])[still].all())
+    if not sound:
+        raise InputError(
+            f"the rows differ from those of a '{ds.attrs['design']}' design as it is drawn now, so"
+            " the effect of an input cannot be determined: run the study again"
+        )
+    return np.asarray(direction)
+
+
+def _unit(ds: xr.Dataset, order: NDArray[np.intp], d: int) -> Floats:
+    """Draw the points of the unit cube that the rows come from, shape (*order.shape, d)."""
+    first = order[..., 0]
+    group, replicate = ds["group"].values[first], ds["replicate"].values[first]
+    start = int(group.min())
+    points = DESIGNS[ds.attrs["design"]].unit_rows(
+        seed=int(ds.attrs["seed"]),
+        replicates=int(ds.attrs["replicates"]),
+        d=d,
+        samples=int(ds.attrs["samples"]),
+        second_order=bool(ds.attrs["second_order"]),
+        start=start,
+        stop=int(group.max()) + 1,
+    )
+    return points[group - start, replicate]

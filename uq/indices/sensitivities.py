@@ -1,4 +1,4 @@
-"""Which inputs an output's scatter comes from: every method, for a result as a whole."""
+"""Which inputs explain the scatter of an output: every method, for a whole result."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,6 +16,7 @@ from uq.indices.independent_inputs import notes_on_inputs, why_dependent
 from uq.indices.samples import sample_of
 from uq.indices.targets import Target
 from uq.methods.indices import Indices, Kind, RefusedError
+from uq.methods.method import Method
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.methods.sample import Sample
 from uq.rows.elements import analysis_of
@@ -25,7 +26,7 @@ from uq.tails import lacks_variance
 
 @dataclass(frozen=True)
 class TargetIndices:
-    """What became of a target.
+    """The indices of a target, or the reason why it has none.
 
     Attributes
     ----------
@@ -70,9 +71,9 @@ class Sensitivities:
 
 
 def methods(ds: xr.Dataset, dependent: bool | None = None) -> tuple[str, ...]:
-    """Return the methods that the study asks for, or else the first that its design can feed.
+    """Return the methods that the study asks for, or else the default of its design.
 
-    Of dependent inputs, one that does not assume them to be independent.
+    For dependent inputs, one that does not assume independence.
     """
     dependent = bool(why_dependent(ds)) if dependent is None else dependent
     feeds = fed_by(DESIGNS[ds.attrs["design"]], dependent)
@@ -97,11 +98,10 @@ def sensitivities(
     output : str or sequence of str, optional
         An output, one element of it, or one of the names that this function returns; by default
         the outputs that the study wants to see. Of a category, such as the regime, the targets
-        are ``P(regime=label)``: whether a row is in each that occurs. Of a lifetime they are its
+        are ``P(regime=label)``: whether a row is in each that occurs. For a lifetime they are its
         logarithm, or its rank where rows never end or are censored, and ``P(life<t)``; its rate
-        1/T is there as ``rate(life)``. A value whose tail is heavy stands by default as its
-        logarithm or rank, and under its own name as it is. Of several names those are left out
-        that mean nothing here.
+        1/T is ``rate(life)``. A value with a heavy tail is by default replaced by its logarithm or
+        rank; its own name gives the value itself. Of several names, unknown ones are skipped.
     regime : str, optional
         Use the rows in this regime only. Among them the inputs depend on each other.
 
@@ -121,9 +121,8 @@ def sensitivities(
         why = "within a regime the inputs depend on each other"
     else:
         why = why_dependent(ds)
-    feeds = fed_by(DESIGNS[ds.attrs["design"]])
-    method = method or [*methods(ds, bool(why)), *feeds][0]
-    _check_method(ds, method, why)
+    method = method or [*methods(ds, bool(why)), *fed_by(DESIGNS[ds.attrs["design"]])][0]
+    _check_method(ds.attrs["design"], method, why)
     sample, notes = sample_of(ds), tuple(notes_on_inputs(ds))
     if sample.random and METHODS[method].noise:
         notes = (*notes, METHODS[method].noise)
@@ -133,15 +132,15 @@ def sensitivities(
     for target in chosen(ds, method, output):
         quantiles = _quantiles(target, analysis_of(ds).quantiles)
         own = replace(sample, values=target.values, quantiles=quantiles)
-        found[target.name] = one = _indices(ds, method, target, own, notes)
+        found[target.name] = one = _indices(ds, METHODS[method], target, own, notes)
         (whole if one.refused else used).append(own.whole)
     return Sensitivities(method, *_counts(*(used or whole), rows=len(sample.values)), found)
 
 
 def _indices(
-    ds: xr.Dataset, name: str, target: Target, sample: Sample, notes: tuple[str, ...]
+    ds: xr.Dataset, method: Method, target: Target, sample: Sample, notes: tuple[str, ...]
 ) -> TargetIndices:
-    method, caution = METHODS[name], DESIGNS[ds.attrs["design"]].caution
+    caution = DESIGNS[ds.attrs["design"]].caution
     counts = _counts(sample.whole, rows=len(sample.values))
     try:
         if target.refused:
@@ -152,9 +151,8 @@ def _indices(
         found = method.indices(sample)
     except RefusedError as refusal:
         return TargetIndices(target, *counts, refused=str(refusal))
-    own = (*([caution] if caution else []), *found.notes)
-    found = replace(found, notes=target.notes + few + own + notes)
-    return TargetIndices(target, *counts, found)
+    said = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
+    return TargetIndices(target, *counts, replace(found, notes=said))
 
 
 def _counts(*whole: NDArray[np.bool_], rows: int) -> tuple[int, int]:
@@ -172,20 +170,19 @@ def _no_variance(target: Target) -> str:
 
 
 def _quantiles(target: Target, asked: tuple[float, ...]) -> dict[str, float]:
-    """Return what quantiles of a target are called: B10 of a life is where its rate is high."""
+    """Return the names of quantiles of a target; B10 of a life is where its rate is high."""
     if target.element is not None and target.element.is_lifetime:
         return {"B10": 0.9 if target.name.startswith("rate(") else 0.1, "B50": 0.5}
     return {f"Q{probability!r}": probability for probability in asked}
 
 
-def _check_method(ds: xr.Dataset, method: str, dependent: str) -> None:
-    design = ds.attrs["design"]
-    feeds = fed_by(DESIGNS[design])
-    if method in fed_by(DESIGNS[design], bool(dependent)):
+def _check_method(design: str, method: str, dependent: str) -> None:
+    usable = fed_by(DESIGNS[design], bool(dependent))
+    if method in usable:
         return
-    if method in feeds:
+    if method in fed_by(DESIGNS[design]):
         raise InputError(
-            f"method '{method}' supposes independent inputs, but {dependent}"
+            f"method '{method}' assumes independent inputs, but {dependent}"
             f" (methods that do not: {', '.join(for_dependent_inputs())})"
         )
     if method not in METHODS:
@@ -193,8 +190,7 @@ def _check_method(ds: xr.Dataset, method: str, dependent: str) -> None:
         raise InputError(
             f"no such method '{method}'{nearest(method, known)} (allowed: {', '.join(known)})"
         )
-    able, usable = designs_for(method), fed_by(DESIGNS[design], bool(dependent))
     raise InputError(
-        f"method '{method}' needs a design of {' or '.join(able)}; this result is of design"
-        f" '{design}', which feeds {', '.join(usable)}"
+        f"method '{method}' needs a design of {' or '.join(designs_for(method))}; this result is of"
+        f" design '{design}', which feeds {', '.join(usable)}"
     )

@@ -1,4 +1,4 @@
-"""What sensitivity indices are of: a target, one number per row."""
+"""Targets of sensitivity indices: one number per row."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -29,7 +29,7 @@ class Target:
     event : bool
         Whether the values say if something happened, 1, or not, 0.
     notes : tuple of str
-        Sentences on what stands for the output.
+        Sentences on what replaces the output.
     """
 
     name: str
@@ -41,31 +41,43 @@ class Target:
 
 
 def targets(
-    elements: Iterable[Element], thresholds: Mapping[str, tuple[float, ...]]
+    elements: Iterable[Element],
+    thresholds: Mapping[str, tuple[float, ...]],
+    every: bool = False,
 ) -> Iterator[Target]:
-    """Yield the targets of some elements that say most.
+    """Yield targets of some elements.
 
     Parameters
     ----------
     elements : iterable of Element
     thresholds : dict of str to tuple of float
         Output -> times t of its probabilities P(T < t), for lifetimes.
+    every : bool, optional
+        Whether also those that must be asked for by name.
 
     Yields
     ------
     Target
-        What `number_of` gives, and of a lifetime T the events T < t.
+        What `number_of` gives, and of a lifetime T the events T < t. If every target is asked for:
+        a value or angle as it is; the logarithm and the rank of a value or lifetime; of a lifetime
+        also the rate 1/T and the events.
     """
     for element in elements:
-        yield number_of(element)
-        yield from _events(element, thresholds)
+        if not (every and element.is_lifetime):
+            yield number_of(element)
+        if every and not element.is_angle:
+            for form in ("log", "rank", "rate")[: 3 if element.is_lifetime else 2]:
+                yield _transformed(element, form)
+        if element.is_lifetime:
+            for threshold in thresholds.get(element.output, ()):
+                yield _event(element, threshold)
 
 
 def number_of(element: Element) -> Target:
-    """Return one number per row that moments can be taken of.
+    """Return one number per row that has moments.
 
-    A value or angle is such a number. A lifetime stands as its logarithm where every row's life is
-    finite, uncensored and positive, else as its rank.
+    A value or angle is such a number. A lifetime is replaced by its logarithm where every row's
+    life is finite, uncensored and positive, else by its rank.
     """
     if not element.is_lifetime:
         return Target(element.name, element, element.values)
@@ -73,41 +85,19 @@ def number_of(element: Element) -> Target:
     return _transformed(element, "rank") if found.refused else found
 
 
-def all_targets(
-    elements: Iterable[Element], thresholds: Mapping[str, tuple[float, ...]]
-) -> Iterator[Target]:
-    """Yield every target of some elements that can be asked for by name; see `targets`.
-
-    Yields
-    ------
-    Target
-        A value or angle as it is; the logarithm and the rank of a value or lifetime; of a lifetime
-        T also the rate 1/T and the events T < t.
-    """
-    for element in elements:
-        if not element.is_lifetime:
-            yield number_of(element)
-        if not element.is_angle:
-            yield _transformed(element, "log")
-            yield _transformed(element, "rank")
-        if element.is_lifetime:
-            yield _transformed(element, "rate")
-        yield from _events(element, thresholds)
-
-
 _TRANSFORMS: dict[str, Callable[[Element], Transformed]] = {
     "log": logarithm,
     "rank": rank,
     "rate": rate,
 }
-"""Name -> what it makes of an element."""
+"""Name -> transformation of an element."""
 
 FORMS = {"log": "logarithm", "rank": "rank", "rate": "inverse"}
 """The same in words."""
 
 
 def split_name(name: str) -> tuple[str, str, str]:
-    """Split the name of a target into what is taken of an element, the element, and its threshold.
+    """Split the name of a target into the form, the element, and the threshold.
 
     Parameters
     ----------
@@ -135,7 +125,7 @@ def _transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Ta
 
 
 def lightened(target: Target) -> Target:
-    """Return what stands for a value whose tail is heavy, in methods that are about a variance.
+    """Return what replaces a value with a heavy tail, for methods that apportion a variance.
 
     Parameters
     ----------
@@ -152,23 +142,23 @@ def lightened(target: Target) -> Target:
     assert target.element is not None
     form = _lighter_form(target.element)
     note = (
-        f"{why}: these are indices of its {FORMS[form]}; name {target.name} for those of the"
+        f"{why}: these are indices of its {FORMS[form]}; ask for {target.name} for those of the"
         " output itself"
     )
     return _transformed(target.element, form, (note,))
 
 
 def with_tail_note(target: Target) -> Target:
-    """Return a target with a note where its tail is heavy, in methods that are about a variance."""
+    """Return a target with a note if its tail is heavy, for methods that apportion a variance."""
     if not (why := _heaviness(target)):
         return target
     assert target.element is not None
     other = f"{_lighter_form(target.element)}({target.name})"
-    return replace(target, notes=(*target.notes, f"{why}: {other} says more"))
+    return replace(target, notes=(*target.notes, f"{why}: {other} is more informative"))
 
 
 def _heaviness(target: Target) -> str:
-    """Say why indices of the variance of a value say little, or return ""."""
+    """Return why indices of the variance of a value are not informative, or ""."""
     element = target.element
     if element is None or element.is_lifetime or element.is_angle or target.name != element.name:
         return ""
@@ -178,12 +168,6 @@ def _heaviness(target: Target) -> str:
 def _lighter_form(element: Element) -> str:
     found = logarithm(element)
     return "rank" if found.refused or heaviness(found.values) else "log"
-
-
-def _events(element: Element, thresholds: Mapping[str, tuple[float, ...]]) -> Iterator[Target]:
-    if element.is_lifetime:
-        for threshold in thresholds.get(element.output, ()):
-            yield _event(element, threshold)
 
 
 def _event(element: Element, threshold: float) -> Target:

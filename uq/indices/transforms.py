@@ -1,6 +1,6 @@
-"""What stands for an output whose own variance says little: its logarithm, its rank, its rate.
+"""What replaces an output whose own variance is not informative: its logarithm, rank or rate.
 
-A life may never end or be censored; and where a few rows hold most of a variance, an index of it is
+A life may never end or be censored; and where a few rows hold most of the variance, its indices are
 about these rows.
 """
 
@@ -21,7 +21,7 @@ HEAVY = 1 / 3
 one with sigma = 1; beyond a third the tail counts as heavy."""
 
 FEWEST = 100
-"""Of fewer rows one alone is more than `LARGEST`: nothing is judged."""
+"""In fewer rows a single one is more than `LARGEST`: no tail is judged."""
 
 
 class Transformed(NamedTuple):
@@ -53,7 +53,7 @@ def tail_share(values: Floats) -> float:
 
 
 def heaviness(values: Floats) -> str:
-    """Say why indices of the variance of these values are about a few of them.
+    """Return why indices of the variance of these values are about a few of them.
 
     Parameters
     ----------
@@ -64,19 +64,19 @@ def heaviness(values: Floats) -> str:
     -------
     str
         A clause; "" where the largest 1 % hold less than `HEAVY` of the variance, and the tail's
-        shape does not speak against a finite one (`uq.tails`).
+        shape is compatible with a finite variance (`uq.tails`).
     """
     share = tail_share(values)
     if share > HEAVY:
         return f"{100 * LARGEST:g} % of the rows hold {percent(share)} of the variance"
     tail = heavier_tail(values[np.isfinite(values)])
     if tail is not None and tail.no_variance:
-        return f"the {tail.side} tail speaks against a finite variance (k = {tail.k:.2g})"
+        return f"the {tail.side} tail suggests an infinite variance (k = {tail.k:.2g})"
     return ""
 
 
 def logarithm(element: Element) -> Transformed:
-    """Return the natural logarithm of an output; refused where a row has none."""
+    """Return the natural logarithm of an output; refused if a row has none."""
     nothing = np.full(len(element.values), np.nan)
     counts = {
         "never end": int(element.never.sum()),
@@ -91,18 +91,18 @@ def logarithm(element: Element) -> Transformed:
 
 
 def rank(element: Element) -> Transformed:
-    """Return the share of rows that lie below each, those that tie counted by half.
+    """Return the share of rows below each, ties counted by half.
 
     Parameters
     ----------
     element : Element
         Rows of a lifetime that never end, and those censored after all others have ended, share the
-        highest rank: nothing is known, or needed, of their order.
+        highest rank: their order is neither known nor needed.
 
     Returns
     -------
     Transformed
-        Between 0 and 1. Refused where a row was censored while others still ended: its rank is not
+        Between 0 and 1. Refused if a row was censored before the last life ended: its rank is not
         known.
 
     References
@@ -127,7 +127,7 @@ def rank(element: Element) -> Transformed:
 
 
 def rate(element: Element) -> Transformed:
-    """Return the inverse of a life, 0 where it never ends; refused where a row has none."""
+    """Return the inverse of a life, 0 if it never ends; refused if a row has none."""
     with np.errstate(divide="ignore"):
         inverse = 1 / element.values
     if censored := int(element.censored.sum()):

@@ -1,6 +1,5 @@
 """Extended FAST: first-order and total indices from the spectrum along a curve for each input."""
 
-from collections.abc import Mapping
 from math import floor
 
 import numpy as np
@@ -23,10 +22,10 @@ def fast_indices(sample: Sample) -> Indices:
     Returns
     -------
     Indices
-        ``S1`` and ``ST``, means over replicates, without intervals: replicates show how far they
-        scatter, not how far they are off because an input is told by a few harmonics only, which
-        on the Ishigami function is many times more. The notes give the scatter. Of a random model
-        they are shares of the mean variance at one seed: each curve counts by its variance.
+        ``S1`` and ``ST``, means over replicates, without intervals: the scatter between replicates,
+        which the notes report, does not include the error of representing an input by a few
+        harmonics, many times larger for the Ishigami function. For a random model they are shares
+        of the mean variance at one seed: curves are weighted by their variance.
 
     Raises
     ------
@@ -40,7 +39,7 @@ def fast_indices(sample: Sample) -> Indices:
     """
     from SALib.analyze.fast import compute_orders
 
-    y, whole = sample.values[sample.groups], sample.whole
+    y, whole = sample.grouped, sample.whole
     parameters = [label.removeprefix("curve_") for label in sample.blocks]
     for name, own in zip(parameters, whole.T, strict=True):
         if not own.any():
@@ -52,7 +51,7 @@ def fast_indices(sample: Sample) -> Indices:
         raise RefusedError("the same value along a whole curve: there is no variance to apportion")
     points = y.shape[2]
     omega = floor((points - 1) / (2 * HARMONICS))
-    # The estimator loses digits on values far from zero.
+    # The estimator loses digits for values far from zero.
     y = y - y[whole].mean()
     indices: dict[Kind, dict[str, Estimate]] = {S1: {}, ST: {}}
     scatter = dict.fromkeys(indices, 0.0)
@@ -64,21 +63,16 @@ def fast_indices(sample: Sample) -> Indices:
             indices[kind][name] = Estimate(float(np.average(column, weights=weights)))
             if len(column) > 1:
                 scatter[kind] = max(scatter[kind], float(column.std(ddof=1)))
-    return Indices(indices, (_why_no_intervals(scatter), *_too_coarse(len(parameters) - 1, omega)))
-
-
-def _why_no_intervals(scatter: Mapping[Kind, float]) -> str:
     spread = " and ".join(f"{kind.key} by {sd:.2g}" for kind, sd in scatter.items() if sd)
     seen = f": between replicates {spread} at most (standard deviation)" if spread else ""
-    return (
-        "no intervals: the method's own error, from telling an input by a few harmonics, does not"
-        f" show in the scatter{seen}"
-    )
-
-
-def _too_coarse(others: int, omega: int) -> list[str]:
-    room = omega // (2 * HARMONICS)
-    if room >= others:
-        return []
-    needed = 4 * HARMONICS**2 * others + 1
-    return [f"{others} inputs share {room} frequencies; samples = {needed} would give each its own"]
+    notes = [
+        "no intervals: the method's own error, from representing an input by a few harmonics, does"
+        f" not show in the scatter{seen}"
+    ]
+    others, room = len(parameters) - 1, omega // (2 * HARMONICS)
+    if room < others:
+        needed = 4 * HARMONICS**2 * others + 1
+        notes.append(
+            f"{others} inputs share {room} frequencies; samples = {needed} would give each its own"
+        )
+    return Indices(indices, tuple(notes))

@@ -1,11 +1,11 @@
-"""Sensitivity from a plain sample: what methods share that ask for no design of their own.
+"""Sensitivity from a plain sample: what the methods share that need no design of their own.
 
 RBD-FAST, Borgonovo's delta, PAWN and HDMR are SALib's estimators. Their scatter is not known:
-bootstrap intervals of these estimates miss the truth far more often than they say. Beside each
-index stands what the same estimate makes of inputs that play no part; an index below that shows
-nothing. One input in twenty without effect passes it; beside it stands what the largest of all
-inputs would pass once in twenty. An input with many equal values has its own rows, shuffled, to be
-measured against.
+bootstrap intervals of these estimates cover far less than their nominal level. Each index is
+therefore compared with a null: the same estimate for inputs without effect, which one in twenty of
+them exceeds, and a second one, which the largest of all inputs would exceed once in twenty. An
+index below its null is negligible. An input with many equal values has a null of its own, from its
+values shuffled.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,10 +20,10 @@ MIN_ROWS = 64
 """Fewer rows than this leave too few in each slice of an input."""
 
 DUMMIES = 19
-"""The largest of 19 is passed by one input in twenty that plays no part."""
+"""One input in twenty without effect exceeds the largest of 19."""
 
 TIED = 0.05
-"""An input has many equal values where one of them has a larger share of the rows than this."""
+"""An input has many equal values if one of them has a larger share of the rows than this."""
 
 Measure = Callable[[Floats, Sample], tuple[dict[Kind, Floats], tuple[str, ...]]]
 """Columns of inputs, shape (n, k), and the sample -> raw indices, shape (k,) each, and notes."""
@@ -34,16 +34,12 @@ def one_kind(kind: Kind, measure: Callable[[Floats, Floats], Floats]) -> Measure
     return lambda x, sample: ({kind: measure(x, sample.values)}, ())
 
 
-def _unchanged(raw: Floats, idle: Floats) -> Floats:
-    return raw
-
-
 def beside_nulls(
     measure: Measure,
-    corrected: Callable[[Floats, Floats], Floats] = _unchanged,
+    corrected: Callable[[Floats, Floats], Floats] = lambda raw, idle: raw,
     sorts_rows: bool = False,
 ) -> Callable[[Sample], Indices]:
-    """Return the estimate of indices beside what inputs without effect reach.
+    """Return the estimate of indices with the null of inputs without effect.
 
     Parameters
     ----------
@@ -52,7 +48,7 @@ def beside_nulls(
     corrected : callable, optional
         ``corrected(raw, idle)`` -> indices, from raw ones and those of inputs without effect.
     sorts_rows : bool, optional
-        Whether it sorts the rows by each input, and so takes none with many equal values.
+        Whether it sorts the rows by each input, and so accepts none with many equal values.
 
     Returns
     -------
@@ -83,32 +79,31 @@ def beside_nulls(
                 value = float(corrected(one[i], own[kind]))
                 lost = name in tied and sorts_rows
                 found[kind][name] = Estimate(np.nan if lost else value)
-        return Indices(
-            found, notes, {kind: _null(corrected(one, one), len(x)) for kind, one in idle.items()}
-        )
+        reached = {kind: corrected(one, one) for kind, one in idle.items()}
+        return Indices(found, notes, {kind: _null(one, len(x)) for kind, one in reached.items()})
 
     return estimate
 
 
 def _null(reached: Floats, inputs: int) -> Null:
-    many = largest_of(inputs, reached) if inputs > 1 else np.nan
-    return Null(float(reached.max()), many)
+    return Null(float(reached.max()), largest_of(inputs, reached) if inputs > 1 else np.nan)
 
 
 def largest_of(inputs: int, idle: Floats) -> float:
-    """Return what the largest of several inputs without effect passes once in twenty, or less.
+    """Return what the largest of several inputs without effect exceeds once in twenty, or less.
 
     Parameters
     ----------
     inputs : int
     idle : ndarray, shape (k,)
-        What an index is for each of some inputs without effect.
+        Index of each of some inputs without effect.
 
     Returns
     -------
     float
         By Gumbel's law of the same mean and variance, whose tail is heavier than that of any of
-        these indices: of 3 to 60 inputs without effect one or more passed in 0.5 to 7 % of samples.
+        these indices: one or more of 3 to 60 inputs without effect exceeded it in 0.5 to 7 % of
+        samples.
     """
     scale = float(idle.std(ddof=1)) * np.sqrt(6) / np.pi
     quantile = -np.log(-np.log(0.95 ** (1 / inputs)))
@@ -122,9 +117,9 @@ def _is_tied(column: Floats) -> bool:
 
 
 def _no_order(tied: list[str], inputs: int) -> str:
-    """Say which inputs RBD-FAST cannot sort the rows by; refuse where that is all of them."""
+    """Return which inputs RBD-FAST cannot sort the rows by; refuse if that is all of them."""
     said = (
-        "rbd-fast sorts the rows by each input, so it takes none with many equal values:"
+        "rbd-fast sorts the rows by each input, so it accepts none with many equal values:"
         f" {', '.join(tied)}; use delta, pawn or quantile"
     )
     if len(tied) == inputs:
@@ -133,11 +128,12 @@ def _no_order(tied: list[str], inputs: int) -> str:
 
 
 def _no_slices(names: Sequence[str], raw: Mapping[Kind, Floats]) -> list[str]:
-    """Say of which inputs all rows are in one slice; refuse where that is all of them."""
-    said = []
-    for i, name in enumerate(names):
-        if lost := [kind.key for kind, one in raw.items() if np.isnan(one[i])]:
-            said.append(f"{name} has too few rows of any value but one: no {' or '.join(lost)}")
+    """Return which inputs have all rows in one slice; refuse if that is all of them."""
+    said = [
+        f"{name} has too few rows of any value but one: no {' or '.join(lost)}"
+        for i, name in enumerate(names)
+        if (lost := [kind.key for kind, one in raw.items() if np.isnan(one[i])])
+    ]
     if all(np.isnan(one[: len(names)]).all() for one in raw.values()):
         raise RefusedError("; ".join(said))
     return said
@@ -147,6 +143,6 @@ def _own_null(name: str, own: Mapping[Kind, Floats]) -> str:
     known = {kind.key: one.max() for kind, one in own.items() if np.isfinite(one).all()}
     reached = ", ".join(f"{kind} = {one:.2g}" for kind, one in known.items())
     return (
-        f"{name} has many equal values: shuffled {DUMMIES} times, and so without effect, it"
-        f" reaches {reached}"
+        f"{name} has many equal values: shuffled {DUMMIES} times, and so without effect, it reaches"
+        f" {reached}"
     )

@@ -11,12 +11,12 @@ from uq.methods.indices import S1, S2, SHAPLEY, ST, Indices, Null, RefusedError
 from uq.methods.sample import Floats, Sample
 
 MIN_ROWS = 300
-"""SALib takes no fewer."""
+"""SALib accepts no fewer."""
 
 EXPLAINED = 0.8
-"""An expansion that explains less of rows it has not seen says too little about the output."""
+"""An expansion that explains less of the rows held out does not represent the output."""
 
-_DEGREES = (2, 4, 6, 8)  # and what an input of few values allows, which tells all of them apart
+_DEGREES = (2, 4, 6, 8)  # and the highest that an input of few values allows
 _ENOUGH = 0.99
 _LEAST_VALUES = 10
 _MOST_ROWS = 2048
@@ -36,8 +36,8 @@ def hdmr_indices(sample: Sample) -> Indices:
     -------
     Indices
         ``S1``, ``S2``, ``ST`` and ``shapley``: S1 and half of the S2 that an input shares, which
-        are its Shapley effect where no three inputs interact [2]_. No intervals; the null is what
-        the fit makes of one input that plays no part.
+        are its Shapley effect where no three inputs interact [2]_. No intervals; the null is the
+        index of one input without effect.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def hdmr_indices(sample: Sample) -> Indices:
     x, y = sample.inputs, sample.values
     if len(np.unique(y)) < _LEAST_VALUES:
         raise RefusedError(
-            f"it takes fewer than {_LEAST_VALUES} values, and no polynomial has such steps; use"
+            f"it has fewer than {_LEAST_VALUES} values, and no polynomial has such steps; use"
             " rbd-fast, pawn or regional"
         )
     n = min(len(y), _MOST_ROWS)
@@ -65,24 +65,11 @@ def hdmr_indices(sample: Sample) -> Indices:
         )
     names = [*x, ""]
     rng = np.random.default_rng(0)
-    chosen = rng.permutation(len(y))[:n]  # imported rows may come in an order that means something
+    chosen = rng.permutation(len(y))[:n]  # imported rows may come in a meaningful order
     columns = np.column_stack([*(column[chosen] for column in x.values()), rng.random(n)])
     y = (y[chosen] - y[chosen].mean()) / y[chosen].std()
-    half = n // 2
-    degrees, least = _degrees(names, columns[:half])
-    degree, explained = 0, float("-inf")
-    for candidate in degrees:
-        if _terms(len(names), candidate) > min(_TERMS_PER_ROW * half, _MOST_TERMS):
-            break
-        # SALib takes the ranges of the inputs from the rows it is given: from all of them, here.
-        expected = _expansion(columns[:half], y[:half], candidate).emulate(columns)
-        rest = (y - expected)[half:]
-        if (gain := float(1 - rest.var() / y[half:].var())) > explained:
-            degree, explained = candidate, gain
-        else:
-            break  # more terms than the rows can tell apart
-        if explained > _ENOUGH:
-            break
+    degrees, least = _degrees(names, columns[: n // 2])
+    degree, explained = _best(columns, y, degrees)
     if not degree:
         raise RefusedError(f"{n} rows are too few for the pairs of {len(x)} inputs")
     if explained < EXPLAINED:
@@ -90,41 +77,51 @@ def hdmr_indices(sample: Sample) -> Indices:
             f"functions of one and of two inputs explain {max(explained, 0):.0%} of the variance of"
             f" rows held out; {EXPLAINED:.0%} are needed{least}"
         )
-    found = _expansion(columns, y, degree)
-    share = np.ravel(found["S"])
-    first, pairs = share[: len(names)], list(combinations(range(len(names)), 2))
-    second = dict(zip(pairs, share[len(names) :], strict=True))
-    shared = np.array(
-        [sum(v for pair, v in second.items() if i in pair) for i in range(len(names))]
-    )
-    kinds = {S1: first, ST: first + shared, SHAPLEY: first + shared / 2}
+    share, k = np.ravel(_expansion(columns, y, degree)["S"]), len(names)
+    second = dict(zip(combinations(range(k), 2), share[k:], strict=True))
+    shared = np.array([sum(v for pair, v in second.items() if i in pair) for i in range(k)])
+    kinds = {S1: share[:k], ST: share[:k] + shared, SHAPLEY: share[:k] + shared / 2}
     values = {
-        kind: {name: Estimate(float(v)) for name, v in zip(x, found_, strict=False)}
-        for kind, found_ in kinds.items()
+        kind: {name: Estimate(float(v)) for name, v in zip(x, own, strict=False)}
+        for kind, own in kinds.items()
     }
     values[S2] = {
         f"{names[i]},{names[j]}": Estimate(float(v)) for (i, j), v in second.items() if names[j]
     }
     note = (
         f"polynomials of degree {degree} in one and in two inputs explain {explained:.1%} of the"
-        " variance of rows held out; an input without effect passes the one beside the indices in"
-        " every second case"
+        " variance of rows held out; every second input without effect exceeds the null"
     )
-    nulls = {kind: Null(float(found_[-1])) for kind, found_ in kinds.items()}
-    return Indices(values, (note,), nulls)
+    return Indices(values, (note,), {kind: Null(float(own[-1])) for kind, own in kinds.items()})
+
+
+def _best(x: Floats, y: Floats, degrees: tuple[int, ...]) -> tuple[int, float]:
+    """Return the degree that explains most of the rows held out, 0 for none, and how much."""
+    half, k = len(y) // 2, x.shape[1]
+    best, explained = 0, float("-inf")
+    for degree in degrees:
+        terms = k * degree + k * (k - 1) // 2 * degree**2
+        if explained > _ENOUGH or terms > min(_TERMS_PER_ROW * half, _MOST_TERMS):
+            break
+        # SALib takes the ranges of the inputs from the rows it is given: here from all of them.
+        expected = _expansion(x[:half], y[:half], degree).emulate(x)
+        gain = float(1 - (y - expected)[half:].var() / y[half:].var())
+        if not gain > explained:
+            break  # more terms than the rows can tell apart
+        best, explained = degree, gain
+    return best, explained
 
 
 def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
-    """Return the degrees to try, and why they are no higher; k values allow k - 1.
+    """Return the degrees to try, and why they are no higher: k values allow k - 1.
 
     Raises
     ------
     RefusedError
-        Of an input with a single value.
+        For an input with a single value.
     """
     counts = [len(np.unique(column)) for column in x.T]
-    fewest = min(counts)
-    name = names[counts.index(fewest)]
+    fewest, name = min(zip(counts, names, strict=True), key=lambda one: one[0])
     if fewest == 1:
         raise RefusedError(
             f"{name} has the same value in all of {len(x)} rows: no polynomial can be fitted"
@@ -132,14 +129,7 @@ def _degrees(names: list[str], x: Floats) -> tuple[tuple[int, ...], str]:
     if fewest > max(_DEGREES):
         return _DEGREES, ""
     allowed = (*(d for d in _DEGREES if d < fewest - 1), fewest - 1)
-    return (
-        allowed,
-        f" ({name} has {fewest} values, which allow no higher degree than {allowed[-1]})",
-    )
-
-
-def _terms(inputs: int, degree: int) -> int:
-    return inputs * degree + inputs * (inputs - 1) // 2 * degree**2
+    return allowed, f" ({name} has {fewest} values, which allow no degree above {allowed[-1]})"
 
 
 def _expansion(x: Floats, y: Floats, degree: int) -> Any:

@@ -1,4 +1,4 @@
-"""What comes out of a sensitivity method: kinds of indices, each an estimate for every input."""
+"""The results of a sensitivity method: kinds of indices, each an estimate for every input."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -51,14 +51,14 @@ SHAPLEY = Kind("shapley", "Shapley effect", "variance")
 
 @dataclass(frozen=True)
 class Null:
-    """What an estimate makes of inputs that play no part.
+    """The indices of inputs without effect, by the same estimate.
 
     Attributes
     ----------
     one : float
-        What one input in twenty without effect passes.
+        What one input in twenty without effect exceeds.
     largest : float
-        What the largest of as many inputs as there are passes once in twenty; NaN if not known.
+        What the largest of as many inputs as there are exceeds once in twenty; NaN if not known.
     """
 
     one: float
@@ -75,11 +75,11 @@ class Indices:
         Input (``"first,second"`` for a pair) -> Estimate; the kind that inputs are ranked by last
         of those that are not of pairs.
     notes : tuple of str
-        Sentences on what could not be given.
+        Sentences on what is missing, and why.
     nulls : dict of Kind to Null
         Where the method has no intervals.
     noise : Estimate or None
-        Share of the variance that remains once all inputs are known, where rows tell it.
+        Share of the variance that remains once all inputs are known, where the rows determine it.
     """
 
     values: Mapping[Kind, Mapping[str, Estimate]]
@@ -93,4 +93,4 @@ class RefusedError(Exception):
 
 
 ALL_NOISE = "no input changes it at one seed: all of its variance is noise"
-"""Why an output of a random model has no shares where rows that are compared share a seed."""
+"""Why an output of a random model has no shares if the compared rows share a seed."""

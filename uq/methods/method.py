@@ -1,4 +1,4 @@
-"""A sensitivity method: what rows it needs, what it makes of them, and what that means."""
+"""A sensitivity method: the rows it needs, its estimate, and what that means."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ NO_VARIANCE = "the same value in all rows: there is no variance to apportion"
 
 @dataclass(frozen=True)
 class Method:
-    """One way of telling which inputs matter.
+    """One way to find which inputs matter.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Method:
         How the rows of a design must belong together for it.
     estimate : callable
         ``estimate(sample)`` -> `Indices`, or `RefusedError`. Groups with a row without a value are
-        its own to leave out (`Sample.whole`); a plain sample comes with a value in every row.
+        left out by it (`Sample.whole`); every row of a plain sample has a value.
     kinds : tuple of Kind
         What it estimates; none where that depends on the study.
     gives : str
@@ -36,22 +36,22 @@ class Method:
     intervals : str
         What its intervals come from; "" where it has none.
     has_null : bool
-        Whether beside its indices stands what inputs without effect reach.
+        Whether its indices come with the null of inputs without effect.
     least : int
         Fewer whole groups give no indices.
     most_rows : int or None
-        Of more rows of a plain sample, this many are chosen: all would take long.
+        Of a larger plain sample this many rows are chosen: all would take too long.
     assumes_independence : bool
         Whether the inputs must be independent of each other.
     takes_events, takes_numbers : bool
-        Whether it is for outputs that say if something happens, and for others.
+        Whether it is for events, outputs of 0 or 1, and for other outputs.
     scale_free : bool
         Whether it compares distributions: no increasing function of an output changes its indices.
     noise : str
-        What it makes of the noise of a random model, where rows share seeds.
+        How it treats the noise of a random model where rows share seeds.
     pilot : callable or None
-        ``pilot(sample)`` -> Kind -> the largest standard deviation, over inputs, of what one group
-        adds to the mean that an index is; where ``uq plan`` and ``uq convergence`` show indices.
+        ``pilot(sample)`` -> Kind -> the largest standard deviation, over inputs, of a group's term
+        in the mean that an index is; given where ``uq plan`` and ``uq convergence`` show indices.
     """
 
     question: str
@@ -104,8 +104,10 @@ class Method:
         if is_constant(sample.values[rows]):
             raise RefusedError(NO_EFFECT)
         if self.most_rows is not None and kept > self.most_rows:
-            # At random: imported rows may come in an order that means something.
+            # At random: imported rows may come in a meaningful order.
             rows = np.sort(np.random.default_rng(0).choice(rows, self.most_rows, replace=False))
-            note = f"from {self.most_rows} of {kept} rows, chosen at random: all would take long"
+            note = (
+                f"from {self.most_rows} of {kept} rows, chosen at random: all would take too long"
+            )
         found = self.estimate(sample.rows(rows))
         return replace(found, notes=(note, *found.notes) if note else found.notes)

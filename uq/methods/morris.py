@@ -1,19 +1,16 @@
 """Morris' elementary effects: which inputs matter at all, from few rows."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from uq.designs.trajectories import STEP
-from uq.estimate import Estimate
 from uq.intervals import ROUNDING, is_constant
-from uq.methods.groups import by_replicates
+from uq.methods.groups import Values, by_replicates
 from uq.methods.indices import Indices, Kind, RefusedError
 from uq.methods.method import NO_EFFECT
 from uq.methods.sample import Floats, Sample
 
 MIN_TRAJECTORIES = 4
-"""Fewer trajectories than this give no mean worth the name."""
+"""Fewer trajectories than this do not give a useful mean."""
 
 MU = Kind("mu", "mean effect (mu)", "output")
 SIGMA = Kind("sigma", "scatter of effects (sigma)", "output")
@@ -31,9 +28,9 @@ def morris_indices(sample: Sample) -> Indices:
     Returns
     -------
     Indices
-        ``mu``, ``sigma`` and ``mu_star``, in the output's unit, for a change of the input from the
-        bottom to the top of its law if the effect were the same all the way. From all
-        trajectories together; the interval from the same estimate by replicates.
+        ``mu``, ``sigma`` and ``mu_star``, in the output's unit, scaled to a change of the input
+        over the whole range of its law. Pooled over all trajectories, with intervals from the
+        scatter between replicates.
 
     Raises
     ------
@@ -42,16 +39,16 @@ def morris_indices(sample: Sample) -> Indices:
 
     Notes
     -----
-    Trajectories chosen far apart favour the corners. There the intervals are of what such
-    trajectories give on average, which differs from the mean over all trajectories by tens of per
-    cent; the design says so.
+    Trajectories chosen far apart favour the corners. Their intervals are those of the average over
+    such trajectories, which differs from the mean over all trajectories by tens of per cent; the
+    design says so.
 
     References
     ----------
     F. Campolongo, J. Cariboni, A. Saltelli, "An effective screening design for sensitivity analysis
     of large models", Environ. Model. Softw. 22, 1509-1518 (2007).
     """
-    y, whole = sample.values[sample.groups], sample.whole
+    y, whole = sample.grouped, sample.whole
     if is_constant(y[whole]):
         raise RefusedError(NO_EFFECT)
     # A step within one of several discrete values changes no input, and has no effect.
@@ -60,31 +57,17 @@ def morris_indices(sample: Sample) -> Indices:
     replicates = [own[rows] for own, rows in zip(effects, whole, strict=True)]
     rounding = ROUNDING * np.abs(y[whole]).max()
     few = any(len(own) < 2 for own in replicates)
-    found, notes = by_replicates(
-        lambda groups: _estimates(list(sample.inputs), groups, rounding),
-        effects[whole],
-        replicates,
-        "effects",
-        "some replicates have fewer than two whole trajectories" if few else "",
-    )
-    indices: dict[Kind, dict[str, Estimate]] = {MU: {}, SIGMA: {}, MU_STAR: {}}
-    for (kind, name), estimate in found.items():
-        indices[kind][name] = estimate
-    return Indices(indices, notes)
+    lacking = "some replicates have fewer than two whole trajectories" if few else ""
 
+    def measures(effects: Floats) -> Values:  # of shape (n, d); no sigma below rounding
+        sigma = effects.std(axis=0, ddof=1)
+        found = {
+            MU: effects.mean(axis=0),
+            SIGMA: np.where(sigma > rounding, sigma, 0.0),
+            MU_STAR: np.abs(effects).mean(axis=0),
+        }
+        return {
+            kind: dict(zip(sample.inputs, own.tolist(), strict=True)) for kind, own in found.items()
+        }
 
-def _estimates(
-    names: Sequence[str], effects: Floats, rounding: float
-) -> dict[tuple[Kind, str], float]:
-    """Return each measure from effects of shape (n, d); no sigma below rounding."""
-    sigma = effects.std(axis=0, ddof=1)
-    measures = {
-        MU: effects.mean(axis=0),
-        SIGMA: np.where(sigma > rounding, sigma, 0.0),
-        MU_STAR: np.abs(effects).mean(axis=0),
-    }
-    return {
-        (kind, name): float(value)
-        for kind, found in measures.items()
-        for name, value in zip(names, found, strict=True)
-    }
+    return Indices(*by_replicates(measures, effects[whole], replicates, "effects", lacking))

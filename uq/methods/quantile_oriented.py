@@ -1,11 +1,13 @@
-"""Quantile-oriented indices: how much better a quantile is known once an input is."""
+"""Quantile-oriented indices: how much knowing an input sharpens a quantile."""
+
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uq.methods.indices import Kind, RefusedError
 from uq.methods.sample import Floats, Sample
-from uq.methods.slices import even_cuts, slice_of, tells_nothing
+from uq.methods.slices import by_slices, even_cuts
 
 MIN_SLICES = 5
 MOST_SLICES = 48
@@ -18,7 +20,7 @@ def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[Kind, Floats], tup
 
     With psi(r) = r (p - [r < 0]), whose mean E psi(Y - q) is least at the quantile q of Y, the
     index is 1 - E[min_q E[psi(Y - q) | X]] / min_q E[psi(Y - q)] [1]_: 0 if knowing X does not
-    sharpen the quantile at all, 1 if nothing remains.
+    sharpen the quantile at all, 1 if it determines it.
 
     Parameters
     ----------
@@ -30,8 +32,9 @@ def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[Kind, Floats], tup
     -------
     indices : dict
         Kind -> raw indices, shape (d,), from slices of equally many rows, or by value where an
-        input has few. They are too large, as each slice has its quantile fitted to it: those of
-        inputs without effect show by how much. NaN where an input varies within one slice only.
+        input has few values. They are biased upwards, since a quantile is fitted to each slice:
+        those of inputs without effect show by how much. NaN where an input varies within one slice
+        only.
     notes : tuple of str
         Why some quantiles have none.
 
@@ -54,26 +57,20 @@ def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[Kind, Floats], tup
                 f" of {MIN_SLICES} slices of an input"
             )
         elif (whole := _least_contrast(y, p)) == 0:
-            notes.append(f"the values on one side of {name} are all the same: it does not move")
+            notes.append(f"all values on one side of {name} are equal: no input can move it")
         else:
-            slices = min(len(y) // rows, MOST_SLICES)
-            cuts = even_cuts(len(y), slices)
-            number = [slice_of(column, cuts, rows) for column in x.T]
-            rest = [
-                np.nan if tells_nothing(column, own) else _remains(y, p, own)
-                for column, own in zip(x.T, number, strict=True)
-            ]
-            found[Kind(name, name)] = 1 - np.array(rest) / whole
+            cuts = even_cuts(len(y), min(len(y) // rows, MOST_SLICES))
+            found[Kind(name, name)] = 1 - by_slices(x, cuts, partial(_remains, y, p), rows) / whole
     if not found:
         raise RefusedError("; ".join(notes))
     return found, tuple(notes)
 
 
 def without_optimism(raw: Floats, idle: Floats) -> Floats:
-    """Correct raw indices by what the same estimate makes of inputs without effect.
+    """Correct raw indices by those of inputs without effect.
 
-    Fitting each slice lowers what remains by the same factor for every input, exactly so where the
-    law of the output in a slice changes in place and width alone.
+    Fitting each slice lowers what remains by the same factor for every input: exactly, where the
+    law of the output differs between slices in location and scale alone.
     """
     return 1 - (1 - raw) / (1 - idle.mean())
 

@@ -4,6 +4,8 @@ To add one: a file with the function that estimates, and an entry here. Study fi
 where a design feeds it; tables, JSON, figures, reports and documentation show what it gives.
 """
 
+from functools import partial
+
 from uq.designs.design import Design
 from uq.designs.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
 from uq.designs.registry import DESIGNS
@@ -11,13 +13,11 @@ from uq.methods.fast import fast_indices
 from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
 from uq.methods.hdmr import hdmr_indices
 from uq.methods.indices import S1, S2, SHAPLEY, ST, Kind
+from uq.methods.measures import delta, ks_distances, pawn, rbd_fast
 from uq.methods.method import Method
 from uq.methods.morris import MIN_TRAJECTORIES, MU, MU_STAR, SIGMA, morris_indices
 from uq.methods.quantile_oriented import quantile_indices, without_optimism
-from uq.methods.rbd_fast import rbd_fast
-from uq.methods.regional import ks_distances
 from uq.methods.shapley import MIN_PATHS, shapley_indices
-from uq.methods.slices import delta, pawn
 from uq.methods.sobol import MIN_GROUPS, pilot, sobol_indices
 
 DELTA = Kind("delta", "Borgonovo's delta")
@@ -25,77 +25,58 @@ PAWN = Kind("pawn", "PAWN, median")
 KS = Kind("KS", "Kolmogorov's distance of the rows where it happens")
 
 _AT_ONE_SEED = (
-    "shares of the variance at one seed, to which noise that does not depend on the inputs adds"
-    " nothing"
+    "shares of the variance at one seed, in which noise that does not depend on the inputs has no"
+    " part"
 )
 
+_of_plain_rows = partial(Method, layout=PLAIN, has_null=True, least=MIN_ROWS)
+_of_any_inputs = partial(_of_plain_rows, assumes_independence=False)
+
 METHODS = {
-    "rbd-fast": Method(
+    "rbd-fast": _of_plain_rows(
         "how much of the variance, alone",
-        PLAIN,
-        beside_nulls(one_kind(S1, rbd_fast), sorts_rows=True),
-        (S1,),
+        estimate=beside_nulls(one_kind(S1, rbd_fast), sorts_rows=True),
+        kinds=(S1,),
         source="random balance, bias corrected",
-        has_null=True,
-        least=MIN_ROWS,
         most_rows=200_000,
     ),
-    "delta": Method(
+    "delta": _of_any_inputs(
         "how much the whole distribution moves",
-        PLAIN,
-        beside_nulls(one_kind(DELTA, delta)),
-        (DELTA,),
+        estimate=beside_nulls(one_kind(DELTA, delta)),
+        kinds=(DELTA,),
         source="Plischke et al. (2013), on normal scores of the output",
-        has_null=True,
-        least=MIN_ROWS,
         most_rows=10_000,
-        assumes_independence=False,
         scale_free=True,
     ),
-    "pawn": Method(
+    "pawn": _of_any_inputs(
         "how much the whole distribution moves, by its largest shift",
-        PLAIN,
-        beside_nulls(one_kind(PAWN, pawn)),
-        (PAWN,),
+        estimate=beside_nulls(one_kind(PAWN, pawn)),
+        kinds=(PAWN,),
         source="Pianosi & Wagener (2018)",
-        has_null=True,
-        least=MIN_ROWS,
         most_rows=20_000,
-        assumes_independence=False,
         scale_free=True,
     ),
-    "hdmr": Method(
+    "hdmr": _of_plain_rows(
         "how much of the variance, alone, in pairs and in total",
-        PLAIN,
-        hdmr_indices,
-        (S1, ST, SHAPLEY, S2),
+        estimate=hdmr_indices,
+        kinds=(S1, ST, SHAPLEY, S2),
         source="polynomials in one and in two inputs (Li et al. 2010); refused where they explain"
         " less than 80 % of rows held out",
-        has_null=True,
-        least=MIN_ROWS,
     ),
-    "quantile": Method(
+    "quantile": _of_any_inputs(
         "which inputs move a quantile, or B10 of a life",
-        PLAIN,
-        beside_nulls(quantile_indices, without_optimism),
-        (),
+        estimate=beside_nulls(quantile_indices, without_optimism),
+        kinds=(),
         gives="share of a quantile's contrast that an input explains",
         source="Fort et al. (2016), corrected by inputs without effect",
-        has_null=True,
-        least=MIN_ROWS,
         most_rows=200_000,
-        assumes_independence=False,
         takes_events=False,
     ),
-    "regional": Method(
+    "regional": _of_any_inputs(
         "which inputs decide a regime or an event",
-        PLAIN,
-        beside_nulls(one_kind(KS, ks_distances)),
-        (KS,),
+        estimate=beside_nulls(one_kind(KS, ks_distances)),
+        kinds=(KS,),
         source="Spear & Hornberger (1980)",
-        has_null=True,
-        least=MIN_ROWS,
-        assumes_independence=False,
         takes_numbers=False,
         scale_free=True,
     ),
@@ -107,9 +88,9 @@ METHODS = {
         source="Saltelli et al. (2010), on standardised outputs",
         intervals="Student's t from replicates",
         least=MIN_GROUPS,
-        noise="the model is random, and the rows of a group share a seed: S1 holds no noise, ST"
-        " holds what noise does together with the input, and 'noise' is the share of the variance"
-        " that remains once all inputs are known",
+        noise="the model is random, and the rows of a group share a seed: S1 excludes noise, ST"
+        " includes its interaction with the input, and 'noise' is the share of the variance that"
+        " remains once all inputs are known",
         pilot=pilot,
     ),
     "morris": Method(
@@ -142,7 +123,7 @@ METHODS = {
         noise=f"the model is random, and the points of a curve share a seed: {_AT_ONE_SEED}",
     ),
 }
-"""In the order in which they are named; of those that a design feeds the first is its own."""
+"""In the order in which they are listed; the first of those that a design feeds is its default."""
 
 
 def fed_by(design: Design, dependent: bool = False) -> tuple[str, ...]:
@@ -166,7 +147,7 @@ def fed_by(design: Design, dependent: bool = False) -> tuple[str, ...]:
 
 
 def piloted_by(design: Design) -> str | None:
-    """Return the method whose indices a few groups of a design forecast, if there is one."""
+    """Return the method with a pilot for a design, if there is one."""
     return next((name for name in fed_by(design) if METHODS[name].pilot), None)
 
 

@@ -1,4 +1,4 @@
-"""What goes into a sensitivity method: one output, and the rows that it is known of."""
+"""What a sensitivity method works on: one output and the rows of its design."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -48,10 +48,15 @@ class Sample:
         """Return a sample without groups; `more` are other fields of it."""
         return cls(values, inputs, alone(len(values)), **more)
 
+    @property
+    def grouped(self) -> Floats:
+        """The output by replicate, group and row, shape (R, N, k)."""
+        return self.values[self.groups]
+
     @cached_property
     def whole(self) -> NDArray[np.bool_]:
         """Which groups have a value in each of their rows, shape (R, N)."""
-        return np.asarray(np.isfinite(self.values[self.groups]).all(axis=-1))
+        return np.asarray(np.isfinite(self.grouped).all(axis=-1))
 
     def rows(self, kept: NDArray[np.intp]) -> Self:
         """Return some rows of a plain sample."""

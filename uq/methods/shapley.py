@@ -1,15 +1,15 @@
-"""Shapley effects: shares of the variance that sum to one, whatever the inputs do together."""
+"""Shapley effects: shares of the variance that sum to one, whatever the interactions."""
 
 import numpy as np
 
 from uq.estimate import Estimate
-from uq.intervals import UNKNOWN, Ends, is_constant, scatter_interval
+from uq.intervals import UNKNOWN, is_constant, scatter_interval
 from uq.methods.indices import ALL_NOISE, SHAPLEY, Indices, RefusedError
 from uq.methods.method import NO_VARIANCE
-from uq.methods.sample import Floats, Sample
+from uq.methods.sample import Sample
 
 MIN_PATHS = 32
-"""Fewer paths than this have a mean whose interval Student's law does not give."""
+"""With fewer paths Student's law does not give the interval of a mean."""
 
 
 def shapley_indices(sample: Sample) -> Indices:
@@ -23,8 +23,8 @@ def shapley_indices(sample: Sample) -> Indices:
     Returns
     -------
     Indices
-        ``shapley``, shares of the variance. Paths are independent: the interval is Student's, of
-        the ratio to first order.
+        ``shapley``, shares of the variance. Paths are independent: intervals are Student's, for the
+        ratio linearised.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def shapley_indices(sample: Sample) -> Indices:
        Reliab. Eng. Syst. Saf. 213, 107702 (2021).
     """
     whole = sample.whole
-    y = sample.values[sample.groups][whole]
+    y = sample.grouped[whole]
     if is_constant(y):
         raise RefusedError(NO_VARIANCE)
     before, after = y[:, :-1], y[:, 1:]
@@ -55,13 +55,9 @@ def shapley_indices(sample: Sample) -> Indices:
         raise RefusedError(ALL_NOISE)
     shares = parts.mean(axis=0) / total.mean()
     errors = (parts - shares * total[:, None]) / total.mean()
-    found = {
-        name: Estimate(float(share), *_interval(float(share), error))
-        for name, share, error in zip(sample.inputs, shares, errors.T, strict=True)
-    }
+    found = {}
+    for name, share, error in zip(sample.inputs, shares.tolist(), errors.T, strict=True):
+        # Errors of rounding alone give no interval.
+        ends = UNKNOWN if is_constant(share + error) else scatter_interval(share, error)
+        found[name] = Estimate(share, *ends)
     return Indices({SHAPLEY: found})
-
-
-def _interval(share: float, errors: Floats) -> Ends:
-    """Return the interval of a share from the errors of its paths, none of rounding alone."""
-    return UNKNOWN if is_constant(share + errors) else scatter_interval(share, errors)

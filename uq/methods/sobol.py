@@ -1,21 +1,20 @@
 """Sobol' indices of a crossed design: SALib's estimators, intervals from the replicates."""
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import combinations
 
 import numpy as np
 
 from uq.designs.layouts import NOISE
-from uq.estimate import Estimate
 from uq.intervals import is_constant
-from uq.methods.few_rows import effective_rows, one_more_row, widened
-from uq.methods.groups import by_replicates
+from uq.methods.groups import Values, by_replicates, effective_rows, one_more_row, widened
 from uq.methods.indices import S1, S2, ST, Indices, Kind, RefusedError
 from uq.methods.method import NO_VARIANCE
 from uq.methods.sample import Floats, Sample
 
 MIN_GROUPS = 8
-"""Fewer groups than this give no index worth the name."""
+"""Fewer groups than this do not give a useful index."""
 
 _NOISE = Kind(NOISE, "share of noise", "variance")
 
@@ -31,9 +30,9 @@ def sobol_indices(sample: Sample) -> Indices:
     Returns
     -------
     Indices
-        From all groups together; the interval from the same estimate by replicates. Where the
-        variance rests on few rows, it is widened by what one more such row might do. Of a random
-        model `noise` is the total index of the seed.
+        Pooled over all groups, with intervals from the scatter between replicates. Where the
+        variance rests on few rows, intervals are widened by the effect of one more such row. For a
+        random model `noise` is the total index of the seed.
 
     Raises
     ------
@@ -42,41 +41,42 @@ def sobol_indices(sample: Sample) -> Indices:
 
     Notes
     -----
-    Of a random model A and AB_i share a seed, B and BA_i another, and `NOISE` has the inputs of A
-    and the seed of B. S1 and S2 are means of products of rows of both seeds, which noise enters
-    through the variance alone. ST is a mean square of differences at one seed: of the noise it
-    holds what it does together with the input.
+    For a random model A and AB_i share a seed, B and BA_i another, and `NOISE` has the inputs of A
+    and the seed of B. S1 and S2 are means of products of rows with different seeds, which noise
+    enters through the variance alone. ST is a mean square of differences at one seed: of the noise
+    it includes the interaction with the input.
 
     References
     ----------
     A. Saltelli et al., "Variance based sensitivity analysis of model output. Design and estimator
     for the total sensitivity index", Comput. Phys. Commun. 181, 259-270 (2010).
     """
-    y, whole = sample.values[sample.groups], sample.whole
+    y, whole = sample.grouped, sample.whole
     ends = [sample.blocks.index("A"), sample.blocks.index("B")]
     independent = y[whole][:, ends]
     if is_constant(independent):
         raise RefusedError(NO_VARIANCE)
-    # The estimators lose digits, and scatter more, on values far from zero (Sobol' 2001).
+    # The estimators lose digits, and scatter more, for values far from zero (Sobol' 2001).
     y = (y - independent.mean()) / independent.std()
 
     replicates = [group[rows] for group, rows in zip(y, whole, strict=True)]
     few = any(len(own) < 2 or is_constant(own[:, ends]) for own in replicates)
     lacking = "in some replicates too few rows differ" if few else ""
     found, notes = by_replicates(
-        lambda groups: _estimates(sample.blocks, groups), y[whole], replicates, "indices", lacking
+        partial(_estimates, sample.blocks), y[whole], replicates, "indices", lacking
     )
     independent = y[whole][:, ends].ravel()
     more = one_more_row(independent, int(whole.sum()), len(replicates))
     if more and not notes:
         rows = effective_rows(independent) / len(replicates)
         notes += (
-            f"the variance rests on some {rows:.2g} rows of each replicate: intervals are widened"
-            " by what one more such row might do, and are conservative",
+            f"the variance rests on about {rows:.2g} rows of each replicate: intervals are widened"
+            " by the effect of one more such row, and are conservative",
         )
-    indices: dict[Kind, dict[str, Estimate]] = {}
-    for (kind, label), estimate in found.items():
-        indices.setdefault(kind, {})[label] = widened(estimate, more)
+    indices = {
+        kind: {label: widened(estimate, more) for label, estimate in values.items()}
+        for kind, values in found.items()
+    }
     noise = indices.pop(_NOISE, {}).get("")
     inert = [name for name, total in indices[ST].items() if total.value == 0]
     if inert:
@@ -88,28 +88,30 @@ def _parameters(blocks: Sequence[str]) -> list[str]:
     return [label.removeprefix("AB_") for label in blocks if label.startswith("AB_")]
 
 
-def _estimates(blocks: Sequence[str], y: Floats) -> dict[tuple[Kind, str], float]:
+def _estimates(blocks: Sequence[str], y: Floats) -> Values:
     """Return each index from groups y, shape (n, blocks)."""
     from SALib.analyze.sobol import first_order, second_order, total_order
 
     block = dict(zip(blocks, y.T, strict=True))
-    a, b = block["A"], block["B"]
-    found = {}
-    for name in _parameters(blocks):
-        found[S1, name] = first_order(a, block[f"AB_{name}"], b)
-        found[ST, name] = total_order(a, block[f"AB_{name}"], b)
+    a, b, names = block["A"], block["B"], _parameters(blocks)
+    found = {
+        S1: {name: float(first_order(a, block[f"AB_{name}"], b)) for name in names},
+        ST: {name: float(total_order(a, block[f"AB_{name}"], b)) for name in names},
+    }
     if NOISE in block:
-        found[_NOISE, ""] = total_order(a, block[NOISE], b)
+        found[_NOISE] = {"": float(total_order(a, block[NOISE], b))}
     if any(label.startswith("BA_") for label in block):
-        for one, other in combinations(_parameters(blocks), 2):
-            found[S2, f"{one},{other}"] = second_order(
-                a, block[f"AB_{one}"], block[f"AB_{other}"], block[f"BA_{one}"], b
+        found[S2] = {
+            f"{one},{other}": float(
+                second_order(a, block[f"AB_{one}"], block[f"AB_{other}"], block[f"BA_{one}"], b)
             )
-    return {key: float(value) for key, value in found.items()}
+            for one, other in combinations(names, 2)
+        }
+    return found
 
 
 def pilot(sample: Sample) -> dict[Kind, float]:
-    """Return the largest standard deviation of what a group adds to S1 and to ST, over inputs.
+    """Return the largest standard deviation, over inputs, of a group's share in S1 and in ST.
 
     Parameters
     ----------
@@ -120,7 +122,7 @@ def pilot(sample: Sample) -> dict[Kind, float]:
     -------
     dict of Kind to float
     """
-    y = sample.values[sample.groups][sample.whole]
+    y = sample.grouped[sample.whole]
     block = dict(zip(sample.blocks, ((y - y.mean()) / y.std()).T, strict=True))
     mixed = [block[f"AB_{name}"] for name in _parameters(sample.blocks)]
     return {

@@ -1,5 +1,6 @@
 """The study of a result, or of a run that is not complete."""
 
+import os
 from pathlib import Path
 
 from uq.errors import InputError
@@ -43,7 +44,7 @@ def study_of(path: Path, model: str | None = None) -> Study:
 
 def _recorded(path: Path) -> tuple[str, str, str, int]:
     """Return identity, text, version of the model and samples of the study of a result."""
-    if not path.is_file() and (found := history(folder_of(path))):
+    if not os.path.isfile(path) and (found := history(folder_of(path))):
         run = found.run
         return run.identity, run.study, run.model_version, run.samples
     attrs = results.open_result(path).attrs

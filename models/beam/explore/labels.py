@@ -45,7 +45,7 @@ def check_counts(**counts: int) -> None:
 def equal_rows(params: Params, n: int) -> Rows:
     """Return the parameters of n equal beams, each field of shape (n,)."""
     if params.random_force_level > 0:
-        raise ValueError("random_force_level must be 0: these are results of the harmonic force")
+        raise ValueError("defined for a harmonic force only: random_force_level > 0")
     return Params._make(np.full(n, float(value)) for value in params)
 
 

@@ -1,9 +1,5 @@
 """The fast propagator: exact modes, the right order, and rows that do not see their neighbours."""
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from scipy.linalg import expm
@@ -204,30 +200,6 @@ def test_residual_flexibility_is_that_of_the_tip():
 def test_residual_flexibility_is_the_fast_propagators():
     with pytest.raises(ValueError, match="residual_flexibility needs propagator = 'fast'"):
         Settings(propagator="exact", residual_flexibility=True)
-
-
-def test_compiled_and_plain_python_agree():
-    script = """
-import numpy as np
-from tests.models.beam.test_lanes import nominal, prepared, at_rest
-from models.beam import lanes
-system = prepared(lanes, nominal(forcing_frequency=57.0), elements=2, steps_per_period=64)
-state, gaps = at_rest(lanes, system)
-record = lanes.advance(system, state, gaps, np.full((1, 2), 1e-4), 4)
-print(repr(np.concatenate([record.work.ravel(), record.strobe.ravel(), gaps.ravel()]).tolist()))
-"""
-    results = []
-    for disable in ("0", "1"):
-        done = subprocess.run(
-            [sys.executable, "-c", script],
-            env={**os.environ, "NUMBA_DISABLE_JIT": disable},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        results.append(np.array(eval(done.stdout)))
-    assert results[0].max() > 0.1
-    np.testing.assert_array_equal(results[0], results[1])
 
 
 def test_motion_that_has_died_out_is_zero_and_not_next_to_it():

@@ -1,17 +1,12 @@
 """The event-driven propagator: an independent driver, energy, the circuit, and hard cases."""
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import filippov
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
 from models.mole import exact
-from models.mole.exact import events, propagator
+from models.mole.exact import propagator
 from models.mole.parameters import FORMULATIONS, Params
 from models.mole.theory import equations
 from models.mole.theory.system import mole
@@ -259,35 +254,3 @@ def test_a_budget_ends_and_what_is_not_finite_is_found_out(monkeypatch):
     assert (motion.status, motion.steps) == (OUT_OF_BUDGET, 50)
     assert 0 < motion.state.time < 1
     assert np.isnan(motion.samples[1]).all() and np.isfinite(motion.samples[0]).all()
-
-
-SCRIPT = """
-import test_mole_exact as here
-print(here.short().tolist(), len(here.misses()))
-"""
-
-
-def short():
-    motion = exact.propagate(*begun(Params(supply_phase=0.3)), 0.15, 1e-7, [0.03, 0.12])
-    return np.concatenate([motion.samples[0], motion.samples[1], motion.state.y])
-
-
-def misses():
-    return getattr(getattr(events.run, "stats", None), "cache_misses", ())
-
-
-def test_compiled_code_is_kept_on_disk_and_agrees_with_plain_python():
-    expected = short()
-    here = Path(__file__).resolve()
-    paths = os.pathsep.join([str(here.parent), str(here.parents[3])])
-    for disable in ("0", "1"):
-        done = subprocess.run(
-            [sys.executable, "-c", SCRIPT],
-            env={**os.environ, "NUMBA_DISABLE_JIT": disable, "PYTHONPATH": paths},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        numbers, missed = done.stdout.rsplit(maxsplit=1)
-        assert missed == "0"
-        np.testing.assert_array_equal(eval(numbers), expected)

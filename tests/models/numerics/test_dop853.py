@@ -1,10 +1,6 @@
 """The integrator on systems whose motion is known."""
 
 import math
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -218,39 +214,6 @@ def test_every_integration_ends():
     np.testing.assert_allclose(2 * singular.time + math.sin(singular.time), 0.5, atol=1e-6)
     assert run(math.nan, 1000).status == STUCK
     assert run(-1.0, 7)._replace(step=0, time=0) == (OUT_OF_BUDGET, 0, -1, 0, 7, 0)
-
-
-SCRIPT = """
-import numpy as np
-import test_dop853
-out = np.empty(4)
-test_dop853.bounces(np.array([0.5, 0.1]), 0.9, 4, 1e-9, out)
-print(out.tolist(), len(getattr(getattr(test_dop853.bounces, "stats", None), "cache_misses", ())))
-"""
-
-
-def in_a_new_process(disable):
-    here = Path(__file__).resolve()
-    paths = os.pathsep.join([str(here.parent), str(here.parents[3])])
-    done = subprocess.run(
-        [sys.executable, "-c", SCRIPT],
-        env={**os.environ, "NUMBA_DISABLE_JIT": disable, "PYTHONPATH": paths},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    times, misses = done.stdout.rsplit(maxsplit=1)
-    return np.array(eval(times)), int(misses)
-
-
-def test_compiled_code_is_kept_on_disk_and_agrees_with_plain_python():
-    out = np.empty(4)
-    bounces(np.array([0.5, 0.1]), 0.9, 4, 1e-9, out)
-    again, misses = in_a_new_process("0")
-    assert misses == 0
-    np.testing.assert_array_equal(again, out)
-    plain, _ = in_a_new_process("1")
-    np.testing.assert_allclose(plain, out, rtol=0, atol=1e-13)
 
 
 def test_scipy_agrees_on_a_guarded_flight():

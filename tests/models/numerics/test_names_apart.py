@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 MADE = """
 import math
 import sys
@@ -54,6 +56,7 @@ for name in sys.argv[1:]:
 """
 
 
+@pytest.mark.slow
 def test_code_from_the_cache_and_new_code_keep_apart(tmp_path):
     """Without names apart the third process takes what it compiles for what it has loaded."""
     script = tmp_path / "made.py"

@@ -1,10 +1,5 @@
 """Periodic orbits: they close, their multipliers are true, and what cannot be found is said."""
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from machines import SYMMETRIC, plausible
@@ -210,29 +205,3 @@ def test_a_symmetric_machine_runs_in_phase():
     orbits = find(p, 24, off=0.3)
     assert orbits.found.all() and orbits.multiplier[0] < 1
     assert abs(mean_angle(p, orbits, 24)[0]) < 1e-12
-
-
-SCRIPT = """
-import numpy as np
-import test_orbit
-p = test_orbit.Params._make(field[:1] for field in test_orbit.MACHINES)
-found, state, period, multiplier = test_orbit.find(p, 8)
-trace = test_orbit.orbit.follow(test_orbit.pack(test_orbit.systems(p).rigid), state, period, 8)
-print(np.concatenate([found, state[0], period, multiplier, trace[0, 3]]).tolist())
-"""
-
-
-def test_plain_python_agrees_with_compiled_code():
-    here, results = Path(__file__).resolve(), []
-    paths = os.pathsep.join([str(here.parent), str(here.parents[3])])
-    for disable in ("0", "1"):
-        done = subprocess.run(
-            [sys.executable, "-c", SCRIPT],
-            env={**os.environ, "NUMBA_DISABLE_JIT": disable, "PYTHONPATH": paths},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        results.append(np.array(eval(done.stdout)))
-    assert len(results[0]) == 23 and results[0][0]
-    np.testing.assert_array_equal(results[1], results[0])

@@ -1,10 +1,5 @@
 """The equations of the rigid machine without feed."""
 
-import os
-import subprocess
-import sys
-from pathlib import Path
-
 import lagrange
 import numpy as np
 import paper
@@ -105,39 +100,3 @@ def test_a_symmetric_machine_keeps_its_symmetry():
     across = y * np.cos(p.working_angle) - x * np.sin(p.working_angle)
     np.testing.assert_allclose(across, 0, rtol=0, atol=1e-12)
     assert np.hypot(x, y).max() > 2e-3
-
-
-SCRIPT = """
-import numpy as np
-from models.vibrator.exact import propagator
-from models.vibrator.parameters import Params
-from models.vibrator.equations.system import system
-out = []
-for p, kinematics in ((Params(), "small"), (Params(mount_stiffness=2e7), "exact")):
-    m = system(p, kinematics)
-    if kinematics == "exact":
-        m = m._replace(feed_mass=200.0, feed_gravity=9.81)
-    start = propagator.start(p, m)
-    start[len(start) // 2 + 3 : len(start) // 2 + 5] = 150.0
-    out += propagator.propagate(m, start, 0.005, 1e-6).state.tolist()
-print(out)
-"""
-
-
-def test_plain_python_agrees_with_compiled_code():
-    results = []
-    for disable in ("0", "1"):
-        done = subprocess.run(
-            [sys.executable, "-c", SCRIPT],
-            env={
-                **os.environ,
-                "NUMBA_DISABLE_JIT": disable,
-                "PYTHONPATH": str(Path(__file__).parents[3]),
-            },
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        results.append(np.array(eval(done.stdout)))
-    assert len(results[0]) == 26
-    np.testing.assert_allclose(results[0], results[1], rtol=1e-10, atol=1e-13)

@@ -1,53 +1,18 @@
-"""The random load: the process it is, the same motion by three propagators, and honest errors."""
+"""The random force: the process it is, and the same motion by three propagators."""
 
 import numpy as np
 import pytest
+from random_load import LEVEL, PURE, nominal, prepared, started
 from scipy.integrate import quad, solve_ivp
 from scipy.signal import welch
 from scipy.stats import kstest
 
-from models.beam import MODEL, exact, lanes
-from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
-from models.beam.response.settling import settle
+from models.beam import exact, lanes
+from models.beam.parameters import Settings
 from models.beam.structure.modal import beams, reach
 from models.beam.structure.random_lines import COUNT, force
 from models.beam.structure.random_response import tip_deviation
-from models.beam.wear.fitted_wear import FittedWear, fit
-from models.beam.wear.random_lives import _step
 from models.numerics.blocks import LANES
-from uq.contract import Status
-
-LEVEL = 1e-3  # N2 Hz-1
-PURE = {"force_amplitude": 0.0, "random_force_level": LEVEL}
-
-
-def nominal(n=1, **values):
-    fields = {**Params._field_defaults, **values}
-    return Params(*(np.broadcast_to(np.asarray(v, float), (n,)).copy() for v in fields.values()))
-
-
-def prepared(propagator, p, seeds=None, **settings):
-    s = Settings(**settings)
-    seeds = np.arange(len(p.length)) if seeds is None else seeds
-    b = beams(p, s, np.asarray(seeds, np.uint64))
-    ((_, system),) = propagator.groups(b, s)
-    return b, system
-
-
-def started(propagator, system, p, gap=1.0):
-    x0 = p.initial_gap
-    state = propagator.start(system, p.initial_displacement / x0, p.initial_velocity / x0)
-    return state, np.full((len(x0), 2), gap)
-
-
-def rows(n=1, **values):
-    x = np.tile(list(MODEL.nominal.values()), (n, 1))
-    for name, value in values.items():
-        x[:, Params._fields.index(name)] = value
-    return x
-
-
-# The force
 
 
 def many_forces(n, seconds, rate, **values):
@@ -58,6 +23,7 @@ def many_forces(n, seconds, rate, **values):
     return np.array([p.initial_gap[0] * force(load, periods) for load in b.load])
 
 
+@pytest.mark.slow
 def test_the_force_has_the_level_asked_for_within_the_band_and_little_outside():
     low, high = 5.0, 120.0
     band = {"random_force_low": low, "random_force_high": high, "mass_damping": 60.0}
@@ -248,127 +214,6 @@ def test_a_load_too_fast_for_the_steps_is_refused_and_followed_with_more():
     assert system.steps >= 16 * 3000 / 57.1042
 
 
-# Work-rates and lives
-
-
-def test_a_random_response_is_aperiodic_and_its_error_covers_what_other_seeds_give():
-    n = 48
-    p = nominal(n, mass_damping=20.0, **{**PURE, "random_force_level": 1e-2})
-    _, system = prepared(lanes, p)
-    state, gaps = started(lanes, system, p)
-    found = settle(lanes, system, state, gaps)
-    assert all(REGIMES[r] == "aperiodic" for r in found.regime)
-    assert (found.period == 0).all() and (found.peak > 0).all()
-    relative = found.error / found.work
-    assert 0.05 < np.median(relative) < 0.115 and (relative < 0.25).all()
-    off = np.abs(found.work - found.work.mean())
-    assert 0.8 < (off < found.error).mean() < 0.98
-
-
-def test_a_random_load_too_weak_to_touch_does_no_work_and_wears_for_ever():
-    x = rows(force_amplitude=0.0, random_force_level=1e-9)
-    outputs, status = MODEL.batch(x, np.zeros(1, np.uint64), Settings())
-    assert status[0] == Status.OK
-    assert REGIMES[outputs["regime"][0]] == "no-impact"
-    assert not outputs["work_rate"].any()
-    assert np.isposinf(outputs["first_time_to_depth"]).all()
-    assert outputs["regime_changes"][0] == 0
-
-
-@pytest.mark.slow
-def test_lives_cover_what_other_seeds_give():
-    n = 32
-    x = rows(n, mass_damping=20.0, force_amplitude=0.0, random_force_level=1e-2)
-    settings = Settings(depths=(1.25e-4, 2.5e-4), accuracy=0.1)
-    outputs, status = MODEL.batch(x, np.arange(n, dtype=np.uint64), settings)
-    assert (status == Status.OK).all()
-    life, error = outputs["time_to_depth"], outputs["time_to_depth_error"]
-    off = np.abs(life - life.mean(axis=(0, 1)))
-    assert (error > 0).all() and (error < 0.3 * life).all()
-    assert (off < error).mean() > 0.8
-
-
-def test_a_seed_is_a_row_s_own_and_does_not_matter_without_random_load():
-    x = np.vstack([rows(2, mass_damping=60.0, **PURE), rows(2, forcing_frequency=54.797)])
-    seed = np.array([1, 2, 1, 2], np.uint64)
-    settings = Settings(depths=(1e-5,), accuracy=0.3)
-    outputs, _ = MODEL.batch(x, seed, settings)
-    work = outputs["work_rate"]
-    assert outputs["regime_changes"][:2].tolist() == [0, 0]
-    assert (work[0] != work[1]).any() and (work[2] == work[3]).all()
-    again, _ = MODEL.batch(x[1:2], seed[1:2], settings)
-    for name in OUTPUTS:
-        assert np.array_equal(again[name][0], outputs[name][1], equal_nan=True), name
-
-
-@pytest.mark.parametrize("propagator", ["fast", "exact"])
-def test_a_band_without_width_is_said_and_harms_no_other_row(propagator):
-    x = rows(3, forcing_frequency=54.797, random_force_level=[1e-3, 0.0, 1e-3])
-    x[:, Params._fields.index("random_force_low")] = [50.0, 50.0, 50.0]
-    x[:, Params._fields.index("random_force_high")] = [40.0, 40.0, 50.0]
-    x[:, Params._fields.index("force_amplitude")] = 0.05
-    settings = Settings(depths=(1e-5,), accuracy=0.3, propagator=propagator)
-    outputs, status = MODEL.batch(x, np.zeros(3, np.uint64), settings)
-    assert status.tolist() == [Status.NON_FINITE, Status.OK, Status.NON_FINITE]
-    for name, output in OUTPUTS.items():
-        if not output.is_category:
-            assert np.isnan(outputs[name][[0, 2]]).all(), name
-    assert np.isfinite(outputs["work_rate"][1]).all()
-
-
-def test_a_trajectory_shows_the_random_force_of_its_seed():
-    p = Params(random_force_level=LEVEL, mass_damping=60.0)
-    one, other = (MODEL.simulate(p, Settings(), seed).quantities for seed in (3, 4))
-    (_, _, f), (_, _, g) = one["random_force"], other["random_force"]
-    assert f.std() == pytest.approx(np.sqrt(LEVEL * 198), rel=0.3)
-    assert (f != g).any()
-    assert "random_force" not in MODEL.simulate(Params(), Settings(), 3).quantities
-
-
-def test_a_noisy_rate_is_fitted_without_bias_and_with_its_error():
-    rng = np.random.default_rng(4)
-    t = np.linspace(0.0, 1.0, 13)
-    true = 1.0 - 2.0 * t + 0.5 * t**3
-    found = []
-    for _ in range(400):
-        coefficient, covariance = fit(t, np.exp(true) * rng.gamma(5.0, 0.2, 13))
-        found.append((coefficient.sum() - true[-1], np.sqrt(covariance.sum())))
-    off, error = np.array(found).T
-    assert abs(np.exp(off).mean() - 1) < 0.15
-    assert error.mean() == pytest.approx(off.std(), rel=0.25)
-
-
-def test_a_fit_of_next_to_nothing_is_no_overflow():
-    """A site that wears by fits and starts, over thirty powers of ten."""
-    rate = np.array([1e-300, 1e-3, 1e-250, 1.0, 1e-200, 1e3, 1e-300, 1e-300, 1e-280, 1e-300])
-    wear = FittedWear(np.linspace(0.0, 1.0, 10), rate, rate)
-    assert np.isposinf(wear.life(1.0)[0]) or wear.life(1.0)[0] > 0
-
-
-def test_contacts_that_are_rare_are_waited_for():
-    """One in some hundred periods: a thousand periods without one are no zero."""
-    x = rows(4, force_amplitude=0.0, random_force_level=9e-7)
-    outputs, status = MODEL.batch(x, np.arange(4, dtype=np.uint64), Settings(depths=(1e-5,)))
-    assert (status == Status.OK).sum() >= 3
-    done = status == Status.OK
-    assert (outputs["work_rate_heavy"][done] > 0).all()
-
-
-def test_what_is_averaged_has_forgotten_its_start():
-    """At 1600 Hz the first mode remembers for longer than the budget lasts."""
-    x = rows(2, forcing_frequency=[57.0, 1600.0], mass_damping=0.5, force_amplitude=0.0)
-    x[:, Params._fields.index("random_force_level")] = 1e-2
-    _, status = MODEL.batch(x, np.zeros(2, np.uint64), Settings(depths=(1e-5,), accuracy=0.3))
-    assert status.tolist() == [Status.OK, Status.OUT_OF_BUDGET]
-
-
-def test_a_load_that_takes_too_many_steps_is_out_of_budget():
-    x = rows(forcing_frequency=1.0, random_force_level=1e-3, random_force_high=1000.0)
-    outputs, status = MODEL.batch(x, np.zeros(1, np.uint64), Settings())
-    assert status[0] == Status.OUT_OF_BUDGET
-    assert np.isnan(outputs["work_rate"]).all()
-
-
 def test_lines_are_many_where_the_beam_is_sharp():
     p = nominal(**PURE)
     b = beams(p, Settings(), np.zeros(1, np.uint64))
@@ -376,33 +221,3 @@ def test_lines_are_many_where_the_beam_is_sharp():
     assert len(edges) == COUNT + 1 and (np.diff(edges) >= 0).all()
     for f in b.frequency[0, :2] / (2 * np.pi):
         assert np.sum(np.abs(edges - f) < 0.5) >= 5
-
-
-def test_no_work_is_done_at_a_stop_out_of_reach():
-    """The tip turns within a contact, and hardly beyond it: neither is the other site's."""
-    p = nominal(16, random_force_level=2.0)
-    _, system = prepared(lanes, p)
-    state, gaps = started(lanes, system, p)
-    gaps[:, 1] = 1e6
-    work = lanes.advance(system, state, gaps, np.zeros((16, 2)), 512).work
-    assert (work[:, :, 1] == 0).all()
-    assert (work[:, :, 0].sum(axis=1) > 0).all()
-
-
-def test_a_site_much_faster_than_the_other_keeps_a_gap_of_known_size():
-    grown = _step(np.array([[2.0, 0.1]]), np.array([[1e12, 1.0]]), np.array([[0.5, 1.0]]))
-    assert grown[0, 0] == pytest.approx(2 * 2.0 + 1.0)
-    assert grown[0, 1] == pytest.approx(0.1 + 3e-12)
-
-
-def test_a_beam_that_its_steps_throw_out_of_all_bounds_is_out_of_budget():
-    """A stiff contact that hardly ends feeds on what the steps make of it."""
-    x = rows(2)
-    x[0] = [
-        *(18.4133, 165.819, 0.282995, 5194780.0, 6814.32, 4845627.0, 21.7748, 99.4254, 4.06674e-3),
-        *(-0.317745, 10.0677, 5.43682e-5, 6.8e-11, 5.92539, 3.47426e-3, -0.0801288, -2.51198),
-        *(535.794, 890.099, 2202.53),
-    ]
-    outputs, status = MODEL.batch(x, np.array([744, 0], np.uint64), Settings(depths=(1e-5,)))
-    assert status.tolist() == [Status.OUT_OF_BUDGET, Status.OK]
-    assert np.isnan(outputs["work_rate"][0]).all()
