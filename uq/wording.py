@@ -126,7 +126,7 @@ def percent_with_interval(estimate: Estimate, failed: Estimate | None = None) ->
     worst = ""
     if failed is not None and failed.has_interval:
         worst = f"; with failed rows {percent_interval(failed.low, failed.high)}"
-    return f"{told} ({percent_interval(estimate.low, estimate.high)}{worst})"
+    return f"{told} (95 % interval {percent_interval(estimate.low, estimate.high)}{worst})"
 
 
 def percent_interval(low: float, high: float) -> str:

@@ -110,7 +110,7 @@ def test_another_wish_after_a_kill_changes_no_row(study, under_way, call, folder
     ended = uq.open_result(OUT)
     size = ended.sizes["sample"]
     assert size == min(look for look in LOOKS if look >= kept)
-    assert f"reached at look {1 + LOOKS.index(size)} of" in " ".join(said.split())
+    assert f"reached at interim estimate {1 + LOOKS.index(size)} of" in " ".join(said.split())
     for name in ("x1", "x2", "y", "z", "status"):
         assert ended[name].values.tobytes() == whole[name].values[:size].tobytes()
     study.write_text(plain)  # no wish any more: all rows

@@ -119,7 +119,7 @@ def test_what_is_not_a_number_has_one_pattern_of_bits():
         ("WRONG_NAME", ["returned no output 'y'", "returned 'z', which is not declared"]),
         ("WRONG_DTYPE", ["'y' is float32, expected float64"]),
         ("WRONG_STATUS", ["no such status: 99"]),
-        ("WRONG_CATEGORY", ["'y' has a category not declared"]),
+        ("WRONG_CATEGORY", ["'y' has an undeclared category"]),
         ("NO_TUPLE", ["batch must return (outputs, status)"]),
         ("A_LIST", ["'y' is a list, expected an array of float64"]),
     ],

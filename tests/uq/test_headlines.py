@@ -26,7 +26,7 @@ def subjects(ds, method, outputs):
 
 
 def test_failed_rows_come_first():
-    assert told(linear(samples=20))[0] == "No row failed."
+    assert told(linear(samples=20))[0] == "All rows were computed."
     assert told(linear(samples=20), failed=3)[0] == "3 of 20 rows failed."
 
 
@@ -66,23 +66,24 @@ def test_what_the_study_asks_of_an_output_stands_behind_its_median():
     found = summarised(ds)["outputs"]
     bound = f"{found['life']['tolerance']['lower'] / DAY:.5g}"
     assert life == (
-        f"With 95 % confidence, 90 % of all take longer than {bound} days."
-        " 11.5 % (7.8 to 16.7 %) end within 2 days."
+        f"90/95 lower bound: {bound} days. 11.5 % (95 % interval 7.8 to 16.7 %) end within 2 days."
     )
-    assert turn == "20.0 % (15.0 to 26.1 %) lie beyond 0.4 m on either side."
+    assert turn == "20.0 % (95 % interval 15.0 to 26.1 %) exceed 0.4 m in magnitude."
     share = found["y"]["thresholds"]["5.0"]["above"]["value"]
-    assert y.startswith(f"{100 * share:.1f} % (") and y.endswith(" lie above 5.")
+    assert y.startswith(f"{100 * share:.1f} % (") and y.endswith(" exceed 5.")
     _, alone = told(asking(ds, outputs=["life"], quantiles=[0.9], thresholds={"life": 2 * DAY}))
-    assert alone == "Meaning of life: 11.5 % (7.8 to 16.7 %) end within 2 days."
+    assert alone == "Meaning of life: 11.5 % (95 % interval 7.8 to 16.7 %) end within 2 days."
 
 
 def test_an_input_matters_most_only_where_the_others_are_known_to_matter_less():
     ds = linear("saltelli", samples=64, replicates=4)
     ds = with_output(ds, "even", ds["x1"].values + ds["x2"].values)
     settled, open_ = (one.leading for one in subjects(ds, "sobol", ["y", "even"]))
-    assert re.fullmatch(r"Independent input \(x_4\) matters most to .*ST = 0\.\d+\)\.", settled)
     assert re.fullmatch(
-        r"Which input matters most to meaning of even is not settled"
+        r"Independent input \(x_4\) explains \d+\.\d % of the variance of the .*ST\)\.", settled
+    )
+    assert re.fullmatch(
+        r"The leading input for the meaning of even is not settled"
         r" \(sobol: ST of x[12] is 0\.\d+ to 0\.\d+\)\.",
         open_,
     )
@@ -94,7 +95,7 @@ def test_an_input_that_does_little_does_not_lead():
     hardly = with_output(ds, "hardly", 0.6 * ds["x1"].values + rng.normal(size=2000))
     (subject,) = subjects(hardly, "rbd-fast", ["hardly"])
     assert subject.leading.startswith(
-        "No input alone does much to meaning of hardly (rbd-fast: S1 is 0.0"
+        "No single input explains much of the variance of the meaning of hardly (rbd-fast: S1 = 0.0"
     )
 
 

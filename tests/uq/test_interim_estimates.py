@@ -57,4 +57,4 @@ def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
 
 def test_it_is_said_at_which_look_a_run_knew_enough():
     (note,) = summarised(runner.compute(study(10.0, samples=500), workers=0))["notes"]
-    assert "was reached at look 1 of at most 5" in note
+    assert "was reached at interim estimate 1 of at most 5" in note

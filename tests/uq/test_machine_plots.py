@@ -106,7 +106,7 @@ def test_a_history_in_panels_of_one_and_of_several_quantities():
     assert labels(figure) == ["[m s⁻¹]", "Time [hours]"]
     assert figure.axes[0].lines[0].get_xdata().tolist() == [0.0, 2.0]
     assert [line.get_label() for line in figure.axes[0].lines] == ["First", "Second"]
-    with pytest.raises(InputError, match=r"unlike units .*: x \[m\], v \[m s-1\]"):
+    with pytest.raises(InputError, match=r"different units .*: x \[m\], v \[m s-1\]"):
         plots.history(ds, [["x", "v"]])
     with pytest.raises(InputError, match="no such quantity 'sped'; did you mean 'speed'?"):
         plots.history(xr.Dataset({"speed": ("time", [1.0])}, {"time": [0.0]}), ["sped"])
@@ -198,7 +198,7 @@ def test_what_cannot_be_drawn_is_refused_in_words(worn):
     with pytest.raises(InputError, match="'regime' is not numeric and cannot be drawn"):
         plots.curve(gaps, "regime", against="gap")
     deep = gaps.assign(cube=gaps["gap"] * xr.DataArray([1.0, 2.0], dims="layer"))
-    with pytest.raises(InputError, match="along case, site, layer: one or two dimensions"):
+    with pytest.raises(InputError, match="along case, site, layer, not one or two dimensions"):
         plots.curve(deep, "cube", against="gap")
     with pytest.raises(InputError, match="no variable varies along time"):
         plots.history(gaps)

@@ -83,7 +83,7 @@ def test_titles_of_indices_are_in_words():
     assert "Logarithm of the meaning of life" in words(plots.index_bars(ds, "log(life)"))
     assert "Rank of the meaning of life" in words(plots.index_bars(ds, "rank(life)"))
     assert "Inverse of the meaning of life" in words(plots.index_bars(ds, "rate(life)"))
-    assert "Whether it ends before 2 hours: meaning of life" in words(
+    assert "Whether the meaning of life is below 2 hours" in words(
         plots.index_bars(ds, "P(life<7200.0)")
     )
     with pytest.raises(InputError, match=r"'life' is ambiguous; name one of: log\(life\), P"):

@@ -35,10 +35,10 @@ def told():
     [
         "384, statistics from 128 independent ones",
         "2 replicates",
-        "Rows that failed: 2 . They lack",
-        "Up to 5 % may fail",
-        "3 rows were computed again with changed settings",
-        "Cut here; the result carries all of it",
+        "Failed rows: 2 . They lack",
+        "fails if more than 5 % of its rows do",
+        "3 rows were recomputed with other settings",
+        "Truncated; the attribute study of the result",
         "No effect in any row, hence no interval: x3, x4.",
         "uq run linear.toml --samples 32",
         f"uq verify {escape(repr('my result.nc'))}",
@@ -56,7 +56,7 @@ def test_nothing_on_a_page_acts_where_it_is_copied_to(told):
 def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples():
     text = page(linear("sobol", samples=16), "out.nc")
     assert "uq run linear.toml\n" in text
-    assert "Cut here" not in text and "were computed again" not in text
+    assert "Truncated" not in text and "were recomputed" not in text
 
 
 def test_a_picture_is_told_to_who_cannot_see_it():

@@ -170,7 +170,7 @@ def test_indices_are_ranked_beside_an_input_without_effect():
     (method,) = sensitivity_of(Findings(ds))
     lost = int(ds["y"].isnull().sum())
     assert lost > 0
-    assert method.used.startswith(f"Of {200 - lost} rows, {lost} groups dropped")
+    assert method.used.startswith(f"From {200 - lost} rows; {lost} groups with missing")
     (table,) = method.subjects[0].tables
     names = [row[0].text for row in table.rows]
     nulls = ["(an input without effect)", "(largest of 4 such inputs)"]
@@ -181,7 +181,7 @@ def test_indices_are_ranked_beside_an_input_without_effect():
 
 def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
     (method,) = sensitivity_of(Findings(linear("saltelli", samples=32, replicates=4)))
-    assert method.used == "Of 768 rows"
+    assert method.used == "From 768 rows"
     first, *_ = method.subjects[0].tables[0].rows
     low, high = map(float, first[1].more.split(" to "))
     assert low < float(first[1].text) < high
@@ -192,7 +192,7 @@ def test_errors_of_the_rows_stand_beside_that_of_sampling_in_one_unit():
     found = convergence_of(Findings(ds), outcomes(ds, summarise(ds)))
     line = lines(found.table)["life"]
     assert (line["unit"], line["error of the rows"]) == ("days", "0.5")
-    assert float(line["half-width of its interval"]) == pytest.approx(1.6, abs=0.1)
+    assert float(line["half-width of the interval"]) == pytest.approx(1.6, abs=0.1)
     assert found.warnings == [] and found.refused == ""
 
 

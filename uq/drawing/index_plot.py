@@ -114,13 +114,15 @@ def subject(ds: xr.Dataset, name: str) -> str:
     form, inside, threshold = split_name(name)
     category, _, label = inside.partition("=")
     if is_category(ds, category):
-        return sentence(f"whether it is {label}: {ds[category].attrs['long_name']}", width=56)
+        meaning = ds[category].attrs["long_name"].removeprefix("the ")
+        return sentence(f"whether the {meaning} is {label}", width=56)
     (element,) = named_elements(ds, inside)
     place = place_in_words(element, ds[element.output])
     words = element.meaning + (f", {place}" if place else "")
     if threshold:
         unit = time_unit(float(threshold))
-        words = f"whether it ends before {float(threshold) / unit.seconds:g} {unit.name}: {words}"
+        at = f"{float(threshold) / unit.seconds:g} {unit.name}"
+        words = f"whether the {words.removeprefix('the ')}{',' * bool(place)} is below {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
     return sentence(words, width=56)

@@ -1,4 +1,4 @@
-"""What a report says of convergence: estimates as rows came in, and the other errors."""
+"""Convergence in a report: running estimates, and the errors of the rows themselves."""
 
 from typing import NamedTuple, cast
 
@@ -13,15 +13,15 @@ from uq.wording import number
 
 
 class Convergence(NamedTuple):
-    """Whether it is enough.
+    """The convergence of the estimates of a result.
 
     Attributes
     ----------
     table : Table or None
-        The error of sampling beside that of the rows themselves.
+        The sampling error and the error of the rows themselves.
     warnings : list of str
     refused : str
-        Why nothing is known of fewer rows, or "".
+        Why there are no running estimates, or "".
     pictures : list of Picture
     """
 
@@ -32,7 +32,7 @@ class Convergence(NamedTuple):
 
 
 def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
-    """Return what is known of the convergence of a result.
+    """Return the convergence of a result.
 
     Parameters
     ----------
@@ -45,23 +45,22 @@ def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
     Convergence
     """
     if not found:
-        return Convergence(None, [], "there is no output with numbers", [])
+        return Convergence(None, [], "there is no numeric output", [])
     errors = enough(findings.ds)
-    told = [one for one in found if one.name in errors.index]
-    lines = ((one, cast(pd.Series, errors.loc[one.name])) for one in told)
-    rows = [_row(one, line) for one, line in lines if line[["sampling", "own"]].notna().any()]
-    header = ("output", "unit", "estimate", "half-width of its interval", "error of the rows")
-    table = without_empty_columns(Table("Error of sampling", header, rows)) if rows else None
-    warnings = [
-        f"{one.name}: {words}" for one in told if (words := str(errors.loc[one.name, "warning"]))
+    lines = [
+        (one, cast(pd.Series, errors.loc[one.name])) for one in found if one.name in errors.index
     ]
-    drawn = [picture for _, picture in pictures(findings, "convergence")]
+    rows = [_row(one, line) for one, line in lines if line[["sampling", "own"]].notna().any()]
+    header = ("output", "unit", "estimate", "half-width of the interval", "error of the rows")
+    table = without_empty_columns(Table("Sampling error", header, rows)) if rows else None
+    warnings = [f"{one.name}: {line['warning']}" for one, line in lines if line["warning"]]
+    drawn = list(pictures(findings, "convergence"))
     return Convergence(table, warnings, findings.not_running, drawn)
 
 
 def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
-    cells = []
-    for error in (float(errors["sampling"]), float(errors["own"])):
-        known = error == error
-        cells.append(Cell(number(error / one.unit.seconds), key=error) if known else Cell("-"))
+    cells = (
+        Cell(number(error / one.unit.seconds), key=error) if error == error else Cell("-")
+        for error in map(float, errors[["sampling", "own"]])
+    )
     return one.label, one.unit_cell, Cell(str(errors["estimate"])), *cells

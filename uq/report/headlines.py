@@ -1,4 +1,4 @@
-"""The few sentences at the top of a report: what a reader must know before any table."""
+"""The key results as a few sentences at the top of a report."""
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
@@ -10,7 +10,7 @@ from uq.report.outcomes import Outcome
 from uq.wording import brief, percent, percent_with_interval
 
 _MOST = 6
-"""Outputs, and targets, of which there is a sentence."""
+"""Outputs, and targets, that get a sentence."""
 
 
 def headlines(
@@ -30,7 +30,7 @@ def headlines(
     -------
     list of str
     """
-    ended = f"{failed} of {summary.samples} rows failed." if failed else "No row failed."
+    ended = f"{failed} of {summary.samples} rows failed." if failed else "All rows were computed."
     return [ended, *_regimes(summary), *_outputs(found), *_leading(methods)]
 
 
@@ -43,7 +43,7 @@ def _regimes(summary: Summary) -> Iterator[str]:
 
 
 def _outputs(found: Sequence[Outcome]) -> Iterator[str]:
-    """Yield what the study asks of each output."""
+    """Yield the results that the study asks for, output by output."""
     for outcome in found[:_MOST]:
         sentences = (
             _sentence(outcome, one)
@@ -56,7 +56,7 @@ def _outputs(found: Sequence[Outcome]) -> Iterator[str]:
 
 
 def _sentence(outcome: Outcome, one: Statistic) -> str:
-    """Fill in the numbers of a sentence; nothing where they are not known."""
+    """Fill in the numbers of a sentence; "" if they are unknown."""
     if "{brief}" in one.sentence:
         return "" if one.words() == "-" else one.sentence.format(brief=_brief(outcome, one))
     if not isfinite(one.estimate.value):
@@ -69,7 +69,7 @@ def _sentence(outcome: Outcome, one: Statistic) -> str:
 
 
 def _brief(outcome: Outcome, one: Statistic) -> str:
-    """Return a value no more exact than it is known, its unit, and its interval."""
+    """Return a value, rounded to its precision, with its unit and interval."""
     value, ends = brief(one.estimate, outcome.per(one))
     if isfinite(one.estimate.value):
         value = f"{value} {outcome.unit_cell.text}".strip()

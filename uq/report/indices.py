@@ -1,4 +1,4 @@
-"""What a report says of sensitivities: one table for each target of each method."""
+"""Sensitivities in a report: one table for each target of each method."""
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
@@ -14,13 +14,13 @@ from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.ranked import Values, lines, ranking, size
 from uq.indices.sensitivities import TargetIndices, methods
-from uq.indices.targets import FORMS, split_name
 from uq.methods.indices import S1, Kind, Null
 from uq.report.cells import Cell, Table
 from uq.report.pictures import Picture, pictures
+from uq.wording import percent
 
 _LEAST = 0.05
-"""Less than this share of a variance is not worth a sentence of its own."""
+"""A smaller share of the variance is not reported as leading."""
 
 
 class Subject(NamedTuple):
@@ -36,8 +36,8 @@ class Subject(NamedTuple):
     pictures : tuple of Picture
     notes : list of str
     leading : str
-        A sentence on the input with the largest index; "" where none is larger than that of an
-        input without effect.
+        A sentence on the input with the largest index; "" if no index exceeds that of an input
+        without effect.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Subject(NamedTuple):
 
 
 class Method(NamedTuple):
-    """What one method has to say; where it has nothing at all, ``refused`` says why."""
+    """The results of one method, or in ``refused`` why there are none."""
 
     name: str
     refused: str = ""
@@ -63,7 +63,7 @@ Drawn = defaultdict[tuple[str, str], list[Picture]]
 
 
 def sensitivity_of(findings: Findings) -> list[Method]:
-    """Return the indices by every method that the study asks for.
+    """Return the indices by each method of the study.
 
     Parameters
     ----------
@@ -74,8 +74,8 @@ def sensitivity_of(findings: Findings) -> list[Method]:
     list of Method
     """
     drawn: Drawn = defaultdict(list)
-    for of, picture in pictures(findings, "sensitivities"):
-        drawn[of.method, of.name].append(picture)
+    for picture in pictures(findings, "sensitivities"):
+        drawn[picture.of.method, picture.of.name].append(picture)
     return [_method(findings, name, drawn) for name in methods(findings.ds)]
 
 
@@ -84,9 +84,9 @@ def _method(findings: Findings, name: str, drawn: Drawn) -> Method:
         found = findings.sensitivities(name)
     except InputError as error:
         return Method(name, refused=str(error))
-    used = f"Of {found.rows_used} rows"
+    used = f"From {found.rows_used} rows"
     if found.groups_dropped:
-        used += f", {found.groups_dropped} groups dropped for lack of a value in some of their rows"
+        used += f"; {found.groups_dropped} groups with missing values dropped"
     subjects = (
         _subject(findings.ds, name, one, drawn[name, target])
         for target, one in found.targets.items()
@@ -102,13 +102,12 @@ def _subject(
     if found.refused:
         return Subject(name, words, refused=found.refused)
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
-    told = ((f"Indices of {name}", kinds), (f"Second order, of {name}", pairs))
-    tables = tuple(_table(caption, one, indices.nulls) for caption, one in told if one)
+    listed = ((f"Indices of {name}", kinds), (f"Second order, of {name}", pairs))
+    tables = tuple(_table(caption, one, indices.nulls) for caption, one in listed if one)
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise))]
         tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
-    article = "the " * (split_name(name)[0] in FORMS)
-    leading = _leading(ds, method, f"{article}{words[:1].lower()}{words[1:]}", found)
+    leading = _leading(ds, method, f"{words[:1].lower()}{words[1:]}", found)
     return Subject(name, words, "", tables, tuple(drawn), indices.notes, leading)
 
 
@@ -120,16 +119,20 @@ def _leading(ds: xr.Dataset, method: str, words: str, found: TargetIndices) -> s
     index, null = kinds[kind][first], found.indices.nulls.get(kind, Null(0.0))
     if size(index) <= (null.largest if isfinite(null.largest) else null.one):
         return ""
-    told = kind.key if kind.key == method else f"{method}: {kind.key}"
+    name = kind.key if kind.key == method else f"{method}: {kind.key}"
+    what = words if words.startswith(("the ", "whether ")) else f"the {words}"
     if others and index.low < size(kinds[kind][others[0]]):
-        return (
-            f"Which input matters most to {words} is not settled "
-            f"({told} of {first} is {kind.interval(index)})."
-        )
-    if kind.unit == "variance" and index.value < _LEAST:
-        return f"No input alone does much to {words} ({told} is {kind.text(index.value)} at most)."
-    name = sentence(in_words(ds[first]), width=1000)
-    return f"{name} matters most to {words} ({told} = {kind.text(index.value)})."
+        interval = f"{name} of {first} is {kind.interval(index)}"
+        return f"The leading input for {what} is not settled ({interval})."
+    if kind.unit != "variance" or what.startswith("whether "):
+        leader = in_words(ds[first]).removeprefix("the ")
+        what = what[:1].upper() + what[1:]
+        return f"{what} depends most on the {leader} ({name} = {kind.text(index.value)})."
+    if index.value < _LEAST:
+        text = f"{name} = {kind.text(index.value)} at most"
+        return f"No single input explains much of the variance of {what} ({text})."
+    leader = sentence(in_words(ds[first]), width=1000)
+    return f"{leader} explains {percent(index.value)} of the variance of {what} ({name})."
 
 
 def _table(caption: str, values: Values, nulls: Mapping[Kind, Null]) -> Table:

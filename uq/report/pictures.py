@@ -1,4 +1,4 @@
-"""Figures inside a page: as SVG that is part of it, or as an image where that would be heavy."""
+"""Figures of a page: embedded SVG, or an image if the SVG would be too large."""
 
 import base64
 import re
@@ -20,23 +20,22 @@ from uq.literals import plain
 from uq.plots import FIGURES
 
 HEAVIEST_SVG = 300_000
-"""Longer drawings, of thousands of points, become images [characters]."""
+"""Longer drawings, of thousands of points, are embedded as images [characters]."""
 
 _NO_METADATA = dict.fromkeys(("Date", "Creator", "Format", "Type"))
 
 
 class Picture(NamedTuple):
-    """A figure as HTML, and what it shows."""
+    """A figure as HTML, what it shows, and its subject."""
 
     html: Markup
     caption: str
     is_image: bool
+    of: Subject = Subject()
 
 
-def pictures(
-    findings: Findings, section: str, without: Container[str] = ()
-) -> Iterator[tuple[Subject, Picture]]:
-    """Yield the figures of one section of the report, and what each is drawn of.
+def pictures(findings: Findings, section: str, without: Container[str] = ()) -> Iterator[Picture]:
+    """Yield the figures of one section of the report.
 
     Parameters
     ----------
@@ -44,52 +43,44 @@ def pictures(
     section : str
         As in `uq.drawing.catalogue.Entry`.
     without : container of str
-        Outputs of which none is drawn.
-
-    Yields
-    ------
-    tuple of Subject and Picture
+        Outputs whose figures are left out.
     """
     for one in drawables(FIGURES, findings, section):
         if one.subject.name not in without:
-            yield one.subject, picture(one.draw(), one.caption)
+            yield picture(one.draw(), one.caption)._replace(of=one.subject)
 
 
 @styled
 def picture(figure: Figure, caption: str) -> Picture:
-    """Return a figure as a part of a page.
+    """Return a figure as part of a page.
 
     Parameters
     ----------
     figure : Figure
     caption : str
-        Told to who cannot see it, and unique within a page.
+        Its text alternative; unique within a page.
 
     Returns
     -------
     Picture
-        SVG whose text is text and whose black is the colour of the page's text; a PNG where that
-        would be longer than `HEAVIEST_SVG`.
+        SVG with text as text, in the colour of the page's text; PNG if the SVG would be longer than
+        `HEAVIEST_SVG`.
     """
-    drawn = StringIO()
+    drawn, png = StringIO(), BytesIO()
     lay_out(figure)
-    # Identifiers of two figures in one page must not meet.
+    # Identifiers must be unique within a page.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": caption}):
         FigureCanvasSVG(figure).print_svg(drawn, metadata=_NO_METADATA)
-    if len(drawn.getvalue()) > HEAVIEST_SVG:
-        return Picture(_image(figure, caption), caption, True)
-    return Picture(_embedded(drawn.getvalue(), caption), caption, False)
-
-
-def _image(figure: Figure, caption: str) -> Markup:
-    png = BytesIO()
+    if len(drawn.getvalue()) <= HEAVIEST_SVG:
+        return Picture(_embedded(drawn.getvalue(), caption), caption, False)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
     data = base64.b64encode(png.getvalue()).decode()
-    return Markup('<img alt="{}" src="data:image/png;base64,{}">').format(caption, data)
+    image = Markup('<img alt="{}" src="data:image/png;base64,{}">').format(caption, data)
+    return Picture(image, caption, True)
 
 
 def _embedded(svg: str, caption: str) -> Markup:
-    """Return an SVG document as an element of HTML: no name spaces, no style for the whole page."""
+    """Return an SVG document as an HTML element without name spaces and global styles."""
     root = ElementTree.fromstring(plain(svg))
     used = set(re.findall(r'(?:href="|url\()#([^")]+)', svg))
     for element in root.iter():

@@ -1,4 +1,4 @@
-"""The arrays that a model's ``batch`` must return, and the rows of them that failed."""
+"""The arrays that a model's ``batch`` must return, and which of their rows failed."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
@@ -16,9 +16,9 @@ class Column(NamedTuple):
     ----------
     dtype : numpy.dtype
     blank : float, int or bool
-        What a row holds that could not be computed.
+        The value in rows that could not be computed.
     shape : tuple of int
-        Beyond the row.
+        Of one row.
     """
 
     dtype: np.dtype[Any]
@@ -36,7 +36,9 @@ def columns_of(model: Model, settings: Any) -> dict[str, Column]:
     columns = {}
     for name, output in model.outputs.items():
         shape = tuple(len(coordinates[dim]) for dim in output.dims)
-        columns[name] = _column(output, shape)
+        columns[name] = Column(np.dtype(np.float64), np.nan, shape)
+        if output.is_category:
+            columns[name] = Column(np.dtype(np.int8), -1, shape)
         if output.has_censored_flag:
             columns[censored_name(name)] = Column(np.dtype(np.bool_), False, shape)
     return columns
@@ -57,7 +59,7 @@ def failed_rows(
 ) -> NDArray[np.bool_]:
     """Return which rows failed.
 
-    A row whose budget ended counts only where an output is lacking.
+    A row out of budget failed only if an output is missing.
 
     Parameters
     ----------
@@ -73,9 +75,3 @@ def failed_rows(
     for output, values in required:
         incomplete |= output.is_absent(values).any(axis=tuple(range(1, values.ndim)))
     return np.where(status == Status.OUT_OF_BUDGET, incomplete, status != Status.OK)
-
-
-def _column(output: Output, shape: tuple[int, ...]) -> Column:
-    if output.is_category:
-        return Column(np.dtype(np.int8), -1, shape)
-    return Column(np.dtype(np.float64), np.nan, shape)

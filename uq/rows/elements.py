@@ -1,4 +1,4 @@
-"""The elements of a result's outputs: one plain array each, with what became of every row."""
+"""The elements of a result's outputs: one plain array each, with the outcome of every row."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -34,15 +34,15 @@ class Element:
     output : str
         ``work_rate``.
     declared : Output
-        What the model says of the output; no category.
+        The declaration of the output; not a category.
     place : dict of str to object
         Dimension -> coordinate; empty for an output without dimensions.
     values : ndarray, shape (n,)
-        NaN where there is no value; +inf for a lifetime that is never reached.
+        NaN where there is no value; +inf for a life that never ends.
     censored : ndarray of bool, shape (n,)
         Where the value is only a lower bound.
     failed : ndarray of bool, shape (n,)
-        Where the value is lacking because the row failed.
+        Where the value is missing because the row failed.
     """
 
     name: str
@@ -60,17 +60,17 @@ class Element:
 
     @property
     def meaning(self) -> str:
-        """One line: what the output is."""
+        """One line that describes the output."""
         return self.declared.meaning
 
     @property
     def is_lifetime(self) -> bool:
-        """Whether it is a time until something happens."""
+        """Whether it is the time until an event."""
         return self.declared.is_lifetime
 
     @property
     def is_angle(self) -> bool:
-        """Whether its sign is a direction and not a size."""
+        """Whether its sign is a direction."""
         return self.declared.is_angle
 
     @property
@@ -80,12 +80,12 @@ class Element:
 
     @property
     def undefined(self) -> Mask:
-        """Where the row is sound and the value has no meaning."""
+        """Where the row is sound but the value is undefined."""
         return np.isnan(self.values) & ~self.failed
 
     @property
     def never(self) -> Mask:
-        """Where a lifetime is known never to end."""
+        """Where a life is known never to end."""
         return np.isposinf(self.values) & ~self.censored
 
     @property
@@ -95,29 +95,29 @@ class Element:
 
     @property
     def at_least(self) -> Floats:
-        """The values, shape (present,), with each censored one at the bound it reached."""
+        """The values, shape (present,), with censored ones at their lower bound."""
         return self.values[self.present]
 
     @property
     def at_most(self) -> Floats:
-        """The values, shape (present,), with each censored one as late as it may be: never."""
+        """The values, shape (present,), with censored ones at infinity."""
         return np.where(self.censored, np.inf, self.values)[self.present]
 
 
 def analysis_of(ds: xr.Dataset) -> AnalysisTable:
-    """Return the [analysis] of the study that a result carries."""
+    """Return the [analysis] of the study in a result."""
     return study_file_of(ds).analysis
 
 
 def study_file_of(ds: xr.Dataset) -> StudyFile:
-    """Return the study that a result carries."""
+    """Return the study in a result."""
     return read_study_text(ds.attrs["study"], "study of this result")
 
 
 def independent_rows(ds: xr.Dataset) -> xr.Dataset:
-    """Return the rows for plain statistics: A and B where a design has these, all rows of others.
+    """Return the rows for plain statistics: blocks A and B of a crossed design, all rows of others.
 
-    The other blocks repeat the numbers of A and B. There are none where `why_no_statistics`.
+    The other blocks repeat the values of A and B. No row is returned where `why_no_statistics`.
     """
     labels = [] if why_no_statistics(ds) else flags(ds["block"])
     plain = [c for c, label in labels if label != NOISE and not label.startswith(("AB_", "BA_"))]
@@ -126,7 +126,7 @@ def independent_rows(ds: xr.Dataset) -> xr.Dataset:
 
 
 def why_no_statistics(ds: xr.Dataset) -> str:
-    """Return what the rows of a result do that forbids plain statistics, or ""."""
+    """Return why the rows of a result do not support plain statistics (a predicate), or ""."""
     design = DESIGNS[ds.attrs["design"]]
     if not design.follows_laws:
         return "do not follow the laws of the inputs"
@@ -136,12 +136,12 @@ def why_no_statistics(ds: xr.Dataset) -> str:
 
 
 def replicates_of(rows: xr.Dataset) -> Replicates:
-    """Return the replicate of each row, or None where the rows are independent."""
+    """Return the replicate of each row, or None if the rows are independent."""
     return None if are_independent(rows) else rows["replicate"].values
 
 
 def are_independent(ds: xr.Dataset) -> bool:
-    """Whether the rows of a result, A and B where a design has these, are independent."""
+    """Whether the rows of a result (blocks A and B of a crossed design) are independent."""
     design = DESIGNS[ds.attrs["design"]]
     return design.independent or (design.imported and study_file_of(ds).design.independent)
 
@@ -153,7 +153,7 @@ def flags(variable: xr.DataArray) -> list[tuple[int, str]]:
 
 
 def labels(variable: xr.DataArray) -> xr.DataArray:
-    """Return the words that the codes of a variable stand for.
+    """Return the labels of the codes of a variable.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def labels(variable: xr.DataArray) -> xr.DataArray:
         When the variable is not a category.
     """
     if "flag_values" not in variable.attrs:
-        raise InputError(f"'{variable.name}' is a quantity, not a category: it has no labels")
+        raise InputError(f"'{variable.name}' is not a category and has no labels")
     codes, words = zip(*flags(variable), strict=True)
     order = np.argsort(codes)
     places = np.searchsorted(codes, variable.values, sorter=order)
@@ -181,7 +181,7 @@ def labels(variable: xr.DataArray) -> xr.DataArray:
 
 
 def shown_outputs(ds: xr.Dataset, analysis: AnalysisTable) -> tuple[str, ...]:
-    """Return the outputs that a study wants to see: those it names, or else all."""
+    """Return the outputs that a study names, or all if it names none."""
     named = tuple(dict.fromkeys((*analysis.outputs, *analysis.thresholds)))
     return named if analysis.outputs else output_names(ds)
 
@@ -192,7 +192,7 @@ def output_names(ds: xr.Dataset) -> tuple[str, ...]:
 
 
 def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
-    """Yield the elements of some outputs, in order; categories have none.
+    """Yield the elements of some outputs in order, skipping categories.
 
     Parameters
     ----------
@@ -224,24 +224,15 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
             place = {str(dim): column[dim].item() for dim in variable.dims if dim != "sample"}
             values = column.values
             absent = declared.is_absent(values)
-            censored = (
-                ds[flag].sel(place).values.astype(bool) & ~absent
-                if flag in ds
-                else np.zeros(len(values), dtype=bool)
-            )
-            yield Element(
-                name,
-                output,
-                declared,
-                place,
-                np.where(absent, np.nan, values),
-                censored,
-                absent & unsound,
-            )
+            censored = np.zeros(len(values), dtype=bool)
+            if flag in ds:
+                censored = ds[flag].sel(place).values.astype(bool) & ~absent
+            known_values = np.where(absent, np.nan, values)
+            yield Element(name, output, declared, place, known_values, censored, absent & unsound)
 
 
 def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
-    """Return the elements that a user means by the name of an output or of one element.
+    """Return the elements of the output, or the one element, that a name refers to.
 
     Parameters
     ----------
@@ -262,8 +253,8 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
     found = list(elements_of(ds, [output]))
     if not found:
         raise InputError(
-            f"'{output}' is a category: it has no numbers; 'uq summary' shows shares of regimes,"
-            f" and 'uq sensitivity --output {output}' what decides them"
+            f"'{output}' is a category, not a number; 'uq summary' shows the shares of regimes, and"
+            f" 'uq sensitivity --output {output}' what determines them"
         )
     if name == output:
         return found
@@ -277,7 +268,7 @@ def named_elements(ds: xr.Dataset, name: str) -> list[Element]:
 
 
 def lifetimes(ds: xr.Dataset, name: str) -> list[Element]:
-    """Return the elements of a lifetime that a user means; see `named_elements`.
+    """Return the elements of a lifetime that a name refers to; see `named_elements`.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""One chunk of rows through a model's batch, with the fault found when it fails.
+"""One chunk of rows through a model's batch; if that fails, the rows at fault are isolated.
 
-A batch that raises or returns arrays of the wrong shape is halved until the guilty rows are
-found; these get a status and a sentence, the others their values.
+A batch that raises or returns arrays of the wrong shape is halved until the rows at fault are
+found: they get a status and a message, the others their values.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,18 +18,18 @@ _WITH_OUTPUTS = (Status.OK, Status.OUT_OF_BUDGET)
 
 
 class KernelError(InputError):
-    """A model that does not keep its contract whatever the row."""
+    """A model that violates its contract, whatever the row."""
 
 
 class Chunk(NamedTuple):
-    """What became of n rows.
+    """The outcome of n rows.
 
     Attributes
     ----------
     columns : dict of str to ndarray, shape (n, *dims)
     status : ndarray of int8, shape (n,)
     failures : dict of str to (int, str)
-        Status label -> number of the first row with that status, and what happened to it.
+        Status label -> number of the first row with that status, and its message.
     """
 
     columns: dict[str, NDArray[Any]]
@@ -62,7 +62,7 @@ def evaluate(
         Parameters in declared order.
     seed : ndarray of uint64, shape (n,)
     start : int
-        Number of the first row, for messages.
+        Number of the first row.
 
     Returns
     -------
@@ -93,30 +93,29 @@ def evaluate(
             for name, column in columns.items():
                 column[first:last] = returned[0][name]
             status[first:last] = returned[1]
-    _check_categories(model, columns)
-    _find_non_finite(model, columns, status, messages)
+    _check_values(model, columns, status, messages)
     lost = ~np.isin(status, _WITH_OUTPUTS)
     for name, column in columns.items():
         column[lost] = expected[name].blank
         if column.dtype.kind == "f":
-            column[np.isnan(column)] = np.nan  # there are many, and processors make different ones
+            column[np.isnan(column)] = np.nan  # one bit pattern for NaN on all processors
     return Chunk(columns, status, _first_failures(status, messages, start))
 
 
 def lost_rows(model: Model, settings: Any, rows: int, fault: Fault, start: int = 0) -> Chunk:
-    """Return blank rows that were lost to one fault; `start` as in `evaluate`."""
+    """Return blank rows that one fault has cost; `start` as in `evaluate`."""
     status = np.full(rows, fault.status, dtype=np.int8)
     columns = blank_rows(columns_of(model, settings), rows)
     return Chunk(columns, status, {fault.status.label: (start, fault.message)})
 
 
 def joined(chunks: Sequence[Chunk]) -> Chunk:
-    """Return one chunk for several that follow each other."""
+    """Concatenate consecutive chunks."""
     if len(chunks) == 1:
         return chunks[0]
     failures: dict[str, tuple[int, str]] = {}
     for chunk in chunks:
-        failures = chunk.failures | failures  # the first of a kind stays
+        failures = chunk.failures | failures  # keep the first of each status
     return Chunk(
         {name: np.concatenate([chunk.columns[name] for chunk in chunks]) for name in chunks[0][0]},
         np.concatenate([chunk.status for chunk in chunks]),
@@ -175,25 +174,19 @@ def _check_names(
         raise KernelError(*(f"model '{model.name}': {fault}" for fault in faults))
 
 
-def _check_categories(model: Model, columns: Mapping[str, NDArray[Any]]) -> None:
-    for name, output in model.outputs.items():
-        if output.is_category:
-            values = columns[name]
-            if np.any((values < -1) | (values >= len(output.categories))):
-                raise KernelError(f"model '{model.name}': '{name}' has a category not declared")
-
-
-def _find_non_finite(
+def _check_values(
     model: Model,
     columns: Mapping[str, NDArray[Any]],
     status: NDArray[np.int8],
     messages: dict[int, str],
 ) -> None:
-    """Mark rows that say ok and hold a number that no such output can have."""
+    """Refuse undeclared categories; mark rows that claim to be ok but have an invalid number."""
     for name, output in model.outputs.items():
-        if output.is_category:
-            continue
         values = columns[name].reshape(len(status), -1)
+        if output.is_category:
+            if np.any((values < -1) | (values >= len(output.categories))):
+                raise KernelError(f"model '{model.name}': '{name}' has an undeclared category")
+            continue
         legal = ~output.is_absent(values)
         if output.may_be_undefined:
             legal |= np.isnan(values)
@@ -206,9 +199,9 @@ def _find_non_finite(
 def _first_failures(
     status: NDArray[np.int8], messages: Mapping[int, str], start: int
 ) -> dict[str, tuple[int, str]]:
-    failures = {}
-    for code in np.unique(status[status != Status.OK]):
-        row = int(np.flatnonzero(status == code)[0])
-        kind = Status(code)
-        failures[kind.label] = (start + row, messages.get(row, kind.meaning))
-    return failures
+    codes, firsts = np.unique(status, return_index=True)
+    return {
+        kind.label: (start + row, messages.get(row, kind.meaning))
+        for kind, row in zip(map(Status, codes), firsts.tolist(), strict=True)
+        if kind != Status.OK
+    }

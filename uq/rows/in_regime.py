@@ -9,7 +9,7 @@ from uq.rows.results import failed
 
 
 def within_regime(ds: xr.Dataset, regime: str) -> xr.Dataset:
-    """Return the rows in one regime, and those that failed before they had one.
+    """Return the rows in one regime, and failed rows without a regime.
 
     Parameters
     ----------
@@ -20,24 +20,20 @@ def within_regime(ds: xr.Dataset, regime: str) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Failed rows without a regime stay: any of them may have belonged here, and what counts
-        failed rows must see them.
+        Failed rows without a regime are kept: any of them might have been in this one, and failed
+        rows must be counted.
 
     Raises
     ------
     InputError
-        When the result has no regimes, not this one, or no row in it.
+        When the result has no regimes, this one does not exist, or no row is in it.
     """
     if "regime" not in ds:
-        raise InputError(
-            f"this result has no regimes: '{regime}' means nothing here; leave out --regime"
-        )
+        raise InputError("this result has no regimes; leave out --regime")
     codes = {label: code for code, label in flags(ds["regime"]) if code >= 0}
     if regime not in codes:
-        known = list(codes)
-        raise InputError(
-            f"no such regime '{regime}'{nearest(regime, known)} (allowed: {', '.join(known)})"
-        )
+        near, known = nearest(regime, list(codes)), ", ".join(codes)
+        raise InputError(f"no such regime '{regime}'{near} (allowed: {known})")
     found = ds["regime"].values == codes[regime]
     if not found.any():
         there = np.unique(ds["regime"].values)

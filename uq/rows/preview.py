@@ -1,4 +1,4 @@
-"""A first look at the rows of a run as they arrive: a median life and shares of regimes."""
+"""A preview of the rows of a run as they arrive: a median life and shares of regimes."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from uq.rows.evaluate import Chunk
 
 _KEPT = 4096
-"""Values of a life kept at most; of more, every second, every fourth and so on."""
+"""Values of a life kept at most; of more values, every second, fourth and so on is kept."""
 
 
 class Preview:
-    """What the rows of one run say so far, in bounded memory; nothing of it enters a result.
+    """Running statistics of the rows of a run in bounded memory; they do not enter the result.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Preview:
         if "regime" in outputs and outputs["regime"].is_category:
             self._regimes = outputs["regime"].categories
         lives = [name for name in workload.shown if outputs[name].is_lifetime]
-        if lives:  # the first stands for all, and its first element for all of them
+        if lives:  # the first element of the first life represents all
             self._life, dims = lives[0], outputs[lives[0]].dims
             coordinates = workload.model.coordinates(workload.settings)
             place = ",".join(f"{dim}={list(coordinates[dim])[0]}" for dim in dims)
@@ -39,7 +39,7 @@ class Preview:
         self._counts = np.zeros(len(self._regimes), dtype=np.int64)
 
     def add(self, chunk: "Chunk") -> None:
-        """Take note of some rows."""
+        """Include some rows."""
         if self._regimes:
             codes = chunk.columns["regime"]
             self._counts += np.bincount(codes[codes >= 0], minlength=len(self._counts))
@@ -52,7 +52,7 @@ class Preview:
 
     @property
     def median(self) -> tuple[str, float] | None:
-        """Name and median of a life [s], inf where most rows do not end; None without one."""
+        """Name and median of a life [s], inf if most rows do not end; None without a life."""
         median = self._sample.median
         return None if median is None else (self._label, median)
 

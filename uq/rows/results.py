@@ -1,10 +1,10 @@
-"""The schema of a result: one flat, self-describing Dataset, built here and checked here.
+"""The schema of a result: one flat, self-describing Dataset, built and checked here.
 
 One dimension ``sample``; one variable per parameter (``role`` is ``input`` where it is uncertain,
 ``fixed`` where it is one number), one per output (``role="output"``, plus the model's own
 dimensions), one ``<name>_censored`` beside each lifetime that can be censored, and ``status``.
-``replicate``, ``group`` and ``block`` say which place of the design a row has. Nothing in it
-depends on clock, host, chunks or workers.
+``replicate``, ``group`` and ``block`` give the place of a row in the design. Nothing depends on the
+clock, the host, chunks or workers.
 """
 
 import os
@@ -43,10 +43,10 @@ CHECKSUM = "checksum"
 """Attribute of the file; see `uq.store.seal`."""
 
 UNREADABLE = (OSError, ValueError, RuntimeError, AttributeError, LookupError, TypeError)
-"""What a damaged file makes netCDF4 and xarray raise."""
+"""What netCDF4 and xarray raise for damaged files."""
 
 _IN_MEMORY_BYTES = 200_000_000
-_INFLATED_BYTES, _INFLATION = 100_000_000, 100  # a file that claims more was not made by us
+_INFLATED_BYTES, _INFLATION = 100_000_000, 100  # no result claims more
 
 
 def build(
@@ -57,7 +57,7 @@ def build(
     failures: Mapping[str, str],
     numbers: NDArray[np.int64] | None = None,
 ) -> xr.Dataset:
-    """Put the rows of a study and what the model made of them into one Dataset.
+    """Return the rows of a study and the outputs of the model as one Dataset.
 
     Parameters
     ----------
@@ -65,13 +65,13 @@ def build(
     rows : Rows
         Inputs and place in the design, n rows.
     columns : dict of str to ndarray
-        What ``batch`` returns, joined: output name -> (n, *dims), ``<name>_censored`` -> (n,
+        The concatenated columns of ``batch``: output name -> (n, *dims), ``<name>_censored`` -> (n,
         *dims).
     status : ndarray of int8, shape (n,)
     failures : dict of str to str
         Status label -> what happened to the first row with that status.
     numbers : ndarray of int64, shape (n,), optional
-        Of the rows; by default they are the first.
+        Of the rows; by default 0 to n - 1.
 
     Returns
     -------
@@ -79,13 +79,12 @@ def build(
     """
     model = study.model
     varied = dict(study.uncertain) | dict(study.tied)
-    inputs: dict[str, Any] = {}
-    for i, name in enumerate(model.parameter_names):
-        if name in varied:
-            inputs[name] = parameter_variable(model, name, rows.x[:, i], varied[name].source)
-        else:
-            value = study.fixed.get(name, model.nominal[name])
-            inputs[name] = parameter_variable(model, name, value)
+    inputs = {
+        name: parameter_variable(model, name, rows.x[:, i], varied[name].source)
+        if name in varied
+        else parameter_variable(model, name, study.fixed.get(name, model.nominal[name]))
+        for i, name in enumerate(model.parameter_names)
+    }
     ds = xr.Dataset(
         inputs | output_variables(model, study.settings, columns, status, failures),
         places(study, rows, numbers) | coordinates(model, study.settings),
@@ -104,7 +103,7 @@ def build_rows(
     status: NDArray[np.int8],
     failures: Mapping[str, str],
 ) -> xr.Dataset:
-    """Put rows computed outside of any study into a Dataset of the same schema.
+    """Return rows computed outside a study as a Dataset of the same schema.
 
     Parameters
     ----------
@@ -136,7 +135,7 @@ def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
     Yields
     ------
     tuple of str and xarray.DataArray
-        Coordinates appear as Python's repr without quotes.
+        Coordinates are written like Python's repr, without quotes.
     """
     dims = [str(dim) for dim in variable.dims if dim != "sample"]
     for index in np.ndindex(*(variable.sizes[dim] for dim in dims)):
@@ -148,14 +147,13 @@ def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
 def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") -> xr.Dataset:
     """Open a result and check its schema.
 
-    One that takes less than 200 MB is read into memory, and its file closed; what is larger is
-    read when it is used.
+    A result below 200 MB is read into memory and its file closed; a larger one is read lazily.
 
     Parameters
     ----------
     path : str or Path
     remedy : str, optional
-        What an error line says can be done.
+        The advice in error messages.
 
     Returns
     -------
@@ -186,7 +184,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
     ds.attrs.pop(CHECKSUM, None)  # of the file, not of what is made of it
     for variable in ds.variables.values():
         if variable.attrs.get("kind") == "lifetime":
-            # What was assumed of every life when files did not say.
+            # The assumption when files did not state it.
             variable.attrs.setdefault("never_known_at_once", 0)
     return ds
 
@@ -209,7 +207,7 @@ def _opened(path: Path) -> xr.Dataset:
 
 
 def _others(path: Path) -> str:
-    """Return which results there are in the folder of a path that is none."""
+    """List the results in the folder of a path that is not a result."""
     there = sorted(one.name for one in path.parent.glob("*.nc"))
     return nearest(path.name, there) or (f" (there: {choices(there)})" if there else "")
 
@@ -221,7 +219,7 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
     ----------
     ds : xarray.Dataset
     path : str or Path
-        What the message calls it.
+        Its name in messages.
 
     Raises
     ------
@@ -250,9 +248,9 @@ def failed(ds: xr.Dataset) -> NDArray[np.bool_]:
 
 
 def relabel(ds: xr.Dataset, study: "Study") -> xr.Dataset:
-    """Return the same rows under the present text of their study.
+    """Return the same rows with the current text of their study.
 
-    Comments, sources and [analysis] of a study may change without a row being computed again.
+    Comments, sources and [analysis] of a study may change without recomputing a row.
     """
     here = made_here(study.model_reference)
     made = {name: ds.attrs[name] for name in here if name in ds.attrs}

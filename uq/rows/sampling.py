@@ -1,7 +1,7 @@
-"""Rows of a study: from the unit cube to physical inputs, any range of them, always the same bits.
+"""The rows of a study: any range of them, from the unit cube to physical inputs, bit for bit.
 
-Rows are numbered so that more samples append: row = (j * replicates + r) * blocks + b for base
-point j, replicate r and block b of its group.
+Further samples append rows: row = (j * replicates + r) * blocks + b for base point j, replicate r
+and block b of its group.
 """
 
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -26,13 +26,12 @@ class Rows(NamedTuple):
     x : ndarray, shape (n, d)
         All parameters of the model, uncertain or not, in declared order; C-contiguous.
     seed : ndarray of uint64, shape (n,)
-        For models that draw random numbers of their own; of these, rows that the design compares
-        share one.
+        For models that draw random numbers; rows that the design compares share a seed.
     replicate : ndarray of int32, shape (n,)
     group : ndarray of int64, shape (n,)
         Base point of the replicate's design.
     block : ndarray of int16, shape (n,)
-        Place in the group.
+        Position in the group.
     """
 
     x: NDArray[np.float64]
@@ -48,15 +47,14 @@ class Rows(NamedTuple):
 
 
 def block_labels(study: "Study") -> tuple[str, ...]:
-    """Return the name of each row of a group, in order."""
+    """Return the labels of the rows of a group, in order."""
     table = study.design
-    parameters = tuple(study.uncertain)
     layout = DESIGNS[table.method].layout
-    return layout.labels(parameters, table.second_order, study.random)
+    return layout.labels(tuple(study.uncertain), table.second_order, study.random)
 
 
 def group_size(study: "Study") -> int:
-    """Return how many rows stand or fall together in the indices: 1 for plain designs."""
+    """Return the number of rows that the indices use together: 1 for plain designs."""
     return len(block_labels(study))
 
 
@@ -77,30 +75,17 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
     Returns
     -------
     Rows
-        Row i depends on the study and i alone: not on the range, to the bit.
+        Row i depends, to the bit, only on the study and i, not on the range.
     """
-    table, blocks = study.design, group_size(study)
-    number = np.arange(start, stop)
-    place, block = np.divmod(number, blocks)
+    table, labels = study.design, block_labels(study)
+    place, block = np.divmod(np.arange(start, stop), len(labels))
     group, replicate = np.divmod(place, table.replicates)
-
-    x = _imported(study, start, stop) if study.imported else _drawn(study, start, stop)
-    return Rows(
-        x,
-        _seeds(study, replicate, group, block),
-        replicate.astype(np.int32),
-        group,
-        block.astype(np.int16),
-    )
-
-
-def _seeds(
-    study: "Study", replicate: NDArray[np.int64], group: NDArray[np.int64], block: NDArray[np.int64]
-) -> NDArray[np.uint64]:
+    keys = group, block
     if study.random:
-        rule = DESIGNS[study.design.method].layout.shared_seeds
-        group, block = rule(group, block, block_labels(study))
-    return row_seeds(study.design.seed, replicate, group, block)
+        keys = DESIGNS[table.method].layout.shared_seeds(group, block, labels)
+    seeds = row_seeds(table.seed, replicate, *keys)
+    x = _imported(study, start, stop) if study.imported else _drawn(study, start, stop)
+    return Rows(x, seeds, replicate.astype(np.int32), group, block.astype(np.int16))
 
 
 def _drawn(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
@@ -129,15 +114,15 @@ def physical(study: "Study", unit: NDArray[np.float64]) -> NDArray[np.float64]:
     Parameters
     ----------
     study : Study
-        Its rows are not imported.
+        Not of imported rows.
     unit : ndarray, shape (n, len(study.uncertain))
         Inside the open unit cube; independent coordinates.
 
     Returns
     -------
     ndarray, shape (n, d)
-        In declared order, each in its unit, with dependence, scaled and tied inputs as the study
-        has them; C-contiguous.
+        In declared order and unit, with the dependence, scaled and tied inputs of the study;
+        C-contiguous.
     """
     if study.dependence is not None:
         columns = [list(study.uncertain).index(name) for name in study.dependence.parameters]
@@ -148,13 +133,13 @@ def physical(study: "Study", unit: NDArray[np.float64]) -> NDArray[np.float64]:
     names = study.model.parameter_names
     scaled = []
     for column, (name, law) in zip(unit.T, study.uncertain.items(), strict=True):
-        # A contiguous copy: on strided data numpy may take another path, with other last bits.
+        # A contiguous copy: for strided data numpy may take another path with other last bits.
         u = np.ascontiguousarray(column)
         if law.times is None:
             x[:, names.index(name)] = ppf_within(law, u, study.bounds(name))
         else:
             scaled.append((name, law, u))
-    for name, law, u in scaled:  # once those that they scale are known
+    for name, law, u in scaled:  # after the inputs that they scale
         other, bounds = x[:, names.index(law.times)].copy(), study.bounds(name)
         factor = ppf_between(law, u, *factor_ends(other, bounds))
         x[:, names.index(name)] = np.clip(factor * other, *bounds)
@@ -162,7 +147,7 @@ def physical(study: "Study", unit: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _imported(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
-    """Return the inputs of the rows start..stop as the file has them."""
+    """Return the inputs of the rows start..stop from the imported file."""
     x = _constants(study, stop - start)
     for name, column in study.imported.items():
         x[:, study.model.parameter_names.index(name)] = numbers(column)[start:stop]
@@ -190,7 +175,7 @@ def row_seeds(seed: int, *keys: NDArray[np.int64]) -> NDArray[np.uint64]:
     seed : int
         0 to 2^63 - 1.
     *keys : ndarray of int, shape (n,)
-        What tells rows apart.
+        They identify a row.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Whether a Dataset has the shape of a result: it may be damaged, or come from a stranger."""
+"""Whether a Dataset is a sound result: it may be damaged or come from an untrusted file."""
 
 from collections.abc import Iterator
 from typing import Any, get_args
@@ -16,22 +16,22 @@ _ROLES = ("input", "fixed", "output", "censored", "status", "rerun")
 
 
 def unsound(ds: xr.Dataset) -> str:
-    """Return the first thing that no result has, in words; nothing if all is well."""
+    """Return the first fault of a Dataset as a result, or ""."""
     return next(_faults(ds), "")
 
 
 def _faults(ds: xr.Dataset) -> Iterator[str]:
     for text in _TEXTS:
         if not isinstance(ds.attrs.get(text), str):
-            yield f"attribute '{text}' is no text"
+            yield f"attribute '{text}' is not text"
     for number in _NUMBERS:
         if not isinstance(ds.attrs.get(number), int | np.integer) or ds.attrs[number] < 1:
-            yield f"attribute '{number}' is no positive number"
+            yield f"attribute '{number}' is not a positive number"
     if ds.attrs.get("design") not in DESIGNS:
-        yield "its design is not known"
+        yield "its design is unknown"
     for place in _PLACES:
         if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
-            yield f"'{place}' is not one whole number per row"
+            yield f"'{place}' is not one integer per row"
     for flag in ("block", "status"):
         if fault := _flag_fault(ds[flag]):
             yield fault
@@ -42,7 +42,7 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
         if role in ("input", "output", "censored") and variable.dims[:1] != ("sample",):
             yield f"'{name}' has no row dimension"
         if variable.dtype.kind not in "fiu":
-            yield f"'{name}' holds no numbers"
+            yield f"'{name}' is not numeric"
         texts = (
             ("long_name",) if role in ("status", "censored", "rerun") else ("long_name", "units")
         )
@@ -55,13 +55,13 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
 
 def _output_faults(name: str, variable: xr.DataArray) -> Iterator[str]:
     if variable.attrs.get("kind") not in get_args(Kind):
-        yield f"'{name}' is of no known kind"
+        yield f"'{name}' is of an unknown kind"
     elif variable.attrs["kind"] == "category" and (fault := _flag_fault(variable)):
         yield fault
     if not isinstance(variable.attrs.get("may_be_undefined"), int | np.integer):
         yield f"'{name}' lacks the attribute 'may_be_undefined'"
     if not isinstance(variable.attrs.get("never_known_at_once", 0), int | np.integer):
-        yield f"attribute 'never_known_at_once' of '{name}' is no number"
+        yield f"attribute 'never_known_at_once' of '{name}' is not a number"
     for dim in variable.dims[1:]:
         if dim not in variable.coords:
             yield f"'{name}' lacks the coordinate '{dim}'"

@@ -1,8 +1,9 @@
-"""When a run knows enough: interim estimates at fixed sizes, with intervals that remain honest.
+"""When a run may stop: interim estimates at fixed sizes, with valid intervals.
 
-An interval that is recomputed often enough narrows by chance. So a run estimates at few sizes,
-fixed before it starts, each half as large as the next, and the interval at each of K sizes has the
-confidence 1 - 0.05/K: the chance that one of them misses is at most 5 %, whenever the run stops.
+An interval that is recomputed often enough is narrow by chance at some point. A run therefore
+estimates at a few sizes fixed beforehand, each half of the next, and the interval at each of K
+sizes has confidence 1 - 0.05/K: the chance that any of them misses is at most 5 %, whenever the
+run stops.
 """
 
 from typing import TYPE_CHECKING, NamedTuple
@@ -18,19 +19,18 @@ from uq.rows.elements import Element, independent_rows, named_elements
 if TYPE_CHECKING:
     from uq.study.file import DesignTable, Until
 
-_FIRST = 32  # samples of the first look at least
+_FIRST = 32  # samples at least of the first interim estimate
 
 
 class InterimEstimate(NamedTuple):
-    """An estimate on the way, which may end the run.
+    """An estimate during a run, which may end it.
 
     Attributes
     ----------
     estimate : Estimate
-        Its interval has the confidence of one look.
+        Of the element with the widest interval, at the confidence of one interim estimate.
     reached : bool
-        Whether every element asked for is known as well as asked for; the numbers are those of the
-        one known worst.
+        Whether every element has reached the required half-width.
     """
 
     estimate: Estimate
@@ -38,7 +38,7 @@ class InterimEstimate(NamedTuple):
 
 
 def interim_sizes(design: "DesignTable") -> tuple[int, ...]:
-    """Return the numbers of samples at which a run estimates, the last being all of them."""
+    """Return the numbers of samples at which a run estimates; the last is all of them."""
     size = design.samples
     sizes = [size]
     while (size := -(-size // 2)) >= _FIRST:
@@ -47,7 +47,7 @@ def interim_sizes(design: "DesignTable") -> tuple[int, ...]:
 
 
 def confidence(design: "DesignTable") -> float:
-    """Return the confidence of the interval of one look (Bonferroni)."""
+    """Return the confidence of one interim interval (Bonferroni)."""
     return 1 - (1 - intervals.CONFIDENCE) / len(interim_sizes(design))
 
 
@@ -79,15 +79,15 @@ def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
 
 
 def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
-    """Return whether a result that is smaller than its budget is where the run ends."""
+    """Whether a run ends at this result although its budget is not spent."""
     size = _latest(design, ds)
     return size > 0 and interim_estimate(design, _first(ds, size)).reached
 
 
 def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
-    """Return the size of the latest look at a result, 0 before the first or without `until`.
+    """Return the size of the last interim estimate, 0 before the first or without `until`.
 
-    The result may be larger: somebody may have extended it.
+    The result may be larger, if it was extended.
     """
     if design.until is None:
         return 0
@@ -99,7 +99,7 @@ def _first(ds: xr.Dataset, samples: int) -> xr.Dataset:
 
 
 def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
-    """Say why a run ended where it did, and what is known for that."""
+    """State why a run ended, and the estimate at that point."""
     until, samples = design.until, int(ds.attrs["samples"])
     assert until is not None
     size = _latest(design, ds)
@@ -108,28 +108,22 @@ def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     known = "{:.6g}, {:.6g} to {:.6g}".format(*seen.estimate.numbers)
     if np.isnan(seen.estimate.low) and np.isnan(seen.estimate.high):
         return f"the budget of {samples} samples is spent, and {what} has no interval"
-    known += _lost(design, ds)
+    elements = named_elements(independent_rows(ds), until.output)
+    if lost := max(int(element.failed.sum()) for element in elements):
+        known += f" (without {lost} failed rows)"
     if not seen.reached:
         return (
-            f"the budget of {samples} samples is spent: {what} is {known}, and a half-width of"
-            f" {until.half_width:g} was asked for"
+            f"the budget of {samples} samples is spent: {what} is {known}; the required half-width"
+            f" of {until.half_width:g} was not reached"
         )
     number = 1 + interim_sizes(design).index(size)
     first = "" if size == samples else f" with the first {size} of {samples} samples"
     return (
-        f"{what} is {known}: the asked half-width of {until.half_width:g} was reached at look"
-        f" {number} of at most {len(interim_sizes(design))}{first}. This interval,"
-        f" {confidence(design):.2%} at each look, is one of 95 % for a run that stops so; the"
-        " others are for a number of rows fixed beforehand"
+        f"{what} is {known}: the required half-width of {until.half_width:g} was reached at interim"
+        f" estimate {number} of at most {len(interim_sizes(design))}{first}. The confidence of"
+        f" {confidence(design):.2%} at each makes this a 95 % interval for a run that stops so;"
+        " all other intervals assume a number of rows fixed beforehand"
     )
-
-
-def _lost(design: "DesignTable", ds: xr.Dataset) -> str:
-    """Say that rows failed, of which no interval knows."""
-    assert design.until is not None
-    elements = named_elements(independent_rows(ds), design.until.output)
-    lost = max(int(element.failed.sum()) for element in elements)
-    return f" (of the rows that did not fail; {lost} did)" if lost else ""
 
 
 def _estimate(

@@ -1,4 +1,4 @@
-"""The variables of a result, and what they say of themselves."""
+"""The variables of a result and their attributes."""
 
 import hashlib
 from collections.abc import Mapping, Sequence
@@ -46,7 +46,7 @@ def output_variables(
     status: NDArray[np.int8],
     failures: Mapping[str, str],
 ) -> dict[str, Any]:
-    """Return the variables of the outputs, flags of censored lives and the status among them."""
+    """Return the variables of the outputs, the flags of censored lives and the status."""
     variables: dict[str, Any] = {}
     for name, output in model.outputs.items():
         dims = ("sample", *output.dims)
@@ -78,7 +78,7 @@ def output_variables(
 def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
     """Return the outputs of a result as its variables declare them, by name and in order.
 
-    Which setting asks for their accuracy is not among what a variable says.
+    The setting of their accuracy is not recorded.
     """
     return {
         str(name): Output(
@@ -97,12 +97,12 @@ def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
 
 
 def is_category(ds: xr.Dataset, name: str) -> bool:
-    """Whether a name is that of an output of a result that is a category."""
+    """Whether a result has a category of this name."""
     return name in (known := outputs_of(ds)) and known[name].is_category
 
 
 def coordinates(model: Model, settings: Any) -> dict[str, Any]:
-    """Return the coordinates of the dimensions that outputs have."""
+    """Return the coordinates of the dimensions of the outputs."""
     values = model.coordinates(settings)
     used = {dim for output in model.outputs.values() for dim in output.dims}
     coordinates: dict[str, Any] = {}
@@ -113,7 +113,7 @@ def coordinates(model: Model, settings: Any) -> dict[str, Any]:
 
 
 def places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> dict[str, Any]:
-    """Return the place in the design of each row, as coordinates."""
+    """Return the place of each row in the design, as coordinates."""
     sample = ("sample",)
     numbers = np.arange(len(rows.x)) if numbers is None else numbers
     block = {"long_name": "block of the design"} | _flags(block_labels(study), np.int16)
@@ -128,7 +128,7 @@ def places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> d
 def _flags(labels: Sequence[str], dtype: type[np.integer[Any]], first: int = 0) -> dict[str, Any]:
     values = np.arange(first, first + len(labels), dtype=dtype)
     if len(labels) == 1:
-        values = values[0]  # what netCDF makes of an attribute of one number
+        values = values[0]  # as netCDF stores an attribute of one number
     return {"flag_values": values, "flag_meanings": " ".join(labels)}
 
 
@@ -154,7 +154,7 @@ def study_attributes(study: "Study") -> dict[str, Any]:
 
 
 def model_attributes(model: Model) -> dict[str, Any]:
-    """Return the attributes of whatever a model computed."""
+    """Return the attributes of every Dataset that a model computed."""
     return {
         "Conventions": "CF-1.11",
         "schema_version": SCHEMA_VERSION,

@@ -1,4 +1,4 @@
-"""What is to be computed: some rows of one model, whoever asks for them."""
+"""Rows of one model that are to be computed, by a study or any other analysis."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -21,28 +21,28 @@ Finish = Callable[
 
 
 class Workload(NamedTuple):
-    """Rows to be computed, and what becomes of them.
+    """Rows to be computed.
 
     Attributes
     ----------
     model : Model
     model_reference : str
-        What `uq.study.registry.find_model` finds the model by, in another process too.
+        By which `uq.study.registry.find_model` finds the model in any process.
     settings : object
         An instance of ``model.settings``.
     total : int
         Rows in all.
     group : int
-        Rows that go to one kernel call together.
+        Rows that one kernel call computes together.
     block : callable
         ``block(start, stop)`` -> those `Rows`, the same bits for any start and stop.
     finish : callable
-        ``finish(rows, columns, status, failures)`` -> Dataset, once all rows are there; None where
-        nobody wants one.
+        ``finish(rows, columns, status, failures)`` -> Dataset of all rows, or None if none is
+        needed.
     output : str
-        The only output, where a cheap one is computed alone; see `uq.contract.Model.cheap`.
+        The only output, if a cheap one is computed alone; see `uq.contract.Model.cheap`.
     shown : tuple of str
-        Outputs that are of interest while rows arrive.
+        Outputs to be shown while rows arrive.
     """
 
     model: Model
@@ -57,7 +57,7 @@ class Workload(NamedTuple):
 
 
 def workload_of(study: "Study") -> Workload:
-    """Return the work that a study is."""
+    """Return the rows of a study as a workload."""
     return Workload(
         study.model,
         study.model_reference,

@@ -141,5 +141,5 @@ def _sentence(element: Element, side: str) -> str:
     if side != ("below" if element.is_lifetime else "above"):
         return ""
     if element.is_angle:
-        return "{share} lie beyond {at} on either side."
-    return "{share} end within {at}." if element.is_lifetime else "{share} lie above {at}."
+        return "{share} exceed {at} in magnitude."
+    return "{share} end within {at}." if element.is_lifetime else "{share} exceed {at}."

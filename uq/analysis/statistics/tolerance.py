@@ -50,7 +50,9 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         ),
         readers=frozenset((JSON, COLUMNS, TERMINAL, REPORT)),
     )
-    sentence = f"With {confidence} confidence, {coverage} of all take longer than {{number}}."
+    sentence = (
+        f"{coverage.removesuffix(' %')}/{confidence.removesuffix(' %')} lower bound: {{number}}."
+    )
     ends = {
         "lower": whenever_censored_rows_end((early[0], early[0])),
         "upper": whenever_censored_rows_end((early[1], late[1])),
