@@ -152,9 +152,9 @@ def test_edited_code_gives_new_numbers_and_says_so(plant, write_study, decorator
     assert factor() == 10.0
     ended = call("verify", "results/small.nc")
     assert ended.returncode == 1
-    assert "0 of 3 computed again" in ended.stdout
+    assert "0 of 3 recomputed" in ended.stdout
     shown = call("run", study, "--quiet")
     assert (shown.returncode, shown.stderr.count("\n")) == (0, 1)
     assert "holds rows that other code of model 'plant' computed" in shown.stderr
     assert call("run", study, "--quiet", "--fresh").stderr == ""
-    assert "3 of 3 computed again" in call("verify", "results/small.nc").stdout
+    assert "3 of 3 recomputed" in call("verify", "results/small.nc").stdout

@@ -43,7 +43,7 @@ def refused(ended):
         (("[study]", f"[study]\n{'x.' * 20_000}y = 1"), "key of more than 64 parts (at line 2)"),
         (("[study]", f'[study]\nx = {{{"a . " * 20_000}"y" = 1}}'), "not valid TOML: a key of"),
         (("[uncertain]", '[uncertain]\n"\\u001b[31m\\n\\u202e" = 1'), r"\u001b[31m"),
-        (("[study]", "[study]\n#" + "x" * 1_000_001), "no study is longer than 1 MB"),
+        (("[study]", "[study]\n#" + "x" * 1_000_001), "a study is at most 1 MB long"),
     ],
 )
 def test_a_hostile_study_is_refused_in_one_line(uq, write_study, folder, change, words):
