@@ -122,3 +122,13 @@ def test_colours_of_points_are_seen_in_the_legend():
     (shown,) = plots.pairs(kinds(samples=200)).legends
     assert len(shown.legend_handles) == 2
     assert all(handle.get_markersize() >= 6 for handle in shown.legend_handles)
+
+
+def test_the_legend_of_many_indices_of_few_inputs_has_room():
+    ds = kinds(samples=1000, analysis={"quantiles": [0.1, 0.5, 0.9]})
+    figure = plots.index_bars(ds, "work[side=left]", method="quantile")
+    lay_out(figure)  # a warning, which is an error here, if nothing is left for the bars
+    (legend,) = figure.legends
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert len(labels) == len(set(labels)) == 5
+    assert figure.axes[0].get_window_extent().height > 30

@@ -13,7 +13,7 @@ from uq.drawing.figure import (
     sentence,
     styled,
 )
-from uq.drawing.panel import column, figure_of, heading, legend
+from uq.drawing.panel import column, finish, heading
 from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
@@ -64,7 +64,7 @@ def index_bars(
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
     labels = [sentence(in_words(ds[parameter]), width=30) for parameter in parameters]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
-    (panel,) = column(axes, 0.8 + 0.13 * lines.sum(), entries=2)
+    (panel,) = column(axes, 0.8 + 0.13 * lines.sum())
     middle = np.cumsum(lines) - lines / 2
     thickness = 0.8 * lines.min() / len(kinds)
     for i, (kind, values) in enumerate(kinds.items()):
@@ -74,11 +74,14 @@ def index_bars(
         value, ends = table[:, 0], table[:, 1:].T
         panel.barh(y, value, thickness, color=COLOURS[i], label=kind.words)
         panel.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
-    for null in found.indices.nulls.values():
-        limits = zip(("--", ":"), (null.one, null.largest), _LIMITS, strict=True)
-        for line, limit, label in limits:
+    unnamed = set(_LIMITS)
+    for kind, null in found.indices.nulls.items():
+        colour = COLOURS[list(kinds).index(kind)] if len(kinds) > 1 else "black"
+        for line, limit, label in zip(("--", ":"), (null.one, null.largest), _LIMITS, strict=True):
             if np.isfinite(limit):
-                panel.axvline(limit, color="black", ls=line, lw=0.8, label=label)
+                named = label if label in unnamed else "_"  # each once in the legend
+                unnamed.discard(label)
+                panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named)
     panel.axvline(0, color="black", lw=0.6)
     # Indices are between 0 and 1; intervals far outside must not squeeze the bars.
     shares = all(kind.unit != "output" for kind in kinds)
@@ -94,8 +97,7 @@ def index_bars(
     axis = "Sensitivity index [1]" if shares else unit
     panel.set_xlabel(axis + known * ",\nwith 95 % interval")
     heading(panel, subject(ds, name))
-    legend(panel)
-    return figure_of(panel)
+    return finish(panel)
 
 
 def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:
