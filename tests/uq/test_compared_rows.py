@@ -78,8 +78,8 @@ def test_elements_of_one_result_alone_are_named():
     both, left = kinds(samples=50), kinds(samples=50).isel(side=[0])
     for pair, which in (((both, left), "A"), ((left, both), "B")):
         found = compared(*pair)
-        (note,) = [note for note in found["notes"] if note.startswith("only ")]
-        assert note.startswith(f"only {which} has work[side=right], life[side=right,depth=0.5]")
+        (note,) = [note for note in found["notes"] if note.startswith("Only ")]
+        assert note.startswith(f"Only {which} has work[side=right], life[side=right,depth=0.5]")
         assert "work[side=left]" in found["outputs"]
         assert "work[side=right]" not in found["outputs"]
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from uq.contract import Parameter
-from uq.inputs.conditioning import law_problem, ppf_within
+from uq.inputs.conditioning import cdf_within, law_problem, ppf_within
 from uq.inputs.registry import law_of
 
 LAWS = {
@@ -77,6 +77,14 @@ def test_both_tails_of_a_normal_keep_their_accuracy(bounds):
     exact, mirrored = stats.truncnorm(*bounds), stats.truncnorm(-bounds[1], -bounds[0])
     np.testing.assert_allclose(ppf_within(normal, u, bounds), exact.ppf(u), rtol=1e-11)
     np.testing.assert_allclose(ppf_within(normal, 1.0 - u, bounds), -mirrored.ppf(u), rtol=1e-11)
+
+
+@pytest.mark.parametrize("bounds", [(2.9, 3.0), (-3.0, -2.9), (-0.3, 0.6)])
+def test_probabilities_invert_quantiles_in_both_tails(bounds):
+    u = np.linspace(0.001, 0.999, 7)
+    normal = law("normal", mean=0.0, sd=0.3)
+    found = cdf_within(normal, ppf_within(normal, u, bounds), bounds)
+    np.testing.assert_allclose(found, u, rtol=1e-10)
 
 
 def test_a_truncated_normal_is_a_normal_within_bounds():

@@ -6,7 +6,9 @@ import pytest
 from computed import as_text, asking, computed
 from input_studies import UNIFORM, inputs_of, tables
 
+from uq.analysis.comparison import comparison
 from uq.errors import InputError
+from uq.report import page
 from uq.rows.sampling import row_block
 from uq.study.definition import load_study, study_from_text
 from uq.wording import law
@@ -36,6 +38,16 @@ def test_a_result_needs_no_file(springs):
     again = study_from_text(ds.attrs["study"])
     assert again.identity == study.identity and again.text == study.text
     assert row_block(again, 0, 64).x.tobytes() == row_block(study, 0, 64).x.tobytes()
+
+
+def test_a_result_is_reported_and_compared_without_the_file(springs):
+    ds = computed(load_study(springs / "study.toml"))
+    (springs / "springs.csv").unlink()
+    other = computed(study_from_text(as_text(tables({"x1": UNIFORM, "x2": UNIFORM}))))
+    stated = 'empirical(file = "springs.csv", column = "k")'
+    assert stated in page(ds, "springs.nc").replace("&#34;", '"')
+    (change,) = comparison(ds, other).changed
+    assert change.name == "x1" and change.first.startswith(stated)
 
 
 def test_the_identity_is_of_what_the_file_holds_not_of_its_name(springs):

@@ -38,7 +38,7 @@ def test_labels_say_what_the_codes_mean():
     assert list(words.values) == ["slow" if x <= 0.5 else "fast" for x in ds["x1"].values]
     assert words.attrs["long_name"] == ds["regime"].attrs["long_name"]
     assert list(uq.labels(ds["status"][2:4]).values) == ["timed-out", "ok"]
-    with pytest.raises(InputError, match="'angle' is a quantity, not a category"):
+    with pytest.raises(InputError, match="'angle' is not a category"):
         uq.labels(ds["angle"])
 
 

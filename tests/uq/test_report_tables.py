@@ -201,7 +201,7 @@ def test_rows_less_exact_than_their_number_are_warned_of():
     found = convergence_of(Findings(ds), outcomes(ds, summarise(ds)))
     (warning,) = found.warnings
     assert warning.startswith("y: the rows' own error (1 1)")
-    assert "the designs that can be extended are" in found.refused and found.pictures == []
+    assert "no estimates from fewer samples" in found.refused and found.pictures == []
 
 
 def test_what_never_ends_sorts_last_and_what_says_nothing_is_left_out():

@@ -123,8 +123,8 @@ def _sizes(ds: xr.Dataset) -> list[int]:
     if not (DESIGNS[method].append_only or are_independent(ds)):
         able = " or ".join(f"'{name}'" for name, design in DESIGNS.items() if design.append_only)
         raise InputError(
-            f"the first rows of a '{method}' design are not a smaller one, so there are no"
-            f" estimates from fewer samples; the designs that can be extended are {able}"
+            f"the first rows of design '{method}' are not a smaller one, so there are no"
+            f" estimates from fewer samples; use {able}"
         )
     sizes = [size]
     while (size := -(-size // 2)) >= _FEWEST:

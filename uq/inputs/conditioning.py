@@ -80,7 +80,10 @@ def cdf_within(
     ndarray, shape (n,)
     """
     to = _condition(law, bounds)
-    share = (to.parent.cdf(x) - to.below) / (to.not_above - to.below)
+    if to.below < 0.5:
+        share = (to.parent.cdf(x) - to.below) / (to.not_above - to.below)
+    else:  # in the upper tail only the survival function has digits left
+        share = (to.not_below - to.parent.sf(x)) / (to.not_below - to.above)
     return np.clip(np.where(x < to.low, 0.0, share), 0.0, 1.0)
 
 

@@ -171,7 +171,7 @@ def import_faults(
         text = ", ".join(f"{name} {size}" for name, size in sizes.items())
         yield Fault(("design", "file"), f"columns of different lengths: {text}", table["file"])
     elif sizes and table.get("samples", 0) > (rows := min(sizes.values())):
-        problem = f"the file has {rows} rows; must be at most that"
+        problem = f"the file has {rows} row{'s' * (rows != 1)}; samples must not exceed that"
         yield Fault(("design", "samples"), problem, table["samples"])
 
 
