@@ -195,7 +195,7 @@ def test_convergence_ends_with_all_rows_and_narrows():
     (axes,) = plots.convergence(with_output(linear(), "life", lives, "lifetime"), "life").axes
     assert axes.get_ylabel().startswith("Median: ")
     assert axes.lines[0].get_xdata()[-1] == 64
-    with pytest.raises(InputError, match="designs that can be extended"):
+    with pytest.raises(InputError, match="no estimates from fewer samples"):
         plots.convergence(linear("latin-hypercube", samples=64), "y")
 
 
