@@ -53,7 +53,7 @@ def test_the_compiler_is_told_nothing_that_moves_a_bit():
 
 
 def test_compiled_algebra_is_free_of_flags():
-    fresh = numba.njit(**_algebra.targetoptions)(_algebra.py_func)  # cached code is not shown
+    fresh = numba.jit(**_algebra.targetoptions)(_algebra.py_func)  # cached code is not shown
     fresh(np.ones(5), np.ones(5))
     (code,) = fresh.inspect_llvm().values()
     assert "llvm.fma" in code and " fmul " in code and " fadd " in code
