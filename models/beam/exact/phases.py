@@ -89,7 +89,7 @@ def set_lines(free: Phase, contact: Phase, beams: Beams, row: int, lines: Array)
     beams : Beams
     row : int
     lines : ndarray, shape (J, 3)
-        As `models.beam.structure.random_load.draw` sets them.
+        As `models.beam.structure.random_lines.draw` sets them.
     """
     forcing, stiffness = beams.forcing[row], beams.stiffness[row]
     w = beams.frequency[row] / forcing
