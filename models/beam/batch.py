@@ -106,7 +106,7 @@ def _simulate_group(
     work, error = settled.work.copy(), settled.error.copy()
     add_step_error(propagator, system, state, gaps, settled)
     add_neighbour_error(propagator, system, begin, gaps, settled)
-    share = np.stack([np.ones_like(p.initial_gap), p.wear_coefficient_ratio], axis=1)
+    share = _wear_shares(p)
     growths = np.asarray(settings.depths) / p.initial_gap[:, None]
     lives = Lives.nothing(*growths.shape)
     known = np.isfinite(settled.work).all(axis=1)
@@ -124,6 +124,11 @@ def _simulate_group(
         for field, some in zip(lives, part, strict=True):
             field[rows] = some
     return settled, lives
+
+
+def _wear_shares(p: Rows) -> NDArray[np.float64]:
+    """Return the wear coefficient of each site over that of the left, shape (n, 2)."""
+    return np.stack([np.ones_like(p.initial_gap), p.wear_coefficient_ratio], axis=1)
 
 
 def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
@@ -151,8 +156,7 @@ def _in_units(
     error = np.where(reached, error, np.nan)
 
     work = s.response.work
-    share = np.stack([np.ones_like(wear_rate), p.wear_coefficient_ratio], axis=1)
-    fastest = (work * share).max(axis=1) * wear_rate * p.forcing_frequency
+    fastest = (work * _wear_shares(p)).max(axis=1) * wear_rate * p.forcing_frequency
     depths = np.asarray(settings.depths)
     with np.errstate(divide="ignore"):
         linear = depths / (fastest * p.initial_gap)[:, None]

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.stated_error import error_name, stated_error
+from uq.analysis.stated_error import stated_error
 from uq.analysis.statistics.statistic import RUNNING
 from uq.analysis.summary import summarise
 from uq.designs.registry import DESIGNS
@@ -15,6 +15,7 @@ from uq.indices.sensitivities import sensitivities
 from uq.indices.targets import split_name
 from uq.methods.registry import METHODS, piloted_by
 from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
+from uq.rows.variables import error_name
 
 COLUMNS = ["output", "estimate", "samples", "value", "low", "high", "kind", "input"]
 

@@ -3,11 +3,7 @@
 import xarray as xr
 
 from uq.rows.elements import Element, elements_of, output_names
-
-
-def error_name(output: str) -> str:
-    """Return the name of the output that states the error of another."""
-    return f"{output}_error"
+from uq.rows.variables import error_name
 
 
 def stated_error(ds: xr.Dataset, element: Element) -> Element | None:

@@ -10,7 +10,7 @@ from matplotlib.ticker import LogLocator
 from uq.analysis.convergence import running_estimates
 from uq.drawing.elements_plot import curve_style, display_unit, label
 from uq.drawing.figure import COLOURS, LINES, in_words, sentence, styled
-from uq.drawing.index_plot import subject
+from uq.drawing.index_plot import range_of_indices, subject
 from uq.drawing.panel import column, figure_of, heading, legend
 from uq.errors import InputError
 from uq.methods.indices import ST
@@ -116,9 +116,7 @@ def index_convergence(
         colour, line = COLOURS[i], LINES[i % len(LINES)]
         _curve(panel, own[own["input"] == name], 1.0, colour, line, words)
     panel.set_ylabel("Total index (ST) [1]")
-    # Wide intervals of the first few rows must not squeeze the rest.
-    low, high = panel.get_ylim()
-    panel.set_ylim(max(low, -0.25), min(high, 1.25))
+    panel.set_ylim(range_of_indices(panel.get_ylim()))
     _finish(panel, ds)
     heading(panel, subject(ds, output))
     return figure_of(panel)

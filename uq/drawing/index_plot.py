@@ -83,11 +83,9 @@ def index_bars(
                 unnamed.discard(label)
                 panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named)
     panel.axvline(0, color="black", lw=0.6)
-    # Indices are between 0 and 1; intervals far outside must not squeeze the bars.
     shares = all(kind.unit != "output" for kind in kinds)
     if shares:
-        low, high = panel.get_xlim()
-        panel.set_xlim(max(low, -0.25), min(high, 1.25))
+        panel.set_xlim(range_of_indices(panel.get_xlim()))
     panel.set_yticks(middle, labels)
     panel.set_ylim(0, lines.sum())
     roomy(panel, ticks=3)  # the labels take most of the width
@@ -98,6 +96,11 @@ def index_bars(
     panel.set_xlabel(axis + known * ",\nwith 95 % interval")
     heading(panel, subject(ds, name))
     return finish(panel)
+
+
+def range_of_indices(ends: tuple[float, float]) -> tuple[float, float]:
+    """Return the range of an axis of indices: intervals far outside must not squeeze the bars."""
+    return max(ends[0], -0.25), min(ends[1], 1.25)
 
 
 def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:

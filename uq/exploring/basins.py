@@ -19,7 +19,7 @@ from uq.exploring.grid import Axis, Grid, grid_of
 from uq.inputs.values import unknown_name
 from uq.rows import results
 from uq.rows.sampling import Rows
-from uq.rows.variables import outputs_of
+from uq.rows.variables import error_name, outputs_of
 from uq.rows.workload import Workload
 from uq.running import runner
 from uq.running.options import RunOptions
@@ -108,7 +108,8 @@ def basins(
 def _compared_outputs(model: Model, by: Sequence[str] | None) -> tuple[str, ...]:
     names = tuple(model.outputs)
     if by is None:
-        return tuple(name for name in names if name not in {f"{other}_error" for other in names})
+        errors = set(map(error_name, names))
+        return tuple(name for name in names if name not in errors)
     if unknown := [name for name in by if name not in names]:
         raise InputError(*(f"by: {unknown_name('output', name, model, names)}" for name in unknown))
     return tuple(name for name in names if name in by or model.outputs[name].is_category)
@@ -166,8 +167,8 @@ def _numbers(flat: xr.Dataset, names: Sequence[str], tolerance: float) -> Iterat
     for name in names:
         values = flat[name].astype(float)
         errors = xr.zeros_like(values)
-        if f"{name}_error" in flat:
-            errors = (errors + flat[f"{name}_error"]).transpose(*values.dims)
+        if (stated := error_name(name)) in flat:
+            errors = (errors + flat[stated]).transpose(*values.dims)
         slack = 0.0 if declared[name].is_category else tolerance
         columns = (np.reshape(a.values, (len(a), -1)).T for a in (values, errors))
         for value, error in zip(*columns, strict=True):

@@ -162,3 +162,8 @@ def model_attributes(model: Model) -> dict[str, Any]:
         "model": model.name,
         "model_version": model.version,
     }
+
+
+def error_name(output: str) -> str:
+    """Return the name of the output that states the error of another."""
+    return f"{output}_error"
