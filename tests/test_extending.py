@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
+import scipy
 
 HOUSE = Path(__file__).parents[1]
 sys.path[:0] = [str(HOUSE / "docs"), str(HOUSE / "tests" / "uq")]
@@ -215,8 +216,8 @@ class Rayleigh(Law):
     distribution: Literal["rayleigh"]
     mode: Positive
 
-    def _scipy(self):
-        return "rayleigh", {"scale": self.mode}
+    def frozen(self):
+        return scipy.stats.rayleigh(scale=self.mode)
 
 
 def test_a_law_is_accepted_drawn_shown_and_documented(
