@@ -29,7 +29,7 @@ from uq.drawing.panel import column, figure_of  # noqa: E402
 from uq.estimate import Estimate  # noqa: E402
 from uq.inputs.law import Law, Positive  # noqa: E402
 from uq.inputs.registry import LAWS  # noqa: E402
-from uq.methods.indices import Indices, Kind  # noqa: E402
+from uq.methods.indices import IndexKind, Indices  # noqa: E402
 from uq.methods.method import Method  # noqa: E402
 from uq.methods.registry import METHODS  # noqa: E402
 from uq.report import page  # noqa: E402
@@ -87,7 +87,7 @@ def toy_design(monkeypatch):
     monkeypatch.setitem(DESIGNS, "mirrored", Design("pairs of opposite points", mirrored))
 
 
-R2 = Kind("R2", "squared correlation (R2)", "variance")
+R2 = IndexKind("R2", "squared correlation (R2)", "variance")
 
 
 def squared_correlation(sample):
