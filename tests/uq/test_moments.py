@@ -81,7 +81,7 @@ def test_a_light_tail_has_everything():
     assert entry["tail"]["k"] < 0
 
 
-def test_every_reader_is_told():
+def test_every_reader_reports_it():
     ds, light = heavy(0.8), asking(with_output(linear(samples=1000), "z", np.arange(1000.0)))
     line = summary(ds).loc["z"]
     assert (
