@@ -9,9 +9,9 @@ from math import ceil
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from uq.contract import Floats
+
 LimitState = Callable[[Floats], Floats]
 """``margin(u)``: points of standard normal space (n, d) -> distance beyond the limit (n,), positive
 within the event, -inf for a row without a value."""

@@ -6,12 +6,11 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from uq.contract import Floats
 from uq.inputs.law import LIST, Law, Positive
 
-Floats = NDArray[np.float64]
 Numbers = Annotated[tuple[float, ...], LIST]
 
 MAX_VALUES = 100_000
