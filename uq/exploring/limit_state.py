@@ -11,8 +11,8 @@ from scipy.special import ndtr
 
 from uq.contract import Output, Status
 from uq.errors import InputError, nearest
-from uq.exploring.subset_simulation import Floats
 from uq.inputs.values import unknown_name
+from uq.intervals import Floats
 from uq.rows.columns import censored_name
 from uq.rows.evaluate import Chunk
 from uq.rows.results import elements
