@@ -13,14 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from uq.contract import Floats, Mask
 from uq.exact_shares import are_few, exact_interval
 
 CONFIDENCE = 0.95
 ROUNDING = 64 * np.finfo(float).eps
 """Values are equal but for rounding if they differ by less than this part of the largest."""
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Replicates = NDArray[np.integer] | None
 
 

@@ -140,9 +140,9 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, i
     with pytest.raises(RunError, match=rf"^--scheduler {there.address}: the scheduler is gone$"):
         patiently(there.address, study, "out.nc", call=runner.run, chunk_rows=2, progress=kill)
     injected("scheduler killed")
-    told = []
-    ds = runner.run(study, "out.nc", workers=0, progress=told.append)
-    assert told[0].found > 20
+    reports = []
+    ds = runner.run(study, "out.nc", workers=0, progress=reports.append)
+    assert reports[0].found > 20
     assert ds.identical(runner.compute(study, workers=0))
 
 

@@ -222,7 +222,7 @@ def test_bad_input_is_one_clear_line(given, line):
     assert len(refused.value.lines) == 1
 
 
-def test_all_mistakes_are_told_at_once():
+def test_all_mistakes_are_reported_at_once():
     with pytest.raises(InputError) as refused:
         uq.basins(WELLS, {"speed": (0, 1, 2)}, {"shift": 7.0}, {"seconds": "long"})
     assert len(refused.value.lines) == 3

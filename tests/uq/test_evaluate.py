@@ -146,7 +146,7 @@ def test_a_lifetime_that_cannot_be_censored_has_no_flag():
     assert isinstance(EXPONENTIAL_WEAR.outputs["life"], Output)
 
 
-def test_of_chunks_that_follow_each_other_the_first_failure_is_told():
+def test_of_chunks_that_follow_each_other_the_first_failure_is_kept():
     parts = [linear([0.1, x1], "raise", start) for x1, start in ((0.2, 0), (0.9, 2), (0.95, 4))]
     whole = joined(parts)
     assert whole.failures == {"raised": (3, "ValueError: x1 is above fail_above = 0.8")}

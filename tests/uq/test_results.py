@@ -219,9 +219,9 @@ def test_a_file_holds_what_memory_holds(kinds):
 def test_a_new_text_of_a_study_does_not_say_that_rows_were_computed_here():
     ds = linear(samples=4).assign_attrs(cpu="another processor", numpy="0.9")
     study = study_from_text(ds.attrs["study"] + "\n# a comment\n")
-    told = results.relabel(ds, study).attrs
-    assert told["study"].endswith("# a comment\n")
-    assert (told["cpu"], told["numpy"]) == ("another processor", "0.9")
+    attrs = results.relabel(ds, study).attrs
+    assert attrs["study"].endswith("# a comment\n")
+    assert (attrs["cpu"], attrs["numpy"]) == ("another processor", "0.9")
 
 
 @pytest.mark.parametrize("described", [{}, {"description": "What lasts"}])

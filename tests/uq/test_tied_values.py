@@ -55,7 +55,7 @@ def test_delta_of_a_binary_input_is_the_area_between_its_two_laws():
 
 
 @pytest.mark.parametrize("method", ["pawn", "delta", "quantile"])
-def test_a_rare_value_without_effect_is_told_by_its_own_shuffled_rows(method):
+def test_a_rare_value_without_effect_is_recognised_by_its_own_shuffled_rows(method):
     binary, x1, _ = rows(0.02)
     found, indices_ = estimated(method, x1, x1=x1, x2=binary)
     (note,) = indices_.notes

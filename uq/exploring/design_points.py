@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from scipy.special import logsumexp
 
+from uq.contract import Floats
 from uq.errors import InputError
 from uq.exploring.subset_simulation import Margin
 from uq.interrupts import undone
-from uq.intervals import Floats
 
 _STARTS = 8
 _ITERATIONS = 100

@@ -9,10 +9,9 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from uq.contract import Output, Status
+from uq.contract import Floats, Output, Status
 from uq.errors import InputError, nearest
 from uq.inputs.values import unknown_name
-from uq.intervals import Floats
 from uq.rows.columns import censored_name
 from uq.rows.evaluate import Chunk
 from uq.rows.results import elements

@@ -8,11 +8,12 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtr
 
+from uq.contract import Floats
 from uq.errors import InputError, nearest
 from uq.exploring.design_points import design_points, drawn_around
 from uq.exploring.limit_state import LimitState, evaluator_of
 from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, subset_interval, subset_simulation
-from uq.intervals import Ends, Floats, binomial_interval, log_scatter_interval
+from uq.intervals import Ends, binomial_interval, log_scatter_interval
 from uq.running.options import RunOptions
 from uq.study.definition import Study, load_study
 

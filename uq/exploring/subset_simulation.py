@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uq.intervals import Ends, Floats, binomial_interval, log_scatter_interval
+from uq.contract import Floats
+from uq.intervals import Ends, binomial_interval, log_scatter_interval
 
 Margin = Callable[[Floats], Floats]
 """``margin(u)``: points of standard normal space (n, d) -> distance beyond the limit (n,), positive

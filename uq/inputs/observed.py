@@ -5,12 +5,11 @@ from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from uq.contract import Floats
 from uq.inputs.law import LIST, Law, Positive, Scipy
 
-Floats = NDArray[np.float64]
 Numbers = Annotated[tuple[float, ...], LIST]
 
 MAX_VALUES = 100_000
