@@ -22,7 +22,7 @@ from uq.inputs.values import read_settings
 from uq.intervals import share_interval
 from uq.literals import toml
 from uq.moments import moments
-from uq.rows.elements import Element, elements_of, shown_outputs
+from uq.rows.elements import Element, Floats, elements_of, shown_outputs
 from uq.rows.evaluate import evaluate
 from uq.rows.results import build_rows
 from uq.rows.sampling import row_block, row_seeds, rows
@@ -38,7 +38,6 @@ PER_ROW_OF_SETTINGS = 10
 """Rows under other settings for each row of the result: they cost more."""
 
 _BLOCK = 65_536
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
