@@ -26,7 +26,7 @@ from scipy.optimize import brentq
 from uq.analysis.life_fit import fits_of
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.lifetime import survival
-from uq.analysis.regime_split import between_share
+from uq.analysis.statistics.between_regimes import between_share
 from uq.rows.elements import elements_of
 
 pytestmark = pytest.mark.slow

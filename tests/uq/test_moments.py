@@ -10,7 +10,7 @@ from scipy import stats
 
 from uq.analysis.convergence import enough
 from uq.analysis.overview import summary
-from uq.analysis.regime_split import between_share
+from uq.analysis.statistics.between_regimes import between_share
 from uq.analysis.summary import summarise
 from uq.analysis.widths import expected_widths
 from uq.cli.tables import show_summary
