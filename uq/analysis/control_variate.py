@@ -10,8 +10,8 @@ import numpy as np
 from scipy import stats
 
 from uq import intervals
+from uq.contract import Floats, Mask
 from uq.estimate import Estimate
-from uq.intervals import Floats, Mask
 
 FEWEST = 5
 """With fewer hits, or misses, a control does not improve a share."""

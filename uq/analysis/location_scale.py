@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from uq.intervals import Floats, Mask
+from uq.contract import Floats, Mask
 
 _STEPS = 60
 _CLOSE = 1e-9

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from uq.analysis.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.statistics.thresholds import event
+from uq.contract import Floats
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.exact_shares import FEW
@@ -22,7 +23,7 @@ from uq.inputs.values import read_settings
 from uq.intervals import share_interval
 from uq.literals import toml
 from uq.moments import moments
-from uq.rows.elements import Element, Floats, elements_of, shown_outputs
+from uq.rows.elements import Element, elements_of, shown_outputs
 from uq.rows.evaluate import evaluate
 from uq.rows.results import build_rows
 from uq.rows.sampling import row_block, row_seeds, rows

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_exact import at_omega, set_up
+from exact_beams import at_omega, set_up
 
 from models.beam.branches.orbits import find_orbit, settled_orbit
 from models.beam.exact.passage import passage
