@@ -1,4 +1,4 @@
-"""One mole over any time: a `models.numerics.propagator.Yardstick`."""
+"""One mole over any time: a `models.numerics.propagator.ReferencePropagator`."""
 
 import math
 

@@ -54,7 +54,7 @@ ROW, BAR_MODE, MOLE_MODE, TOUCHING, HALF, TARGET, CONTACTS, ENTRIES = range(51, 
 WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(59, 67)
 
 # The coil: inductance added by the bar in its middle, its width, and the longest step near it.
-ADDED_MOST, WIDTH, REACH = range(67, 70)
+ADDED_MOST, WIDTH, COIL_STEP = range(67, 70)
 
 GROWTH = 70  # logarithm of the factor by which tangents were divided
 ROWS = 71

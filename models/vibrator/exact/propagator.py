@@ -1,4 +1,4 @@
-"""Error-controlled propagation of one machine: the yardstick of the vibrator.
+"""Error-controlled propagation of one machine: the reference for the vibrator.
 
 The equations are integrated by `models.numerics.dop853`; a flight of the feed begins where its
 contact force vanishes and ends where its height does.
@@ -172,7 +172,7 @@ def propagate(
     turns: float = math.inf,
     times: ArrayLike = (),
 ) -> Motion:
-    """Follow one machine, as `models.numerics.propagator.Yardstick` states.
+    """Follow one machine, as `models.numerics.propagator.ReferencePropagator` states.
 
     Parameters
     ----------
