@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from models.numerics import dop8
-from models.numerics.blocks import LANES, aligned
+from models.numerics.blocks import LANES, aligned, layout
 
 # Quantities of a lane, followed by its tangents, which have the first five each.
 U, V, X, CURRENT, P, ADDED, SINE, COSINE = range(8)
@@ -69,7 +69,7 @@ class Block(NamedTuple):
     Attributes
     ----------
     whole : ndarray
-        States, arguments and slopes; see `models.numerics.dop8.layout`.
+        States, arguments and slopes; see `models.numerics.blocks.Layout`.
     state, new : ndarray
         Views of states and arguments; after the last stage `new` is the new state.
     end : ndarray
@@ -95,7 +95,7 @@ class Block(NamedTuple):
     def made(columns: int) -> "Block":
         """Return memory for lanes with this many columns of tangents."""
         size = quantities(columns)
-        where = dop8.layout(size)
+        where = layout(size, dop8.STAGES)
         whole = aligned(where.size)
         n = size * LANES
         return Block(

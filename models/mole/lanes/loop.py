@@ -16,6 +16,7 @@ from models.mole.lanes.rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load
 from models.mole.lanes.steps import accept, conclude
 from models.mole.lanes.strobe import strobe
 from models.numerics import dop8
+from models.numerics.blocks import layout
 from models.numerics.jit import kernel, lean
 
 _SHORTEST = 1e-15  # s
@@ -38,7 +39,7 @@ def propagator(columns: int) -> Callable[..., None]:
     rates = slopes(columns)
     combine = dop8.combiner(size)
     estimate = dop8.estimator(size, MEASURED)
-    first = dop8.layout(size).slopes
+    first = layout(size, dop8.STAGES).slopes
     whole = size * LANES
 
     @lean

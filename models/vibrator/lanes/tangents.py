@@ -7,11 +7,11 @@ that a column needs stays in the fastest cache; stage by stage it would not.
 
 import numpy as np
 
-from models.numerics.blocks import LANES, aligned
+from models.numerics.blocks import LANES, aligned, layout
 from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
 from models.numerics.tableaux import TSITOURAS_5
-from models.numerics.tsit5 import STAGES, combiner, layout
+from models.numerics.tsit5 import STAGES, combiner
 from models.vibrator.equations.rigid_derivatives import derivatives
 from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, set_slopes, slopes
@@ -20,7 +20,7 @@ ANCHOR = 3  # psi_1
 FREE = [i for i in range(STATE) if i != ANCHOR]
 COLUMNS = len(FREE)
 _combine = combiner(STATE)
-_Y, _NEW, _K, _SIZE = layout(STATE)
+_Y, _NEW, _K, _SIZE = layout(STATE, STAGES)
 _WHOLE = STATE * LANES
 _K_2, _K_3, _K_4, _K_5, _K_6 = (_K + i * _WHOLE for i in range(1, STAGES))
 _HALF = LANES // 2
