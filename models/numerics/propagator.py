@@ -3,8 +3,7 @@
 A `Propagator` advances many machines at once: `models.beam.lanes`, `models.beam.exact`,
 `models.vibrator.lanes`, `models.mole.lanes`. A `ReferencePropagator` follows one machine to any
 tolerance: `models.vibrator.exact`, `models.mole.exact`. Any package or module with these functions
-is one.
-`tests/models/test_propagators.py` checks what is stated here for all of them.
+is one. `tests/models/test_propagators.py` checks what is stated here for all of them.
 """
 
 from collections.abc import Iterator

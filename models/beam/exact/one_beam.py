@@ -11,9 +11,18 @@ from models.beam.exact.events import (
 )
 from models.beam.exact.tip_bounds import tip_at
 from models.beam.exact.within_phase import join
+from models.beam.structure.modal import Array
 from models.numerics.jit import kernel
 
-CLOCK, OWED = -3, -2  # columns of a state after its modes; OWED and the next: one for each site
+CLOCK, OWED = -3, -2
+"""Columns of a state after z and dz/d(Omega t) of each mode: the clock, and the work of unfinished
+contacts at the right and the left site."""
+
+
+def velocities(state: Array) -> Array:
+    """Return dz/d(Omega t) of all modes, a view of n states: velocities per radian of the force."""
+    modes = (state.shape[1] + CLOCK) // 2
+    return state[:, modes:CLOCK]
 
 
 @kernel

@@ -154,6 +154,13 @@ def runner(system: System, degrees: int) -> Callable[..., Outcome]:
 def start(params: Params, system: System) -> NDArray[np.float64]:
     """Return the state of one machine at rest, at its initial phases.
 
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    system : System
+        The same machine, prepared.
+
     Returns
     -------
     ndarray, shape (10,) or (16,)
@@ -187,6 +194,7 @@ def propagate(
     turns : float
         Stop after this many turns of vibrator 1, if they come before `duration`.
     times : array_like, shape (k,)
+        When to sample the state [s], ascending.
 
     Returns
     -------

@@ -103,6 +103,7 @@ def follow(constants: Array, state: Array, period: Array, steps: int) -> Array:
     constants : ndarray, shape (n, CONSTANTS)
     state : ndarray, shape (n, 10)
     period : ndarray, shape (n,)
+        [s]
     steps : int
 
     Returns

@@ -211,6 +211,7 @@ def revolve(constants: Array, start: Array, period: Array, steps: int) -> Array:
     constants : ndarray, shape (n, CONSTANTS)
     start : ndarray, shape (n, 10)
     period : ndarray, shape (n,)
+        [s]
     steps : int
         In the period.
 
