@@ -15,6 +15,9 @@ from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
 Kind = Literal["value", "lifetime", "angle", "category"]
 
 
@@ -131,7 +134,7 @@ class Output:
             return np.isnan(values) | np.isneginf(values)
         return ~np.isfinite(values)
 
-    def for_thresholds(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def for_thresholds(self, values: Floats) -> Floats:
         """Return the numbers compared with thresholds: the magnitude of an angle, else `values`."""
         return np.abs(values) if self.is_angle else values
 
@@ -180,12 +183,12 @@ class Trajectory(NamedTuple):
         Name -> (unit, meaning, values of shape (k,)).
     """
 
-    time: NDArray[np.float64]
-    quantities: Mapping[str, tuple[str, str, NDArray[np.float64]]]
+    time: Floats
+    quantities: Mapping[str, tuple[str, str, Floats]]
 
 
 Batch = Callable[
-    [NDArray[np.float64], NDArray[np.uint64], Any],
+    [Floats, NDArray[np.uint64], Any],
     tuple[Mapping[str, NDArray[Any]], NDArray[np.int8]],
 ]
 """``batch(x, seed, settings)``: x (n, d) in declared order, seed (n,), a settings object ->

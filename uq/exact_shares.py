@@ -1,10 +1,9 @@
 """The interval of a share estimated from few hits, where Wilson's covers too little."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
-Floats = NDArray[np.float64]
+from uq.contract import Floats, Mask
 
 FEW = 20
 """Below so many hits, or misses, an interval is exact.
@@ -14,7 +13,7 @@ to 4 % from twenty hits on.
 """
 
 
-def are_few(share: Floats | float, rows: Floats | float, below: int = FEW) -> NDArray[np.bool_]:
+def are_few(share: Floats | float, rows: Floats | float, below: int = FEW) -> Mask:
     """Whether there are few hits or few misses; false where the share is unknown."""
     rarer = np.minimum(share, 1 - np.asarray(share)) * rows
     return np.asarray(np.round(rarer, 6) < below)

@@ -13,14 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from uq.contract import Floats, Mask
 from uq.exact_shares import are_few, exact_interval
 
 CONFIDENCE = 0.95
 ROUNDING = 64 * np.finfo(float).eps
 """Values are equal but for rounding if they differ by less than this part of the largest."""
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 Replicates = NDArray[np.integer] | None
 
 
@@ -55,6 +54,28 @@ def scatter_interval(value: float, estimates: Floats, confidence: float = CONFID
         return UNKNOWN
     half = stats.t.ppf(upper_tail(confidence), count - 1) * stats.sem(estimates)
     return float(value - half), float(value + half)
+
+
+def log_scatter_interval(estimates: Floats) -> Ends:
+    """Return the interval of a small probability from independent estimates of it.
+
+    Parameters
+    ----------
+    estimates : ndarray, shape (R,)
+        Not negative.
+
+    Returns
+    -------
+    low, high : float
+        Student's interval of the logarithms about the mean; if some estimates are zero, that of
+        the estimates themselves, not below zero.
+    """
+    mean = float(estimates.mean())
+    if (estimates > 0).all():
+        low, high = np.exp(scatter_interval(np.log(mean), np.log(estimates)))
+        return low, high
+    low, high = scatter_interval(mean, estimates)
+    return np.maximum(low, 0.0), high
 
 
 def mean_interval(

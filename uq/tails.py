@@ -14,10 +14,9 @@ References
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
-Floats = NDArray[np.float64]
+from uq.contract import Floats
 
 MIN_TAIL = 20
 """Fewer values do not distinguish tails."""

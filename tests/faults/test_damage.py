@@ -131,7 +131,7 @@ def disk(folder):
     place.mkdir()
     mount = ["mount", "-t", "tmpfs", "-o", "size=1m", "none", str(place)]
     if os.geteuid() != 0 or subprocess.run(mount, capture_output=True).returncode:
-        pytest.skip("only root can make a disk")
+        pytest.skip("mounting a small disk needs root and a kernel that permits it")
     yield place
     subprocess.run(["umount", str(place)], check=True)
 

@@ -121,11 +121,11 @@ def test_rows_of_an_edited_model_are_mixed_on_request_alone(
     code, said = call("verify", OUT, *options[:2])
     assert code == 0
     assert f"code  {old}; {new} made it, " in said
-    told = (
+    printed = (
         f"{OUT}: holds rows that other code of model 'patient' computed; 'uq verify' compares them "
         "with the code here, 'uq run --fresh' computes all of them again\n"
     )
-    assert call("run", study, *options, "--quiet") == (0, told)
+    assert call("run", study, *options, "--quiet") == (0, printed)
     assert call("run", study, *options, "--quiet", "--mixed") == (0, "")
     for verb in (("extend", OUT, "--samples", "1600"), ("rerun", OUT, "--failed")):
         assert call(*verb, *options) == (2, refused)

@@ -130,16 +130,16 @@ def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     injected("Ctrl-C" if number == signal.SIGINT else "SIGTERM")
     code, said = run.wait()
     assert code == 128 + number
-    told = re.fullmatch(
+    stopped = re.fullmatch(
         rf"interrupted after (\d+) of 1500 rows, kept in {ROWS}; the same command resumes "
         r"the run\n",
         said,
     )
-    assert told
-    assert json.loads(call("status", OUT, "--json")[1])["done"] == int(told[1])
+    assert stopped
+    assert json.loads(call("status", OUT, "--json")[1])["done"] == int(stopped[1])
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(f"{OUT}: {told[1]} of 1500 rows were already done\n")
+    assert said.startswith(f"{OUT}: {stopped[1]} of 1500 rows were already done\n")
     assert OUT.read_bytes() == undisturbed
 
 

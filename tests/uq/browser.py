@@ -1,4 +1,4 @@
-"""A headless Chromium, told what to do over its DevTools protocol."""
+"""A headless Chromium, driven by its DevTools protocol."""
 
 import asyncio
 import base64
@@ -75,8 +75,8 @@ class Tab:
 
     def complaints(self):
         """Return every error of the console, of a script or of the network so far."""
-        told = {"Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"}
-        return [event for event in self.events if event[0] in told | {"Network.loadingFailed"}]
+        reported = {"Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"}
+        return [event for event in self.events if event[0] in reported | {"Network.loadingFailed"}]
 
     def requests(self):
         """Return the addresses that the page asked for."""
@@ -119,8 +119,8 @@ async def _closed(socket):
 def _port(folder):
     until = time.monotonic() + _SECONDS
     while time.monotonic() < until:
-        told = folder / "DevToolsActivePort"
-        if told.exists() and (lines := told.read_text().split()):
+        port = folder / "DevToolsActivePort"
+        if port.exists() and (lines := port.read_text().split()):
             return lines[0]
         time.sleep(0.05)
     raise AssertionError((folder / "output").read_text())

@@ -74,7 +74,7 @@ def test_a_result_carries_the_accuracy_asked_for():
     assert "accuracy" not in ds["y_error"].attrs
 
 
-def test_rows_beyond_the_accuracy_are_counted_and_told(capsys):
+def test_rows_beyond_the_accuracy_are_counted_and_reported(capsys):
     ds = rough()
     expected = int((ds["x1"] > 2 / 3).sum())
     assert 0 < expected < 60
@@ -94,7 +94,7 @@ def test_rows_beyond_the_accuracy_are_counted_and_told(capsys):
     assert (table.rows[0][column].text, table.rows[0][column].more) == (str(expected), share)
 
 
-def test_nothing_is_told_where_every_row_reaches_its_accuracy(capsys):
+def test_nothing_is_reported_where_every_row_reaches_its_accuracy(capsys):
     ds = rough(0.05)
     assert summarised(ds)["outputs"]["y[side=left]"]["accuracy"]["missed"] == 0
     show_summary(ds, summarise(ds))
@@ -105,8 +105,8 @@ def test_rows_that_never_end_or_are_censored_or_failed_have_no_accuracy():
     values = [1.0, 1.0, np.inf, 1.0, np.nan, -1.0]
     errors = [0.2, np.nan, np.nan, np.nan, np.nan, -0.05]
     ds = with_errors(values, errors, kind="lifetime", censored=[0, 0, 0, 1, 0, 0])
-    told = accuracy_of(ds, "life")
-    assert (told["rows"], told["missed"]) == (3, 2)
+    accuracy = accuracy_of(ds, "life")
+    assert (accuracy["rows"], accuracy["missed"]) == (3, 2)
 
 
 @pytest.mark.parametrize("values", [[np.inf, np.inf]])

@@ -53,7 +53,7 @@ def test_a_parameter_may_be_infinite_unless_given(uq):
 
 
 @pytest.mark.parametrize("name", model_names())
-def test_every_model_can_be_told_as_json(uq, name):
+def test_every_model_is_described_as_json(uq, name):
     described = strict_json(uq("models", name, "--json").out)
     assert described["name"] == name
     assert list(described) == [
@@ -74,9 +74,9 @@ def test_no_line_of_a_parameter_is_broken(name, width, monkeypatch, capsys):
     monkeypatch.setattr(catalogue.console, "_width", width)
     model = find_model(name)
     catalogue.show(model)
-    told = capsys.readouterr().out.split("Settings")[0].splitlines()
+    lines = capsys.readouterr().out.split("Settings")[0].splitlines()
     for parameter in model.nominal:
-        start = next(i for i, line in enumerate(told) if line.split()[:1] == [parameter])
-        assert told[start + 1].startswith("    ")  # what explains it, not the rest of its line
-        assert ("admissible: " in told[start + 1]) == (width == 60)
-    assert max(map(len, told)) <= width
+        start = next(i for i, line in enumerate(lines) if line.split()[:1] == [parameter])
+        assert lines[start + 1].startswith("    ")  # what explains it, not the rest of its line
+        assert ("admissible: " in lines[start + 1]) == (width == 60)
+    assert max(map(len, lines)) <= width

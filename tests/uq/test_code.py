@@ -99,7 +99,7 @@ def test_a_module_imported_by_a_call_counts(plant, folder, line):
 
 @pytest.mark.parametrize("name", ["tools.py", "tools/__init__.py", "tools/deep/one.py"])
 def test_sources_in_another_folder_count_unless_installed(folder, monkeypatch, name):
-    def told(where):
+    def counts(where):
         monkeypatch.syspath_prepend(where)
         (where / name).parent.mkdir(parents=True, exist_ok=True)
         (where / name).write_text("a = 1\n")
@@ -110,8 +110,8 @@ def test_sources_in_another_folder_count_unless_installed(folder, monkeypatch, n
     monkeypatch.syspath_prepend(folder / "project")
     (folder / "project").mkdir()
     (folder / "project" / "alone.py").write_text("import tools\nfrom tools.deep import one\n")
-    assert told(folder / "elsewhere")
-    assert not told(folder / "site-packages")
+    assert counts(folder / "elsewhere")
+    assert not counts(folder / "site-packages")
 
 
 def test_a_model_in_the_working_folder_has_a_code_at_once(folder, monkeypatch):

@@ -55,7 +55,7 @@ def test_compare_on_the_command_line(uq, folder):
     assert "\nnone" in "\n".join(map(str.strip, uq("compare", "a.nc", "a.nc").out.splitlines()))
 
 
-def test_times_are_told_in_a_unit_people_use(uq, folder):
+def test_times_are_given_in_a_unit_people_use(uq, folder):
     for name, factor in (("a", 1.0), ("b", 2.0)):
         values = factor * 86400.0 * np.linspace(5, 15, 64)
         ds = asking(with_output(linear(), "life", values, "lifetime"), outputs=["life"])

@@ -62,7 +62,7 @@ def test_shares_that_agree_have_newcombes_interval():
     assert apart(found) == pytest.approx(expected)
 
 
-def test_lives_that_suppose_something_are_reckoned_with_at_their_worst():
+def test_lives_that_assume_something_count_at_their_worst():
     def lives(factor):
         values = factor * np.linspace(1, 5, 200)
         ds = with_output(linear(samples=200), "life", values, "lifetime", np.arange(200) % 3 == 0)

@@ -14,16 +14,16 @@ DAY = 86400.0
 
 @pytest.fixture
 def compared(uq, folder):
-    """Return a function that compares two results: the lines told, split into words."""
+    """Return a function that compares two results: the lines printed, split into words."""
 
-    def told(one, other):
+    def lines(one, other):
         write_result(one, folder / "a.nc")
         write_result(other, folder / "b.nc")
         ended = uq("compare", "a.nc", "b.nc")
         assert (ended.code, ended.err) == (0, "")
         return [line.split() for line in ended.out.splitlines()]
 
-    return told
+    return lines
 
 
 def lives(factor):
@@ -38,7 +38,7 @@ def line(lines, *label):
     return next(one[len(label) :] for one in lines if tuple(one[: len(label)]) == label)
 
 
-def test_lives_are_told_in_days_with_all_that_belongs_to_them(compared):
+def test_lives_are_given_in_days_with_all_that_belongs_to_them(compared):
     lines = compared(lives(1.0), lives(1.5))
     a, b, apart, low, _, high, mark = line(lines, "mean")
     assert (a, b, apart, mark) == ("10", "15", "5", "*")

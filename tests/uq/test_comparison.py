@@ -156,7 +156,7 @@ def test_what_was_changed_is_named_and_what_it_bought():
     assert compared(one, both)["only"] is None
 
 
-def test_ties_and_rank_correlations_are_told():
+def test_ties_and_rank_correlations_are_stated():
     one = study({"x1": UNIFORM, "x2": UNIFORM})
     tied = study({"x1": UNIFORM, "x2": {"equals": "x1"}})
     assert compared(one, tied)["changed"][0]["b"] == "equals x1"

@@ -119,13 +119,13 @@ def test_a_mean_outside_the_bounds_names_the_mean():
     assert "100.0 to 10000000.0 [N m-1]" in found.problem
 
 
-def test_a_wide_normal_is_told_of_the_truncated_one():
+def test_for_a_wide_normal_the_truncated_one_is_proposed():
     found = problem((100.0, 1e7), "normal", mean=500.0, sd=100.0)
     assert found.problem.startswith("has 3.2e-05 of its probability outside the parameter's bounds")
     assert "truncated-normal" in found.problem
 
 
-def test_a_law_with_ends_is_told_to_move_them():
+def test_for_a_law_with_ends_moving_them_is_proposed():
     found = problem((100.0, 1e7), "uniform", lower=50.0, upper=200.0)
     assert "has 0.33 of its probability outside" in found.problem
     assert "lower = 50.0 and upper = 200.0 must lie within them" in found.problem

@@ -66,7 +66,7 @@ def test_a_matrix_that_is_none_says_what_is_wrong(ranks, said):
     assert said in matrix_problem(("a", "b"), ranks).problem
 
 
-def test_a_near_miss_is_told_what_would_do():
+def test_a_near_miss_is_answered_with_what_would_do():
     ranks = ((1.0, 0.9, 0.1), (0.9, 1.0, 0.9), (0.1, 0.9, 1.0))
     problem = matrix_problem(("a", "b", "c"), ranks)
     assert problem.problem == (
@@ -114,6 +114,6 @@ def test_methods_for_independent_inputs_are_refused_and_others_named():
         ({"rank_corelation": 1}, "did you mean 'rank_correlation'?"),
     ],
 )
-def test_a_wrong_dependence_is_told(changes, said):
+def test_a_wrong_dependence_is_refused(changes, said):
     entries = {"x1": UNIFORM, "x2": {"equals": "x1"}, "x3": UNIFORM}
     assert said in refusal(tables(entries, dependence=CORRELATED | changes))

@@ -142,7 +142,7 @@ def test_a_halton_design_is_more_even_than_chance():
 
 @pytest.mark.parametrize("method", ["sobol", "saltelli"])
 @pytest.mark.parametrize(("samples", "following"), [(3, 4), (1000, 1024), (1025, 2048)])
-def test_the_next_legal_size_is_told(method, samples, following):
+def test_the_next_legal_size_is_stated(method, samples, following):
     problem = DESIGNS[method].size_problem(samples)
     assert problem == f"must be a power of two; the next is {following}"
     assert DESIGNS[method].size_problem(following) is None
@@ -191,6 +191,6 @@ def test_a_random_balance_design_fills_each_input_evenly_and_mixes_them():
 
 
 @pytest.mark.parametrize(("method", "least"), [("morris", 2), ("fast", 65)])
-def test_the_smallest_size_is_told(method, least):
+def test_the_smallest_size_is_stated(method, least):
     assert DESIGNS[method].size_problem(least) is None
     assert DESIGNS[method].size_problem(least - 1) == f"must be between {least} and 1073741824"

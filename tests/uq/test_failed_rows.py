@@ -144,8 +144,8 @@ def test_regimes_count_rows_that_failed_before_they_had_one():
 
 def test_words_say_what_the_failed_rows_leave_open():
     bounds = Estimate(low=0.107, high=0.23)
-    told = percent_with_interval(Estimate(0.138, 0.117, 0.162), bounds)
-    assert told == "13.8 % (95 % interval 11.7 to 16.2 %; with failed rows 10.7 to 23.0 %)"
+    text = percent_with_interval(Estimate(0.138, 0.117, 0.162), bounds)
+    assert text == "13.8 % (95 % interval 11.7 to 16.2 %; with failed rows 10.7 to 23.0 %)"
     assert failed_interval(bounds) == "0.107 to 0.23"
     assert failed_interval(None) == ""
     assert failed_interval(Estimate()) == "no bound"

@@ -69,7 +69,7 @@ def test_extended_fast_is_that_of_salib():
         np.testing.assert_allclose(ours, theirs[kind], rtol=1e-9, atol=1e-12)
 
 
-def test_too_few_points_for_the_inputs_are_told():
+def test_too_few_points_for_the_inputs_are_refused():
     (_, note) = found(computed(g_function("fast", 129)))["notes"]
     assert note == "7 inputs share 2 frequencies; samples = 449 would give each its own"
     assert len(found(computed(g_function("fast", 449)))["notes"]) == 1

@@ -85,5 +85,5 @@ def test_an_output_of_two_values_is_an_event(hits, refused, values):
     ds = linear("saltelli", samples=64, replicates=2)
     some = ds["x1"].values < hits / 128
     found = sensitivities(with_output(ds, "hit", np.where(some, values[1], values[0])), "sobol")
-    (told,) = [one for name, one in found["outputs"].items() if "hit" in name]
-    assert ("needed for an index" in told.get("refused", "")) is refused
+    (entry,) = [one for name, one in found["outputs"].items() if "hit" in name]
+    assert ("needed for an index" in entry.get("refused", "")) is refused

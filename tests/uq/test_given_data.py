@@ -205,7 +205,7 @@ def test_quantiles_without_rows_enough_are_left_out_with_a_note():
     assert "Q0.01" in entry_of(asking(ds, quantiles=[0.01]), "quantile")["refused"]
 
 
-def test_dependent_inputs_are_refused_by_methods_that_suppose_otherwise(monkeypatch):
+def test_dependent_inputs_are_refused_by_methods_that_assume_independence(monkeypatch):
     ds = linear(samples=128)
     why = "the inputs of this study depend on each other"
     monkeypatch.setattr(module, "why_dependent", lambda ds: why)

@@ -15,7 +15,7 @@ from uq.report.outcomes import outcomes
 DAY = 86400.0
 
 
-def told(ds, methods=(), failed=0):
+def sentences(ds, methods=(), failed=0):
     summary = summarise(ds)
     return headlines(summary, failed, outcomes(ds, summary), methods)
 
@@ -26,22 +26,22 @@ def subjects(ds, method, outputs):
 
 
 def test_failed_rows_come_first():
-    assert told(linear(samples=20))[0] == "All rows were computed."
-    assert told(linear(samples=20), failed=3)[0] == "3 of 20 rows failed."
+    assert sentences(linear(samples=20))[0] == "All rows were computed."
+    assert sentences(linear(samples=20), failed=3)[0] == "3 of 20 rows failed."
 
 
 def test_the_most_frequent_regime_is_named_first():
     ds = kinds(samples=50)
     ds["regime"][:] = np.repeat([0, 1], [10, 40])
-    assert told(ds)[1] == "Regimes: fast 80.0 %, slow 20.0 %."
+    assert sentences(ds)[1] == "Regimes: fast 80.0 %, slow 20.0 %."
 
 
-def test_a_median_is_told_in_the_unit_of_its_table_with_its_interval():
+def test_a_median_is_given_in_the_unit_of_its_table_with_its_interval():
     lives = np.r_[np.linspace(5, 15, 54) * DAY, np.full(10, np.inf)]
     ds = with_output(linear(samples=64), "life", lives, "lifetime")
     ds = with_output(ds, "never", np.full(64, np.inf), "lifetime")
     quantile = summarised(ds)["outputs"]["life"]["quantiles"]["0.5"]
-    _, y, life, never = told(ds)
+    _, y, life, never = sentences(ds)
     numbers = re.fullmatch(
         r"Meaning of life: median (\S+) days \(95 % interval (\S+) to (\S+)\)\.", life
     ).groups()
@@ -49,11 +49,11 @@ def test_a_median_is_told_in_the_unit_of_its_table_with_its_interval():
     assert list(map(float, numbers)) == pytest.approx(known, abs=0.5)
     assert re.fullmatch(r"Value of the function: median \S+ \(95 % interval \S+ to \S+\)\.", y)
     assert never == "Meaning of never: median never."
-    alone = told(linear("sobol", samples=64))[1]  # no replicates, no interval
+    alone = sentences(linear("sobol", samples=64))[1]  # no replicates, no interval
     assert re.fullmatch(r"Value of the function: median \d\S*\.", alone)
 
 
-def test_what_the_study_asks_of_an_output_stands_behind_its_median():
+def test_what_the_study_asks_of_an_output_follows_its_median():
     ds = with_output(linear(samples=200), "life", np.linspace(1, 10, 200) * DAY, "lifetime")
     ds = with_output(ds, "turn", np.linspace(-0.5, 0.5, 200), "angle")
     ds = asking(
@@ -62,7 +62,7 @@ def test_what_the_study_asks_of_an_output_stands_behind_its_median():
         tolerance={"coverage": 0.9, "confidence": 0.95},
         thresholds={"life": 2 * DAY, "turn": 0.4, "y": 5.0},
     )
-    life, turn, y = (one.partition("). ")[2] for one in told(ds)[1:])
+    life, turn, y = (one.partition("). ")[2] for one in sentences(ds)[1:])
     found = summarised(ds)["outputs"]
     bound = f"{found['life']['tolerance']['lower'] / DAY:.5g}"
     assert life == (
@@ -71,7 +71,9 @@ def test_what_the_study_asks_of_an_output_stands_behind_its_median():
     assert turn == "20.0 % (95 % interval 15.0 to 26.1 %) exceed 0.4 m in magnitude."
     share = found["y"]["thresholds"]["5.0"]["above"]["value"]
     assert y.startswith(f"{100 * share:.1f} % (") and y.endswith(" exceed 5.")
-    _, alone = told(asking(ds, outputs=["life"], quantiles=[0.9], thresholds={"life": 2 * DAY}))
+    _, alone = sentences(
+        asking(ds, outputs=["life"], quantiles=[0.9], thresholds={"life": 2 * DAY})
+    )
     assert alone == "Meaning of life: 11.5 % (95 % interval 7.8 to 16.7 %) end within 2 days."
 
 

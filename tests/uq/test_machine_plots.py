@@ -129,8 +129,8 @@ def test_a_portrait_and_its_section_share_a_scale():
 
 
 def test_a_bifurcation_diagram_shows_every_point_in_the_colour_of_its_kind(swept):
-    told = swept.assign(regime=("control_frequency", ["calm", "wild"]))
-    figure = plots.bifurcation(told, "displacement", against="control_frequency", by="regime")
+    labelled = swept.assign(regime=("control_frequency", ["calm", "wild"]))
+    figure = plots.bifurcation(labelled, "displacement", against="control_frequency", by="regime")
     assert entries(figure) == ["calm", "wild"]
     for i, line in enumerate(figure.axes[0].lines):
         assert line.get_color() == COLOURS[i]

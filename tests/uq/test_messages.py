@@ -36,7 +36,7 @@ ONE_FAULT = [
         " (allowed: study, design, fixed, uncertain,"
         " dependence, settings, analysis, data)",
     ),
-    # what is missing because it is misspelt is told once
+    # what is missing because it is misspelt is reported once
     (
         {"design": {"samples": None, "sampels": 8}},
         "[design] sampels = 8: no such key; did you mean",
@@ -253,7 +253,7 @@ def test_one_fault_is_one_line(changes, said):
     assert said.startswith(("must", "method", '"y"')) or line.startswith(f"x.toml: {said}")
 
 
-def test_all_faults_are_told_at_once_in_the_order_of_the_file():
+def test_all_faults_are_reported_at_once_in_the_order_of_the_file():
     text = """
     top = 1
     study = {name = "a b", model = "ishigami", modell = "x"}

@@ -10,7 +10,7 @@ from scipy import stats
 
 from uq.analysis.convergence import enough
 from uq.analysis.overview import summary
-from uq.analysis.regime_split import between_share
+from uq.analysis.statistics.between_regimes import between_share
 from uq.analysis.summary import summarise
 from uq.analysis.widths import expected_widths
 from uq.cli.tables import show_summary
@@ -81,7 +81,7 @@ def test_a_light_tail_has_everything():
     assert entry["tail"]["k"] < 0
 
 
-def test_every_reader_is_told():
+def test_every_reader_reports_it():
     ds, light = heavy(0.8), asking(with_output(linear(samples=1000), "z", np.arange(1000.0)))
     line = summary(ds).loc["z"]
     assert (

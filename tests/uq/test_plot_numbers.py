@@ -55,9 +55,9 @@ def test_what_an_input_without_effect_has_is_a_line_across_the_bars():
 
 def test_a_table_has_one_unit():
     ds = lives(linear(samples=64))
-    told = words(plots.quantile_table(ds, "day_long"))
+    text = words(plots.quantile_table(ds, "day_long"))
     value, low, high = median(ds)
-    assert "[days]" in told and f" {value:.5g} " in told and f"{low:.5g} to {high:.5g}" in told
+    assert "[days]" in text and f" {value:.5g} " in text and f"{low:.5g} to {high:.5g}" in text
 
 
 def test_points_and_bars_stand_in_the_unit_of_their_axis():

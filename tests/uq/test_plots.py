@@ -29,7 +29,7 @@ def test_lifetime_figure_shows_share_band_and_what_never_ends():
     assert "band" not in words(plots.lifetime(alone, "life"))
 
 
-def test_elements_of_an_output_share_a_figure_and_are_told_apart():
+def test_elements_of_an_output_share_a_figure_and_differ():
     figure = plots.lifetime(kinds(samples=100), "life")
     lines = [line for line in figure.axes[0].lines if line.get_linestyle() != "None"]
     assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 4
@@ -212,7 +212,7 @@ def test_total_indices_converge_in_a_figure():
 def test_quantiles_are_a_table_to_print():
     ds = kinds(samples=200)
     entries = summarised(ds)["outputs"]
-    told = words(plots.quantile_table(ds, "work"))
-    assert "Work rate [W]" in told and "left" in told and "95 % intervals" in told
-    assert f"{entries['work[side=left]']['quantiles']['0.5']['value']:.5g}" in told
+    text = words(plots.quantile_table(ds, "work"))
+    assert "Work rate [W]" in text and "left" in text and "95 % intervals" in text
+    assert f"{entries['work[side=left]']['quantiles']['0.5']['value']:.5g}" in text
     assert "never" in words(plots.quantile_table(ds, "life"))

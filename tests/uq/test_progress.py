@@ -25,8 +25,8 @@ MUCH = Progress(
 )
 
 
-def test_progress_tells_how_rows_ended_and_what_they_say():
-    told = details(
+def test_progress_reports_how_rows_ended_and_what_they_give():
+    lines = details(
         Progress(
             300,
             400,
@@ -36,7 +36,7 @@ def test_progress_tells_how_rows_ended_and_what_they_say():
             shares={"slow": 0.625, "fast": 0.375},
         )
     )
-    assert told == [
+    assert lines == [
         "raised 3, out-of-budget 7",
         "median life[site=left]: 5 days",
         "slow 62%, fast 38%",
@@ -63,7 +63,7 @@ def test_progress_of_a_run_counts_and_glances_at_its_rows(folder, write_study):
     assert last.shares == pytest.approx({"slow": slow, "fast": 1 - slow})
 
 
-def test_progress_tells_of_no_life_that_the_study_does_not_show(folder, write_study):
+def test_progress_reports_no_life_that_the_study_does_not_show(folder, write_study):
     more = '[analysis]\noutputs = ["work"]'
     path = write_study(model="kinds", uncertain=("x1", "x2"), samples=20, more=more)
     seen = []
@@ -133,7 +133,7 @@ def test_plain_lines_stay_short(capsys, monkeypatch):
     assert lines[3].endswith("failed; median life: 1 s; slow 25%, fast 75%")
 
 
-def test_a_model_that_compiles_is_told_of_once(capsys):
+def test_a_model_that_compiles_is_reported_once(capsys):
     with progress.shown(quiet=False) as show:
         for _ in range(3):  # one kernel after the other
             show(Progress(0, 4, 0, compiling=True))

@@ -165,7 +165,7 @@ def test_steps_between_equal_values_have_no_effect():
 
 def test_both_ends_of_each_path_serve_for_statistics():
 
-    told = summarised(linear("shapley", 128, 8))
-    assert told["rows_used"] == 2 * 128 * 8
-    mean = told["outputs"]["y"]
+    found = summarised(linear("shapley", 128, 8))
+    assert found["rows_used"] == 2 * 128 * 8
+    mean = found["outputs"]["y"]
     assert mean["mean_interval"]["low"] < 5.0 < mean["mean_interval"]["high"]

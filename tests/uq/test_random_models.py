@@ -118,22 +118,22 @@ def test_share_of_noise_covers_its_truth():
 
 def test_plain_statistics_use_a_and_b_alone():
     ds = computed(noisy(samples=64, replicates=4))
-    told = summarised(ds)
-    assert (told["samples"], told["rows_used"]) == (64 * 4 * 5, 64 * 4 * 2)
+    found = summarised(ds)
+    assert (found["samples"], found["rows_used"]) == (64 * 4 * 5, 64 * 4 * 2)
     ends = np.isin(ds["block"].values, [0, 3])
-    assert told["outputs"]["y"]["mean"] == pytest.approx(ds["y"].values[ends].mean())
+    assert found["outputs"]["y"]["mean"] == pytest.approx(ds["y"].values[ends].mean())
 
 
 def test_curves_of_one_seed_give_no_plain_statistics(uq, folder):
     # 1040 rows of 16 seeds: of an event of the noise they would tell far too much.
     ds = computed(noisy("fast", 65, 8))
-    told = summarised(ds)
-    assert told["rows_used"] == 0 and told["outputs"]["y"]["mean"] is None
+    found = summarised(ds)
+    assert found["rows_used"] == 0 and found["outputs"]["y"]["mean"] is None
     reason = "share seeds along a curve, as the model is random"
-    assert told["notes"][0].startswith(f"no statistics: the rows of a 'fast' design {reason}")
+    assert found["notes"][0].startswith(f"no statistics: the rows of a 'fast' design {reason}")
     with pytest.raises(InputError, match=f"the rows of the first, a 'fast' design, {reason}"):
         compare(ds, ds)
-    plain = summarised(computed(noisy("fast", 65, 8, model="SLEEPING")))
+    plain = summarised(computed(noisy("fast", 65, 8, model="PLAIN")))
     assert plain["rows_used"] == 1040 and plain["outputs"]["y"]["mean"] == pytest.approx(0.5, 0.1)
     (folder / "noisy.toml").write_text(noisy("fast", 65, 2).text)
     assert (
@@ -169,8 +169,8 @@ def test_widths_and_convergence_take_such_rows():
 
 def test_tables_show_the_share_of_noise(uq, folder):
     (folder / "noisy.toml").write_text(noisy(samples=16).text)
-    told = " ".join(uq("check", "noisy.toml", "--model", "sample_models:NOISY").out.split())
-    assert "5 rows each" in told and "the model is random: rows that are compared share" in told
+    text = " ".join(uq("check", "noisy.toml", "--model", "sample_models:NOISY").out.split())
+    assert "5 rows each" in text and "the model is random: rows that are compared share" in text
     run = uq(
         "run", "noisy.toml", "-o", "noisy.nc", "--model", "sample_models:NOISY", "--workers", 0
     )

@@ -5,13 +5,13 @@ from computed import asking, kinds, linear, summarised, with_output, with_status
 from scipy import stats
 
 import uq
-from uq.analysis.regime_split import between_share
+from uq.analysis.statistics.between_regimes import between_share
 from uq.contract import Status
 from uq.errors import InputError
 from uq.methods.given_data import DUMMIES
 
 
-def test_inputs_of_a_regime_are_told_from_those_of_the_rest():
+def test_inputs_of_a_regime_are_distinguished_from_those_of_the_rest():
     # The regime is slow for x1 < 0.5, of x1 in [0.01, 0.99], and x2 plays no part.
     ds = kinds(samples=512, analysis={"outputs": ["work", "regime"]})
     found = uq.regimes(ds)
@@ -130,7 +130,7 @@ def test_statistics_within_a_regime():
         assert summarised(ds, regime=name)["outputs"]["work[side=left]"]["failed"] == 1
 
 
-def test_indices_within_a_regime_suppose_no_independent_inputs():
+def test_indices_within_a_regime_assume_no_independent_inputs():
     ds = kinds(samples=400, analysis={"outputs": ["work"]})
     found = sensitivities(ds, regime="fast")
     assert found["method"] == "delta" and found["rows_used"] == (ds["x1"].values > 0.5).sum()

@@ -145,7 +145,7 @@ def test_the_same_result_gives_the_same_text():
     assert page(ds, "a.nc") == page(ds, "a.nc")
 
 
-def test_numbers_are_told_as_one_reads_them():
+def test_numbers_are_written_as_one_reads_them():
     tables = {
         "study": {"name": "angles", "model": "linear"},
         "design": {"method": "monte-carlo", "samples": 40},
@@ -272,7 +272,7 @@ def test_reports_that_cannot_be_made_are_refused_in_a_line(uq, folder):
     assert results.open_result(path).sizes["sample"] == 8
 
 
-def test_an_input_leads_only_where_it_is_told_from_one_without_effect():
+def test_an_input_leads_only_where_it_is_distinguished_from_one_without_effect():
     noise = np.random.default_rng(2).random(512)
     ds = with_output(linear(samples=512), "noise", noise)
     words = read(asking(ds, outputs=["y", "noise"], sensitivity=["rbd-fast"])).words

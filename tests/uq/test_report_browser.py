@@ -19,7 +19,7 @@ ASKED = {"thresholds": {"life": 1.0}, "sensitivity": ["rbd-fast"]}
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory):
     if CHROMIUM is None:
-        pytest.skip("needs a browser: Debian's package chromium")
+        pytest.skip("chromium is not installed: the report can only be tested in a browser")
     with tab(tmp_path_factory.mktemp("browser")) as one:
         yield one
 

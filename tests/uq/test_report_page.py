@@ -15,7 +15,7 @@ from uq.report.pictures import picture
 
 
 @pytest.fixture(scope="module")
-def told():
+def text():
     """Return the text of a page on a result to which much has happened."""
     ds = linear("saltelli", samples=32, replicates=2, analysis={"max_failed": 0.05})
     ds = with_output(ds, "product", ds["x1"].values * ds["x2"].values)
@@ -45,12 +45,12 @@ def told():
         plain("Product\x07of two"),
     ],
 )
-def test_a_page_says(told, words):
-    assert words in told
+def test_a_page_says(text, words):
+    assert words in text
 
 
-def test_nothing_on_a_page_acts_where_it_is_copied_to(told):
-    assert told.isprintable()
+def test_nothing_on_a_page_acts_where_it_is_copied_to(text):
+    assert text.isprintable()
 
 
 def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples():
@@ -59,7 +59,7 @@ def test_a_page_on_the_study_as_it_stands_asks_for_no_other_samples():
     assert "Truncated" not in text and "were recomputed" not in text
 
 
-def test_a_picture_is_told_to_who_cannot_see_it():
+def test_a_picture_is_described_to_who_cannot_see_it():
     figure = Figure(figsize=(2, 2))
     figure.subplots().plot([0, 1])
     assert 'aria-label="a &quot;line&quot;"' in picture(figure, 'a "line"').html

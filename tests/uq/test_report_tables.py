@@ -81,7 +81,7 @@ def test_probabilities_stand_on_their_side_of_the_threshold():
     assert float(below.text) == pytest.approx(11 / 64, abs=1e-4)
 
 
-def test_a_probability_that_supposes_something_says_so():
+def test_a_probability_that_assumes_something_says_so():
     ds = lives(censored=30, thresholds={"life": [14 * DAY]})
     entry = summarised(ds)["outputs"]["life"]["thresholds"][f"{14 * DAY!r}"]
     _, table = results_of(ds)
@@ -114,7 +114,7 @@ def test_shares_of_regimes_have_their_interval():
     assert (share.text, share.more) == ("50.0 %", f"{low:.1f} to {high:.1f} %")
 
 
-def test_inputs_are_told_as_stated_and_as_the_rows_have_them():
+def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
     uncertain = {
         "x1": UNIFORM | {"source": "a book: fitted"},
         "x2": {"equals": "x1"},

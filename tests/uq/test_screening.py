@@ -91,11 +91,11 @@ def test_seed_zero_is_a_seed(design, method):
 
 def test_there_are_no_statistics_of_trajectories_and_it_is_said():
     ds = linear("morris", 8, 4)
-    told = summarised(ds)
-    assert (told["samples"], told["rows_used"]) == (160, 0)
-    assert told["outputs"]["y"]["mean"] is None
-    assert told["outputs"]["y"]["quantiles"]["0.5"]["value"] is None
-    assert told["notes"] == [
+    found = summarised(ds)
+    assert (found["samples"], found["rows_used"]) == (160, 0)
+    assert found["outputs"]["y"]["mean"] is None
+    assert found["outputs"]["y"]["quantiles"]["0.5"]["value"] is None
+    assert found["notes"] == [
         "no statistics: the rows of a 'morris' design do not follow the laws of the inputs;"
         " see 'uq sensitivity'"
     ]
@@ -103,9 +103,9 @@ def test_there_are_no_statistics_of_trajectories_and_it_is_said():
 
 
 def test_curves_are_as_good_as_any_rows_for_statistics():
-    told = summarised(linear("fast", 257, 8))
-    assert told["rows_used"] == 257 * 8 * 4
-    assert told["outputs"]["y"]["mean"] == pytest.approx(5, abs=0.05)
+    found = summarised(linear("fast", 257, 8))
+    assert found["rows_used"] == 257 * 8 * 4
+    assert found["outputs"]["y"]["mean"] == pytest.approx(5, abs=0.05)
 
 
 def test_measures_stand_in_arrays_tables_and_figures(uq, write_study, folder):
@@ -129,7 +129,7 @@ def test_the_template_names_the_designs(uq):
         assert f"# {name}: " in text
 
 
-def test_a_wrong_method_is_told_which_design_can(uq):
+def test_a_wrong_method_is_refused_with_the_designs_that_can(uq):
     ds = linear("monte-carlo", 128)
     with pytest.raises(InputError, match="'morris' needs a design of morris or morris-optimised"):
         sensitivities(ds, "morris")

@@ -1,4 +1,4 @@
-"""``uq simulate``: one row, told and as JSON, and its trajectory in files."""
+"""``uq simulate``: one row, as text and as JSON, and its trajectory in files."""
 
 from pathlib import Path
 
@@ -45,7 +45,7 @@ def test_simulate_as_json(uq):
     assert found["never"] == found["undefined"] == []
 
 
-def test_a_failed_row_is_told(uq):
+def test_a_failed_row_is_reported(uq):
     faults = ("--set", "x1=0.9", "--setting", "fail_above=0.5", "--setting", "fail_how=raise")
     ended = uq("simulate", "linear", *faults)
     assert ended.code == 1

@@ -39,13 +39,13 @@ def test_the_seed_reaches_the_model():
     assert works[1] - works[0] == pytest.approx(3e-3)
 
 
-def test_a_setting_is_used_and_a_failure_told():
+def test_a_setting_is_used_and_a_failure_reported():
     ds = uq.simulate("linear", {"x1": 0.9}, {"fail_above": 0.5, "fail_how": "raise"})
     assert ds["status"].values == [3]
     assert ds["status"].attrs["example_raised"] == "ValueError: x1 is above fail_above = 0.5"
 
 
-def test_all_mistakes_are_told_at_once():
+def test_all_mistakes_are_reported_at_once():
     with pytest.raises(InputError) as refused:
         uq.simulate("linear", {"x1": 2.0, "y1": 1.0}, {"fail_abov": 1.0, "fail_how": "slowly"})
     assert len(refused.value.lines) == 4

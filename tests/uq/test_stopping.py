@@ -104,10 +104,10 @@ def test_a_killed_run_that_goes_on_writes_the_same_file(folder, monkeypatch, des
             runner.run(of, path, progress=killed_at(total // 2) if place == "chunk" else None)
         found = run_status(path)
         assert found.state == "interrupted" or place == "cut"
-        told = []
-        runner.run(of, path, progress=told.append)
-        assert told[0].done == told[0].found == found.done > 0
-        assert told[-1].done == told[-1].total == total
+        reports = []
+        runner.run(of, path, progress=reports.append)
+        assert reports[0].done == reports[0].found == found.done > 0
+        assert reports[-1].done == reports[-1].total == total
         assert whole(path) == whole(folder / "once.nc")
         assert run_status(path).state == "complete"
         assert not store.folder_of(path).exists()
@@ -119,9 +119,9 @@ def raising(*arguments, **named):
 
 def test_a_wish_for_more_goes_on_where_the_run_stopped(folder):
     first = runner.run(study(0.2), "out.nc")
-    told = []
-    more = runner.run(study(0.1), "out.nc", progress=told.append)
-    assert more.attrs["samples"] > first.attrs["samples"] == told[0].found
+    reports = []
+    more = runner.run(study(0.1), "out.nc", progress=reports.append)
+    assert more.attrs["samples"] > first.attrs["samples"] == reports[0].found
     assert whole(folder / "out.nc") == whole_of(study(0.1), folder)
 
 

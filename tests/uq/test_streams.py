@@ -59,8 +59,8 @@ def test_a_mistake_that_nobody_can_read_keeps_its_exit_code(shell, lost):
 
 def test_a_mistake_keeps_its_exit_code(shell):
     said = "no such model 'nothing'"
-    code, told = shell("init nothing >&-")
-    assert (code, told[: len(said)], told.count("\n")) == (2, said, 1)
+    code, printed = shell("init nothing >&-")
+    assert (code, printed[: len(said)], printed.count("\n")) == (2, said, 1)
 
 
 @pytest.mark.slow
@@ -69,8 +69,8 @@ def test_a_run_without_any_stream_writes_a_sound_result(shell, write_study):
     study = write_study(samples=8)
     assert shell(f"run {study} --workers 0 --quiet <&- >&- 2>&-") == (0, "")
     assert api.open_result("results/small.nc").sizes["sample"] == 8
-    code, told = shell(f"run {study} --workers 0 >&-")
-    assert (code, told) == (1, f"uq: standard output cannot be written: {CLOSED}\n")
+    code, printed = shell(f"run {study} --workers 0 >&-")
+    assert (code, printed) == (1, f"uq: standard output cannot be written: {CLOSED}\n")
 
 
 def test_the_version_is_that_of_the_distribution(uq):

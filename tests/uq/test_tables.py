@@ -9,16 +9,16 @@ from uq.store.files import write_result
 
 
 @pytest.fixture
-def told(uq, folder):
+def printed(uq, folder):
     """Return a function that shows a result: what stands behind each label."""
 
-    def told(verb, ds):
+    def printed(verb, ds):
         write_result(ds, folder / "out.nc")
         ended = uq(verb, "out.nc")
         assert (ended.code, ended.err) == (0, "")
         return [line.split("  ") for line in map(str.strip, ended.out.splitlines())]
 
-    return told
+    return printed
 
 
 def cells(lines, label):
@@ -26,12 +26,12 @@ def cells(lines, label):
     return [cell.strip() for cell in found[1:] if cell.strip()]
 
 
-def test_a_summary_names_units_sides_and_rows_that_failed(told):
+def test_a_summary_names_units_sides_and_rows_that_failed(printed):
     values = 3600.0 * np.r_[np.linspace(5, 15, 62), np.nan, np.nan]
     ds = with_output(linear(samples=64), "life", values, "lifetime")
     ds = with_status(ds, [62, 63], Status.RAISED)
     ds = asking(ds, outputs=["life"], thresholds={"life": [25200.0]})
-    lines = told("summary", ds)
+    lines = printed("summary", ds)
     assert cells(lines, "life [s]") == ["meaning of life"]
     sides = summarised(ds)["outputs"]["life"]["thresholds"]["25200.0"]
     assert cells(lines, "P(> 25200)")[0] == f"{sides['above']['value']:.5g}"
@@ -40,30 +40,30 @@ def test_a_summary_names_units_sides_and_rows_that_failed(told):
     assert cells(lines, "mean")[-1] == "10 hours"
 
 
-def test_tolerance_bounds_that_few_rows_cannot_give_say_how_many_can(told):
+def test_tolerance_bounds_that_few_rows_cannot_give_say_how_many_can(printed):
     asked = {"coverage": 0.95, "confidence": 0.95}
     few, enough = (linear(samples=n, analysis={"tolerance": asked}) for n in (40, 100))
-    assert ["needs 59 rows"] in told("summary", few)
-    lines = told("summary", enough)
+    assert ["needs 59 rows"] in printed("summary", few)
+    lines = printed("summary", enough)
     assert ["needs 59 rows"] not in lines
     lower, upper = (float(cells(lines, f"tolerance, {end}")[0]) for end in ("lower", "upper"))
     assert lower < float(cells(lines, "quantile 0.05")[0]) < 8 < upper
 
 
-def test_indices_are_ranked_and_dropped_groups_counted(told):
+def test_indices_are_ranked_and_dropped_groups_counted(printed):
     ds = linear("saltelli", samples=64, replicates=4, settings={"fail_above": 0.99})
     lost = int(np.isnan(ds["y"].values.reshape(-1, 6)).any(axis=1).sum())
     assert lost > 0
-    lines = told("sensitivity", ds)
+    lines = printed("sensitivity", ds)
     rows = f"of {1536 - 6 * lost} rows, {lost} groups dropped"
     assert cells(lines, "Sensitivity by sobol") == [rows]
     assert [line[0] for line in lines if line[0][:1] == "x"] == ["x4", "x3", "x2", "x1"]
-    whole = told("sensitivity", linear("saltelli", samples=16, replicates=4))
+    whole = printed("sensitivity", linear("saltelli", samples=16, replicates=4))
     assert cells(whole, "Sensitivity by sobol") == ["of 384 rows"]
 
 
-def test_pairs_have_a_table_of_their_own_without_an_input_without_effect(told):
-    lines = told("sensitivity", linear(samples=600, analysis={"sensitivity": ["hdmr"]}))
+def test_pairs_have_a_table_of_their_own_without_an_input_without_effect(printed):
+    lines = printed("sensitivity", linear(samples=600, analysis={"sensitivity": ["hdmr"]}))
     labels = [line[0] for line in lines]
     assert labels.count("(an input without effect)") == 1
     assert labels.index("S2") > labels.index("(an input without effect)")

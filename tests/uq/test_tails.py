@@ -39,7 +39,7 @@ def test_tails_without_variance_are_found(law):
     assert share(HEAVY[law], 1000, 50) >= 0.9
 
 
-def test_a_mean_that_does_not_exist_is_told_from_one_that_does():
+def test_a_mean_that_does_not_exist_is_distinguished_from_one_that_does():
     assert share(stats.pareto(0.8), 1000, 50, "no_mean") >= 0.9
     assert share(stats.pareto(1.5), 1000, 50, "no_mean") <= 0.05
 

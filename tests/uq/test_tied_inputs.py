@@ -72,7 +72,7 @@ def test_no_product_leaves_the_bounds():
         ),
     ],
 )
-def test_what_cannot_be_followed_is_told(uncertain, said):
+def test_what_cannot_be_followed_is_refused(uncertain, said):
     assert said in refusal(tables(uncertain))
 
 

@@ -257,7 +257,7 @@ def test_a_wrong_twin_is_refused_with_the_study(changes, words):
         study_from_text(as_text(tables(**changes)), model=PAIRED)
 
 
-def test_a_study_without_twin_is_told_of_it():
+def test_a_study_without_twin_is_refused():
     with pytest.raises(InputError, match="names no twin: .*near, far, same"):
         two_fidelities(paired(), PAIRED)
 

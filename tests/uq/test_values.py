@@ -110,14 +110,14 @@ def test_a_good_setting_arrives(name, value, arrives):
         ("slope", {"a": 1}, "must be a number"),
     ],
 )
-def test_a_wrong_setting_is_told_what_it_must_be(name, value, problem):
+def test_a_wrong_setting_is_refused_with_what_it_must_be(name, value, problem):
     settings, problems = read_settings(TOY, {name: value})
     assert settings is None
     assert list(problems) == [name]
     assert problems[name].startswith(problem)
 
 
-def test_settings_that_do_not_go_together_are_told_by_the_model():
+def test_settings_that_do_not_go_together_are_refused_by_the_model():
     assert read_settings(TOY, {"depths": [2e-4, 1e-4]}) == (None, {"": "depths must increase"})
 
 
@@ -160,7 +160,7 @@ def test_infinity_lies_outside_finite_bounds():
     assert parameter_problem(MOUNTED, "mass", inf) == "must lie within 0.0 to 1000.0 [kg]"
 
 
-def test_a_study_tells_what_is_wrong_with_settings_and_categories():
+def test_a_study_reports_what_is_wrong_with_settings_and_categories():
     changes: dict[str, dict[str, Any]] = {
         "uncertain": {
             "x1": None,

@@ -193,9 +193,9 @@ def test_running_estimates_and_whether_it_is_enough(design, damage):
             )
     if damage == "all failed":
         assert last.isna().all()
-    told = enough(ds)
-    assert (told["warning"] == "").all()
-    assert told.loc["flat", "sampling"] != 0  # never an interval of no width
+    table = enough(ds)
+    assert (table["warning"] == "").all()
+    assert table.loc["flat", "sampling"] != 0  # never an interval of no width
 
 
 CALM = {"distribution": "uniform", "lower": 0.0, "upper": 0.9}

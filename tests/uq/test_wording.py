@@ -20,7 +20,7 @@ from uq.wording import (
 
 
 @pytest.mark.parametrize(
-    ("value", "low", "high", "told"),
+    ("value", "low", "high", "text"),
     [
         (2.0268, 1.9863, 2.0841, ("2.03", "1.99 to 2.08")),
         (13607.0, 13500.0, 13710.0, ("13610", "13500 to 13710")),
@@ -32,8 +32,8 @@ from uq.wording import (
         (nan, 1.0, 2.0, ("-", "1 to 2")),
     ],
 )
-def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, told):
-    assert brief(Estimate(value, low, high)) == told
+def test_an_estimate_has_as_many_digits_as_its_interval_bears(value, low, high, text):
+    assert brief(Estimate(value, low, high)) == text
 
 
 def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
@@ -66,7 +66,7 @@ def test_times_in_words(seconds, words):
 
 
 @pytest.mark.parametrize(
-    ("estimate", "told"),
+    ("estimate", "text"),
     [
         (Estimate(nan, 3600.0, 7200.0), "1 to 2"),
         (Estimate(nan, 3600.0, inf), "1 to never"),
@@ -77,8 +77,8 @@ def test_times_in_words(seconds, words):
         (Estimate(), ""),
     ],
 )
-def test_each_end_of_an_interval_is_a_number_or_says_why_not(estimate, told):
-    assert interval(estimate, per=3600.0) == told
+def test_each_end_of_an_interval_is_a_number_or_says_why_not(estimate, text):
+    assert interval(estimate, per=3600.0) == text
 
 
 def test_a_number_that_is_none_says_why():
@@ -93,7 +93,7 @@ def test_effects_have_digits_whatever_their_unit():
     assert ST.text(0.12345) == "0.123"
 
 
-def test_a_law_is_told_by_its_arguments_alone():
+def test_a_law_is_written_by_its_arguments_alone():
     given = {"distribution": "normal", "mean": 1.0, "sd": 0.1, "source": "a book", "times": "x"}
     assert law(law_of(given)) == "normal(mean = 1.0, sd = 0.1)"
     drawn = {"distribution": "empirical", "values": [1.0, 2.0]}

@@ -8,7 +8,7 @@ from typing import Any
 from uq import json_form
 from uq.analysis.compared import Compared, ComparedOutput, Comparison, OnlyChange, Side
 from uq.analysis.life_fit import Fit
-from uq.analysis.statistics.statistic import JSON
+from uq.analysis.statistics.statistic import Reader
 from uq.analysis.statistics.table import EMPTY, JSON_ORDER
 from uq.analysis.summary import Described, Summary, regime_json
 
@@ -45,7 +45,7 @@ def summary_json(summary: Summary) -> dict[str, Any]:
 def _described(one: Described) -> dict[str, Any]:
     found: dict[str, Any] = {"units": one.units}
     for name in dict.fromkeys((*JSON_ORDER, *one.parts)):
-        statistics = [s for s in one.parts[name] if s.is_read_by(JSON)]
+        statistics = [s for s in one.parts[name] if s.is_read_by(Reader.JSON)]
         if name in EMPTY:
             found[name] = dict(EMPTY[name] or {}) if statistics else EMPTY[name]
         for (parent, _), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.write)):

@@ -7,14 +7,11 @@ more rows: m - b (c_n - c_M).
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
 from uq import intervals
+from uq.contract import Floats, Mask
 from uq.estimate import Estimate
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 FEWEST = 5
 """With fewer hits, or misses, a control does not improve a share."""

@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.stated_error import stated_error
-from uq.analysis.statistics.statistic import RUNNING
+from uq.analysis.statistics.counts import stated_error
+from uq.analysis.statistics.statistic import Reader
 from uq.analysis.summary import summarise
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
@@ -153,7 +153,7 @@ def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[Line]:
     """Yield output, label, value with interval, and the kind and input of an index."""
     for name, output in summarise(ds).outputs.items():
         for one in output.statistics:
-            if one.is_read_by(RUNNING):
+            if one.is_read_by(Reader.RUNNING):
                 yield name, one.label, one.estimate.finite.numbers, "", ""
     if method := _method(ds):
         for name, found in sensitivities(ds, method, targets).targets.items():

@@ -9,7 +9,7 @@ from uq.analysis import estimators
 from uq.analysis.compared import Compared, ComparedOutput
 from uq.analysis.estimators import Sample
 from uq.analysis.pairing import Pair
-from uq.analysis.statistics.statistic import COMPARED, Statistic
+from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import Summary
 from uq.contract import Status
 from uq.estimate import NOTHING, Estimate
@@ -44,7 +44,8 @@ def compared_output(pair: Pair, elements: list[Element], found: list[Summary]) -
         name: tuple(
             _of_elements(pair, elements, [one, other])
             for one in statistics
-            if one.is_read_by(COMPARED) and (other := described[1].find(*one.key)) is not None
+            if one.is_read_by(Reader.COMPARED)
+            and (other := described[1].find(*one.key)) is not None
         )
         for name, statistics in described[0].parts.items()
     }

@@ -40,7 +40,7 @@ def bounded(of_magnitude: bool = False) -> Callable[[Maker], Maker]:
     callable
         Maker -> maker. The bounds are the ends of the 95 % interval with all failed rows at the
         lowest and at the highest possible value, for a lifetime 0 and never; NaN where there is no
-        bound.
+        bound. Numbers of rows have none.
     """
 
     def wrap(make: Maker) -> Maker:
@@ -52,7 +52,9 @@ def bounded(of_magnitude: bool = False) -> Callable[[Maker], Maker]:
             least = 0.0 if element.is_lifetime or of_magnitude and element.is_angle else -np.inf
             ends = (make(with_failed_at(element, end), context) for end in (least, np.inf))
             return [
-                _with_bounds(one, element.is_lifetime, *(both[::-1] if one.falls else both))
+                one
+                if one.kind.is_count
+                else _with_bounds(one, element.is_lifetime, *(both[::-1] if one.falls else both))
                 for one, *both in zip(found, *ends, strict=True)
             ]
 

@@ -7,7 +7,7 @@ import numpy as np
 from uq import order_statistics
 from uq.analysis.lifetime import curve
 from uq.estimate import NOTHING, Estimate
-from uq.intervals import Ends, Replicates
+from uq.intervals import UNKNOWN, Ends, Replicates
 from uq.rows.elements import Element, Floats
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
@@ -129,26 +129,27 @@ def quantile_estimate(element: Element, probability: float, replicate: Replicate
 
     value, early = estimate(element.at_least)
     latest, late = estimate(element.at_most) if element.censored.any() else (value, early)
+    rows, needed = len(element.at_least), rows_needed(element, probability)
     return whenever_censored_rows_end(
         (value, np.inf if value < latest else value),
         (early[0], early[0]),
         (early[1], late[1]),
-        _why_none(probability, len(element.at_least)),
+        f"{rows} rows are too few for the {probability:g} quantile: it needs {needed}"
+        if needed
+        else "",
     )
 
 
-def _why_none(probability: float, rows: int) -> str:
+def rows_needed(element: Element, probability: float) -> int | None:
+    """Return how many rows a quantile needs; None where there are enough, or none."""
+    rows = len(element.at_least)
     if rows == 0 or order_statistics.is_within(probability, rows):
-        return ""
-    needed = order_statistics.rows_to_reach(probability)
-    return f"{rows} rows are too few for the {probability:g} quantile: it needs {needed}"
-
-
-_UNKNOWN = (np.nan, np.nan)
+        return None
+    return order_statistics.rows_to_reach(probability)
 
 
 def whenever_censored_rows_end(
-    value: Ends, low: Ends = _UNKNOWN, high: Ends = _UNKNOWN, reason: str = ""
+    value: Ends, low: Ends = UNKNOWN, high: Ends = UNKNOWN, reason: str = ""
 ) -> Estimate:
     """Return an estimate that is valid whenever the censored rows end.
 

@@ -15,11 +15,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from uq.contract import Floats, Mask
 
 _STEPS = 60
 _CLOSE = 1e-9

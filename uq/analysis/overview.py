@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.statistics.statistic import COLUMNS, Statistic
+from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import COLUMN_ORDER
 from uq.analysis.summary import Described, summarise
 from uq.estimate import Estimate
@@ -50,7 +50,7 @@ def _line(output: Described) -> dict[str, Any]:
     for name in dict.fromkeys((*COLUMN_ORDER, *output.parts)):
         for one in output.parts[name]:
             column = one.label if one.column is None else one.column
-            if column and one.is_read_by(COLUMNS):
+            if column and one.is_read_by(Reader.COLUMNS):
                 line |= _cells(column, one)
     return line
 

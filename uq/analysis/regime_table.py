@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq.analysis.regime_split import between_share
+from uq.analysis.statistics.between_regimes import between_share
 from uq.analysis.summary import regime_shares
 from uq.errors import InputError
 from uq.indices.targets import Target, category_targets, number_of

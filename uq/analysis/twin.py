@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from uq.analysis.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.statistics.thresholds import event
+from uq.contract import Floats
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.exact_shares import FEW
@@ -38,7 +39,6 @@ PER_ROW_OF_SETTINGS = 10
 """Rows under other settings for each row of the result: they cost more."""
 
 _BLOCK = 65_536
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import xarray as xr
 
 from uq.analysis.life_fit import Fit
 from uq.analysis.life_quantiles import B_LIVES
-from uq.analysis.statistics.statistic import TERMINAL, Statistic
+from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import Described, Summary
 from uq.cli.printing import console, grid, heading, paragraph
 from uq.estimate import Estimate
@@ -65,7 +65,7 @@ Line = tuple[str, str, str, str]
 def _lines(output: Described) -> Iterator[Line]:
     """Yield label, value, interval, and the value in hours, days or years."""
     for part in output.parts.values():
-        shown = [one for one in part if one.is_read_by(TERMINAL) and one.words()]
+        shown = [one for one in part if one.is_read_by(Reader.TERMINAL) and one.words()]
         for one in shown:
             yield _line(one)
             yield from _failed(one)

@@ -5,11 +5,11 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.contract import Floats
 from uq.designs.streams import Points, inside
 from uq.inputs.faults import Fault
 
 Matrix = tuple[tuple[float, ...], ...]
-Floats = NDArray[np.float64]
 Places = NDArray[np.int_]
 
 _LEAST_EIGENVALUE = 1e-9

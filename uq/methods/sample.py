@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from uq.contract import Floats, Mask
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Sample:
         return self.values[self.groups]
 
     @cached_property
-    def whole(self) -> NDArray[np.bool_]:
+    def whole(self) -> Mask:
         """Which groups have a value in each of their rows, shape (R, N)."""
         return np.asarray(np.isfinite(self.grouped).all(axis=-1))
 

@@ -6,7 +6,7 @@ from math import isfinite, isnan
 
 import xarray as xr
 
-from uq.analysis.statistics.statistic import REPORT, Listing, Statistic
+from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary
 from uq.contract import Output, Status
@@ -89,7 +89,7 @@ class Outcome:
 
     def of(self, part: str, listing: Listing) -> list[Statistic]:
         """Return the statistics of one entry of the table of statistics that stand in a listing."""
-        found = [one for one in self.parts[part] if one.is_read_by(REPORT)]
+        found = [one for one in self.parts[part] if one.is_read_by(Reader.REPORT)]
         return [one for one in found if one.kind.listing == listing]
 
 
@@ -112,7 +112,7 @@ def result_tables(found: list[Outcome], of_lives: bool = False) -> Iterator[Tabl
         for part in STATISTICS
         for outcome in found
         for one in outcome.parts[part]
-        if one.is_read_by(REPORT)
+        if one.is_read_by(Reader.REPORT)
     )
     for listing in listings:
         if listing.of_lives == of_lives:

@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from uq.contract import Output
+from uq.contract import Floats, Mask, Output
 from uq.designs.layouts import CURVES, NOISE
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
@@ -18,9 +17,6 @@ from uq.rows.results import elements, failed
 from uq.rows.variables import outputs_of
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
-
-Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

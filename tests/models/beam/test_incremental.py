@@ -41,7 +41,7 @@ def test_lives_of_a_known_law():
     assert (np.abs(lives.time - expected) < lives.error).all()
 
 
-def test_the_sites_share_the_wear_coefficient_only_if_told():
+def test_the_sites_share_the_wear_coefficient_only_if_asked():
     law = wears_by(lambda gaps: 0 * gaps + 2.0)
     p = Params(wear_coefficient_ratio=0.25)
     lives = incremental_lives(p, Settings(), [1.0], 8, most=5.0, propagator=law)

@@ -1,8 +1,8 @@
-"""Periodic orbits: known ones, unwanted ones told apart, and the return map beside the strobe."""
+"""Periodic orbits: known ones, unwanted ones recognised, and the return map beside the strobe."""
 
 import numpy as np
 import pytest
-from test_exact import at_omega, set_up
+from exact_beams import at_omega, set_up
 
 from models.beam.branches.orbits import find_orbit, settled_orbit
 from models.beam.exact.passage import passage
@@ -54,7 +54,7 @@ def test_a_motion_comes_near_its_orbit_as_fast_as_the_multipliers_say(omega):
     assert contraction == pytest.approx(abs(orbit.multipliers[0]), abs=2e-3)
 
 
-def test_an_unstable_orbit_is_told():
+def test_an_unstable_orbit_is_reported():
     """Beyond its Neimark-Sacker point the symmetric orbit is still there."""
     beam, state, gaps = settled(9.1)
     near = find_orbit(beam, state, gaps)
@@ -66,21 +66,21 @@ def test_an_unstable_orbit_is_told():
     assert find_orbit(beyond, near.state, gaps).outcome == "converged"
 
 
-def test_a_far_orbit_is_told():
+def test_a_far_orbit_is_reported():
     """Of two mirror images the guess is near the other one's mirror plane."""
     beam, state, gaps = settled(9.9)
     orbit = find_orbit(beam, state, gaps)
     rng = np.random.default_rng(5)
     away = orbit.state * (1 + 0.02 * rng.normal(size=len(state)))
-    told = find_orbit(beam, away, gaps, farthest=1e-3)
-    assert told.outcome in ("far", "stalled")
+    orbit = find_orbit(beam, away, gaps, farthest=1e-3)
+    assert orbit.outcome in ("far", "stalled")
     near = find_orbit(beam, away, gaps, farthest=0.2)
     assert near.outcome == "converged"
     assert 1e-3 < near.distance < 0.2
     np.testing.assert_allclose(near.work, orbit.work, rtol=1e-9)
 
 
-def test_no_orbit_is_told():
+def test_the_absence_of_an_orbit_is_reported():
     beam, state, gaps = settled(7.5, periods=50)
     assert find_orbit(beam, state, gaps, stable_only=True, farthest=0.1).outcome != "converged"
     with pytest.raises(ValueError, match="does not settle on an orbit of period 1"):

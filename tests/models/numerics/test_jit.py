@@ -39,7 +39,7 @@ def modules():
     return [importlib.import_module(name) for _, name, _ in names if "__main__" not in name]
 
 
-def test_the_compiler_is_told_nothing_that_moves_a_bit():
+def test_no_option_of_the_compiler_moves_a_bit():
     compiled = {
         value
         for module in modules()

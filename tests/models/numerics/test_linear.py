@@ -16,14 +16,14 @@ def test_solutions_are_those_of_lapack_in_any_units():
     np.testing.assert_allclose(solution, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
 
 
-def test_singular_matrices_are_told_and_harm_nobody():
+def test_singular_matrices_are_flagged_and_harm_no_other():
     rng = np.random.default_rng(2)
     matrix, right = rng.normal(size=(6, 4, 4)), rng.normal(size=(6, 4, 1))
     matrix[1, 2], matrix[3, :, 1], matrix[4, 0, 0] = 0.0, 0.0, np.nan
     regular = np.isin(np.arange(6), (0, 2, 5))
     expected = np.linalg.solve(matrix[regular], right[regular])
-    solution, told = solve(matrix, right)
-    np.testing.assert_array_equal(told, regular)
+    solution, solvable = solve(matrix, right)
+    np.testing.assert_array_equal(solvable, regular)
     np.testing.assert_allclose(solution[regular], expected, rtol=1e-12)
     assert np.all(solution[~regular] == 0)
 

@@ -1,13 +1,22 @@
-"""The share of the variance that lies between the regimes."""
+"""The share of the variance of an output that lies between regimes, not within them."""
 
 from collections.abc import Iterator
 from math import isfinite
 
-from uq.analysis.regime_split import between_share
-from uq.analysis.statistics.statistic import JSON, REPORT, TERMINAL, Context, Kind, Statistic
+import numpy as np
+from numpy.typing import NDArray
+from scipy import stats
+
+from uq.analysis.statistics.statistic import Context, Kind, Reader, Statistic
+from uq.estimate import NOTHING, Estimate
 from uq.indices.targets import number_of
+from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Replicates, scatter_interval
 from uq.rows.elements import Element, output_names
+from uq.tails import lacks_variance
 from uq.wording import number
+
+MIN_IN_REGIME = 2
+"""A regime with fewer rows has no variance of its own, and is skipped."""
 
 
 def _shown(share: float) -> str:
@@ -15,7 +24,7 @@ def _shown(share: float) -> str:
     return number(share) if share > 0 else "none seen"
 
 
-_KIND = Kind(shown=_shown, readers=frozenset((JSON, TERMINAL, REPORT)))
+_KIND = Kind(shown=_shown, readers=Reader.JSON | Reader.TERMINAL | Reader.REPORT)
 
 
 def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
@@ -28,3 +37,78 @@ def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
     if isfinite(split.value):
         label = "variance between regimes"
         yield Statistic(("between_regimes",), label, split, kind=_KIND, of=target.name)
+
+
+def between_share(
+    values: Floats, codes: NDArray[np.integer], replicate: Replicates = None
+) -> Estimate:
+    """Estimate the share of the variance that the regime's mean explains.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where there is none.
+    codes : ndarray of int, shape (n,)
+        Regime of each row, negative for none.
+    replicate : ndarray of int, shape (n,), optional
+
+    Returns
+    -------
+    Estimate
+        The correlation ratio; for independent rows corrected for chance (epsilon squared [1]_). NaN
+        where fewer than two regimes have enough rows, all values are equal, or their tail is too
+        heavy for a variance. Its interval is, for independent rows, by the normal law of the
+        estimate's influence function, and unknown where an F-test finds no difference between the
+        regimes: there the estimate has no normal law. For replicates it is from their scatter.
+
+    References
+    ----------
+    .. [1] T. L. Kelley, "An unbiased correlation ratio measure", Proc. Natl. Acad. Sci. 21,
+       554-559 (1935).
+    """
+    kept = np.isfinite(values) & (codes >= 0)
+    counts = np.bincount(codes[kept], minlength=1)
+    kept[kept] = counts[codes[kept]] >= MIN_IN_REGIME
+    _, regime = np.unique(codes[kept], return_inverse=True)
+    y = values[kept]
+    value, deviation, residual = _split(y, regime)
+    if not np.isfinite(value) or lacks_variance(y):
+        return NOTHING
+    if replicate is None:
+        value, low, high = _independent(value, deviation, residual, regime.max() + 1)
+    else:
+        of = replicate[kept]
+        found = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
+        low, high = scatter_interval(value, found) if np.isfinite(found).all() else UNKNOWN
+    return Estimate(value, max(float(low), 0.0), min(float(high), 1.0))
+
+
+def _independent(
+    ratio: float, deviation: Floats, residual: Floats, regimes: int
+) -> tuple[float, float, float]:
+    n = len(deviation)
+    value = 1 - (1 - ratio) * (n - 1) / (n - regimes) if n > regimes else np.nan
+    total = deviation + residual
+    influence = deviation**2 + 2 * deviation * residual - ratio * total**2
+    half = stats.norm.ppf(0.5 + CONFIDENCE / 2) * influence.std() / total.var() / np.sqrt(n)
+    freedom = regimes - 1, n - regimes
+    with np.errstate(divide="ignore", invalid="ignore"):
+        statistic = ratio / freedom[0] / ((1 - ratio) / freedom[1])
+    if not half > 0 or stats.f.sf(statistic, *freedom) > 1 - CONFIDENCE:
+        return value, np.nan, np.nan
+    # Fisher's transformation of the root, in which the estimate is nearly normal.
+    root = np.sqrt(value)
+    wide = half / (2 * root * (1 - value))
+    low, high = (np.tanh(np.arctanh(root) + side * wide) for side in (-1, 1))
+    return value, float(np.copysign(low**2, low)), float(high**2)
+
+
+def _split(y: Floats, regime: NDArray[np.integer]) -> tuple[float, Floats, Floats]:
+    """Return the correlation ratio, and each row as regime mean plus residual, less the mean."""
+    if len(y) == 0 or np.ptp(y) == 0 or len(np.unique(regime)) < 2:
+        return np.nan, y, y
+    counts = np.bincount(regime)
+    with np.errstate(invalid="ignore"):
+        means = np.bincount(regime, weights=y) / counts
+    deviation = means[regime] - y.mean()
+    return float(np.mean(deviation**2) / y.var()), deviation, y - means[regime]

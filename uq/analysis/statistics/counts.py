@@ -4,11 +4,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
+import xarray as xr
 
-from uq.analysis.stated_error import stated_error
-from uq.analysis.statistics.statistic import COLUMNS, COUNT, FACT, JSON, REPORT, Context, Statistic
+from uq.analysis.statistics.statistic import COUNT, FACT, Context, Reader, Statistic
 from uq.estimate import Estimate
-from uq.rows.elements import Element
+from uq.rows.elements import Element, elements_of, output_names
+from uq.rows.variables import error_name
 from uq.wording import percent
 
 
@@ -17,10 +18,6 @@ def counts(element: Element, context: Context) -> Iterator[Statistic]:
     for name in ("never", "censored", "undefined", "failed"):
         number = float(getattr(element, name).sum())
         yield Statistic((name,), name, Estimate(number), "rows", COUNT)
-
-
-_MISSED = replace(COUNT, write=FACT.write, readers=frozenset((JSON, COLUMNS, REPORT)))
-_NONE_MISSED = replace(_MISSED, readers=frozenset((JSON, COLUMNS)))
 
 
 def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
@@ -36,18 +33,31 @@ def accuracy(element: Element, context: Context) -> Iterator[Statistic]:
     kept = np.abs(error.values[known]) <= asked * np.abs(element.values[known])
     rows, missed = len(kept), int((~kept).sum())
     share = missed / rows if rows else None
-    words = ""
-    if missed and share is not None:
-        words = f"accuracy {asked:g} not reached in {missed} row{'s' if missed > 1 else ''}"
-        words += f" ({percent(share)})"
+    lost, plural = percent(share) if missed and share else "", "s" if missed > 1 else ""
+    words = f"accuracy {asked:g} not reached in {missed} row{plural} ({lost})"
+    readers = FACT.readers | Reader.REPORT if missed else FACT.readers
     yield Statistic(
         ("accuracy",),
         "rows short of the accuracy",
         Estimate(float(missed)),
         "rows",
-        _MISSED if missed else _NONE_MISSED,
+        replace(COUNT, write=FACT.write, readers=readers),
         column="accuracy_missed",
-        more=percent(share) if missed and share is not None else "",
-        notes=(words,) if words else (),
+        more=lost,
+        notes=(words,) if missed else (),
         facts={"accuracy": {"asked": float(asked), "rows": rows, "missed": missed, "share": share}},
     )
+
+
+def stated_error(ds: xr.Dataset, element: Element) -> Element | None:
+    """Return the error that the model states for an element of these rows, None if it states none.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    element : Element
+    """
+    name = error_name(element.output)
+    if name not in output_names(ds):
+        return None
+    return next((one for one in elements_of(ds, [name]) if one.place == element.place), None)

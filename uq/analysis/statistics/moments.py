@@ -7,14 +7,14 @@ from typing import Any
 
 from uq import json_form
 from uq.analysis.estimators import MEAN, SD
-from uq.analysis.statistics.statistic import EVERYWHERE, FACT, RUNNING, Context, Kind, Statistic
+from uq.analysis.statistics.statistic import FACT, Context, Kind, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
 from uq.moments import Moments, moments
 from uq.rows.elements import Element
 
 
 def _numbers(one: Statistic) -> dict[str, Any]:
-    return dict(json_form.numbers(one.estimate))
+    return json_form.numbers(one.estimate)
 
 
 def _write(group: Sequence[Statistic]) -> dict[str, Any]:
@@ -26,7 +26,7 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
 
 
 MOMENT = Kind(entry=_numbers, write=_write)
-SPREAD = replace(MOMENT, readers=EVERYWHERE - {RUNNING})
+SPREAD = replace(MOMENT, readers=~Reader.RUNNING)
 
 
 def moments_of(element: Element, context: Context) -> Iterator[Statistic]:

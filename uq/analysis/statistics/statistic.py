@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from enum import Flag, auto
 from math import isfinite, isnan
 from typing import Any
 
@@ -15,16 +16,16 @@ from uq.rows.elements import Element
 from uq.study.file import AnalysisTable
 from uq.wording import known, number
 
-JSON, COLUMNS, TERMINAL, REPORT, COMPARED, RUNNING = (
-    "json",
-    "columns",
-    "terminal",
-    "report",
-    "compared",
-    "running",
-)
-EVERYWHERE = frozenset((JSON, COLUMNS, TERMINAL, REPORT, COMPARED, RUNNING))
-"""The readers of a statistic; RUNNING are the estimates from growing numbers of rows."""
+
+class Reader(Flag):
+    """A reader of statistics; RUNNING are the estimates from growing numbers of rows."""
+
+    JSON = auto()
+    COLUMNS = auto()
+    TERMINAL = auto()
+    REPORT = auto()
+    COMPARED = auto()
+    RUNNING = auto()
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,8 @@ class Kind:
     has_interval : bool
     listing : Listing
         The table of a report that holds it.
-    readers : frozenset of str
+    readers : Reader
+        One or several.
     """
 
     name: str = "These"
@@ -135,7 +137,7 @@ class Kind:
     is_count: bool = False
     has_interval: bool = True
     listing: Listing = field(default_factory=Listing)
-    readers: frozenset[str] = EVERYWHERE
+    readers: Reader = ~Reader(0)
 
 
 ESTIMATE = Kind()
@@ -144,9 +146,9 @@ COUNT = Kind(
     shown=rows_in_words,
     is_count=True,
     has_interval=False,
-    readers=EVERYWHERE - {COMPARED, RUNNING},
+    readers=~(Reader.COMPARED | Reader.RUNNING),
 )
-FACT = Kind(write=facts, has_interval=False, readers=frozenset((JSON, COLUMNS)))
+FACT = Kind(write=facts, has_interval=False, readers=Reader.JSON | Reader.COLUMNS)
 
 
 @dataclass(frozen=True)
@@ -209,7 +211,7 @@ class Statistic:
     facts: Mapping[str, Any] = field(default_factory=dict)
     estimator: Estimator | None = None
 
-    def is_read_by(self, reader: str) -> bool:
+    def is_read_by(self, reader: Reader) -> bool:
         """Whether this reader shows it."""
         return reader in self.kind.readers
 

@@ -112,19 +112,14 @@ def _after_kaplan_meier(
 ) -> Statistic:
     unknown = int((element.censored & (element.values < threshold)).sum())
     reason = f"{unknown} of {len(element.values)} rows were censored before then"
-    above, below = ended_by(element, threshold, replicate)
-    if not one.falls:  # a terminal shows the other side
-        return replace(
-            one,
-            estimate=Estimate(reason=reason),
-            otherwise=replace(one, label="", estimate=above),
-        )
-    more = [reason, "by Kaplan-Meier, if censoring is non-informative"]
+    guess = ended_by(element, threshold, replicate)[one.falls]
+    label = f"{one.label}, if" if one.falls else ""  # a terminal shows one side only
+    small = (reason, "by Kaplan-Meier, if censoring is non-informative", guess.reason)
     return replace(
         one,
         estimate=Estimate(reason=reason),
-        otherwise=replace(one, label=f"{one.label}, if", estimate=below),
-        more="; ".join(filter(None, [*more, below.reason])),
+        otherwise=replace(one, label=label, estimate=guess),
+        more="; ".join(filter(None, small)) if one.falls else "",
     )
 
 

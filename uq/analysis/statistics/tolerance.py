@@ -7,18 +7,7 @@ from typing import Any
 
 from uq import json_form
 from uq.analysis.life_quantiles import whenever_censored_rows_end
-from uq.analysis.statistics.statistic import (
-    COLUMNS,
-    JSON,
-    REPORT,
-    TERMINAL,
-    Context,
-    Kind,
-    Listing,
-    Statistic,
-    counts,
-    rows_in_words,
-)
+from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
 from uq.order_statistics import rows_needed, tolerance_bounds
 from uq.rows.elements import Element
@@ -33,31 +22,23 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
 
 def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield both one-sided bounds and the rows they need; failed rows count as the worst."""
-    if context.analysis.tolerance is None or context.replicate is not None:
+    asked = context.analysis.tolerance
+    if asked is None or context.replicate is not None:
         return
     failed = int(element.failed.sum())
-    asked = context.analysis.tolerance
     early = tolerance_bounds(element.at_least, failed, *asked)
     late = tolerance_bounds(element.at_most, failed, *asked)
-    coverage, confidence = (f"{100 * share:g} %" for share in asked)
-    bound = Kind(
-        write=_write,
-        has_interval=False,
-        listing=Listing(
-            f"Tolerance bounds: with {confidence} confidence each, {coverage} of all lie above the"
-            f" lower, and {coverage} below the upper",
-            keeps_empty=True,
-        ),
-        readers=frozenset((JSON, COLUMNS, TERMINAL, REPORT)),
+    lower = whenever_censored_rows_end((early[0], early[0]))
+    upper = whenever_censored_rows_end((early[1], late[1]))
+    coverage, confidence = (f"{100 * share:g}" for share in asked)
+    listing = Listing(
+        f"Tolerance bounds: with {confidence} % confidence each, {coverage} % of all lie above the"
+        f" lower, and {coverage} % below the upper",
+        keeps_empty=True,
     )
-    sentence = (
-        f"{coverage.removesuffix(' %')}/{confidence.removesuffix(' %')} lower bound: {{number}}."
-    )
-    ends = {
-        "lower": whenever_censored_rows_end((early[0], early[0])),
-        "upper": whenever_censored_rows_end((early[1], late[1])),
-    }
-    for name, found in ends.items():
+    bound = Kind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
+    headline = f"{coverage}/{confidence} lower bound: {{number}}." if element.is_lifetime else ""
+    for name, found, sentence in (("lower", lower, headline), ("upper", upper, "")):
         yield Statistic(
             ("tolerance", name),
             f"tolerance, {name}",
@@ -66,21 +47,17 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
             bound,
             column=f"tolerance_{name}",
             heading=name,
-            sentence=sentence if name == "lower" and element.is_lifetime else "",
+            sentence=sentence,
         )
     needed = rows_needed(*asked, failed)
-    number = Estimate(float(needed))
     yield Statistic(
         ("tolerance", "rows_needed"),
         "rows needed",
-        number,
+        Estimate(float(needed)),
         "rows",
-        replace(bound, write=counts, shown=rows_in_words, is_count=True, readers=_ROWS_READERS),
+        replace(COUNT, listing=listing, readers=COUNT.readers & ~Reader.TERMINAL),
         column="tolerance_rows_needed",
     )
-    if not any(isfinite(found.value) for found in ends.values()):
-        short = replace(bound, readers=frozenset((TERMINAL,)))
+    if not (isfinite(lower.value) or isfinite(upper.value)):
+        short = replace(bound, readers=Reader.TERMINAL)
         yield Statistic(("tolerance", "short"), "", NOTHING, kind=short, rows_needed=needed)
-
-
-_ROWS_READERS = frozenset((JSON, COLUMNS, REPORT))
