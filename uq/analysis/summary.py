@@ -8,12 +8,12 @@ from typing import Any
 import xarray as xr
 
 from uq import json_form
+from uq.analysis.estimators import in_regimes, share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.life_fit import Fit, fits_of
 from uq.analysis.statistics.statistic import Context, Kind, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.statistics.thresholds import share_of
-from uq.contract import Status
 from uq.designs.registry import DESIGNS
 from uq.rows import stopping
 from uq.rows.elements import (
@@ -181,20 +181,19 @@ def status_counts(ds: xr.Dataset) -> dict[str, int]:
 
 def regime_shares(rows: xr.Dataset) -> dict[str, Statistic]:
     """Return the share of each regime among the independent rows that did not fail."""
-    codes, replicate = rows["regime"].values, replicates_of(rows)
-    kept = (codes >= 0) | (rows["status"].values == Status.OK)
-    within = None if replicate is None else replicate[kept]
+    replicate = replicates_of(rows)
     return {
         label: Statistic(
             ("regime", label),
             label,
-            share_of(codes[kept] == code, within),
+            share_of(hits[kept], None if replicate is None else replicate[kept]),
             kind=REGIME,
-            failed=failed_share_bounds(codes == code, ~kept, replicate),
-            facts={"count": int((codes[kept] == code).sum())},
+            failed=failed_share_bounds(hits, ~kept, replicate),
+            facts={"count": int(hits[kept].sum())},
+            estimator=share(),
         )
-        for code, label in flags(rows["regime"])
-        if code >= 0
+        for label, (kept, numbers) in in_regimes(rows).items()
+        for hits in [numbers > 0]
     }
 
 
