@@ -48,7 +48,7 @@ def _share(one: Estimate) -> Cell:
 
 
 class Outcome:
-    """An element of an output: its statistics, its words, the unit it is told in.
+    """An element of an output: its statistics, its words, the unit it is shown in.
 
     Parameters
     ----------
@@ -84,11 +84,11 @@ class Outcome:
         return f"{number(value / self.unit.seconds)} {self.unit_cell.text}".strip()
 
     def per(self, one: Statistic) -> float:
-        """Return the length of the unit in which a statistic is told."""
+        """Return the length of the unit in which a statistic is shown."""
         return self.unit.seconds if one.unit == "s" else 1.0
 
     def of(self, part: str, listing: Listing) -> list[Statistic]:
-        """Return the statistics of one entry of the table of statistics that stand in a listing."""
+        """Return the statistics of one entry of the table of statistics that a listing shows."""
         found = [one for one in self.parts[part] if one.is_read_by(Reader.REPORT)]
         return [one for one in found if one.kind.listing == listing]
 
