@@ -5,15 +5,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import (
-    COLOURS,
-    in_words,
-    place_in_words,
-    roomy,
-    sentence,
-    styled,
-)
+from uq.drawing.figure import styled
+from uq.drawing.marks import COLOURS
 from uq.drawing.panel import column, finish, heading
+from uq.drawing.ticks import roomy
+from uq.drawing.words import element_in_words, in_words, sentence
 from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
@@ -69,11 +65,9 @@ def index_bars(
     thickness = 0.8 * lines.min() / len(kinds)
     for i, (kind, values) in enumerate(kinds.items()):
         y = middle + thickness * (len(kinds) / 2 - i - 0.5)
-        drawn = [values[parameter] for parameter in parameters]
-        table = np.array([(one.value, one.low, one.high) for one in drawn])
-        value, ends = table[:, 0], table[:, 1:].T
+        value, *ends = np.array([values[parameter].numbers for parameter in parameters]).T
         panel.barh(y, value, thickness, color=COLOURS[i], label=kind.words)
-        panel.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
+        panel.errorbar(value, y, xerr=np.abs(ends - value), fmt="none", ecolor="black", lw=0.8)
     unnamed = set(_LIMITS)
     for kind, null in found.indices.nulls.items():
         colour = COLOURS[list(kinds).index(kind)] if len(kinds) > 1 else "black"
@@ -122,12 +116,11 @@ def subject(ds: xr.Dataset, name: str) -> str:
         meaning = ds[category].attrs["long_name"].removeprefix("the ")
         return sentence(f"whether the {meaning} is {label}", width=56)
     (element,) = named_elements(ds, inside)
-    place = place_in_words(element, ds[element.output])
-    words = element.meaning + (f", {place}" if place else "")
+    words = element_in_words(ds, element)
     if threshold:
         unit = time_unit(float(threshold))
         at = f"{float(threshold) / unit.seconds:g} {unit.name}"
-        words = f"whether the {words.removeprefix('the ')}{',' * bool(place)} is below {at}"
+        words = f"whether the {words.removeprefix('the ')}{',' * bool(element.place)} is below {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
     return sentence(words, width=56)

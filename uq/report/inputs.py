@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import xarray as xr
 
 from uq.analysis.sampled_inputs import compare, laws_and_values
-from uq.drawing.figure import powers
+from uq.drawing.words import powers
 from uq.inputs.law import Law
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of

@@ -10,7 +10,7 @@ from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary
 from uq.contract import Output, Status
-from uq.drawing.figure import place_in_words, powers
+from uq.drawing.words import element_in_words, powers
 from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
@@ -98,8 +98,7 @@ def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     names = dict.fromkeys(name.partition("[")[0] for name in summary.outputs)
     found = []
     for element in elements_of(independent_rows(ds), list(names)):
-        place = place_in_words(element, ds[element.output])
-        words = f"{element.meaning}{', ' if place else ''}{place}"
+        words = element_in_words(ds, element)
         described = summary.outputs[element.name]
         found.append(Outcome(element.name, words, element.declared, described))
     return found
