@@ -21,11 +21,7 @@ from uq.rows.elements import independent_rows, named_elements
 
 @styled
 def convergence(
-    ds: xr.Dataset,
-    output: str,
-    *,
-    running: pd.DataFrame | None = None,
-    axes: Axes | None = None,
+    ds: xr.Dataset, output: str, *, running: pd.DataFrame | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw the convergence of the mean (or the median) of an output, with 95 % intervals.
 
@@ -78,11 +74,7 @@ def followed(ds: xr.Dataset, output: str, running: pd.DataFrame) -> tuple[str, p
 
 @styled
 def index_convergence(
-    ds: xr.Dataset,
-    output: str,
-    *,
-    running: pd.DataFrame | None = None,
-    axes: Axes | None = None,
+    ds: xr.Dataset, output: str, *, running: pd.DataFrame | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw the convergence of the total indices of an output, with 95 % intervals.
 

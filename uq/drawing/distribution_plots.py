@@ -178,11 +178,7 @@ def _rest(share: ArrayLike) -> ArrayLike:
 
 @styled
 def quantile_table(
-    ds: xr.Dataset,
-    output: str,
-    *,
-    summary: Summary | None = None,
-    axes: Axes | None = None,
+    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw a table of the quantiles of an output, with their 95 % intervals.
 
