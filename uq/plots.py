@@ -33,13 +33,9 @@ from uq.errors import InputError
 from uq.places import refuse_standard_output
 
 FIGURES: dict[str, Entry] = {
-    "lifetime": Entry(lifetime, of.outputs, "{name}: {meaning}", applies=(of.is_lifetime,)),
+    "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,)),
     "histogram": Entry(
-        histogram,
-        of.outputs,
-        "{name}: {meaning}",
-        applies=(of.is_no_lifetime,),
-        in_report=(of.in_one_regime,),
+        histogram, of.outputs, applies=(of.is_no_lifetime,), in_report=(of.in_one_regime,)
     ),
     "regimes": Entry(histogram_by_regime, of.outputs, "{name} by regime", applies=(of.in_regimes,)),
     "quantiles": Entry(

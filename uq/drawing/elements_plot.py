@@ -12,7 +12,7 @@ from uq.drawing.marks import COLOURS, LINES
 from uq.drawing.ticks import is_wide
 from uq.drawing.words import place_in_words
 from uq.rows.elements import Element, Floats, flags
-from uq.wording import percent, time_unit
+from uq.wording import percent, unit_of
 
 
 def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[str, str]:
@@ -47,7 +47,7 @@ def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> 
 
 
 def display_unit(units: str, values: Floats) -> tuple[str, float]:
-    """Return the unit of an axis and its length: times are in hours, days or years.
+    """Return the unit of an axis and its length, as in `uq.wording.unit_of`.
 
     Parameters
     ----------
@@ -57,10 +57,7 @@ def display_unit(units: str, values: Floats) -> tuple[str, float]:
         Those to be drawn; only finite ones count.
     """
     known = np.abs(values[np.isfinite(values)])
-    if units != "s" or not len(known):
-        return units, 1.0
-    unit = time_unit(float(np.median(known)))
-    return unit.name, unit.seconds
+    return unit_of(units, float(np.median(known)) if len(known) else np.nan)[:2]
 
 
 def bins(values: Floats) -> tuple[Floats, bool]:

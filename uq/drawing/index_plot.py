@@ -68,14 +68,12 @@ def index_bars(
         value, *ends = np.array([values[parameter].numbers for parameter in parameters]).T
         panel.barh(y, value, thickness, color=COLOURS[i], label=kind.words)
         panel.errorbar(value, y, xerr=np.abs(ends - value), fmt="none", ecolor="black", lw=0.8)
-    unnamed = set(_LIMITS)
     for kind, null in found.indices.nulls.items():
         colour = COLOURS[list(kinds).index(kind)] if len(kinds) > 1 else "black"
         for line, limit, label in zip(("--", ":"), (null.one, null.largest), _LIMITS, strict=True):
             if np.isfinite(limit):
-                named = label if label in unnamed else "_"  # each once in the legend
-                unnamed.discard(label)
-                panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named)
+                named = "_" * (label in panel.get_legend_handles_labels()[1])  # each once
+                panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named + label)
     panel.axvline(0, color="black", lw=0.6)
     shares = all(kind.unit != "output" for kind in kinds)
     if shares:

@@ -46,16 +46,12 @@ def with_quantities(ds: xr.Dataset) -> xr.Dataset:
     """
     if "trajectory" not in ds:
         return ds
-    series = {
-        str(one["quantity"].item()): (
-            "time",
-            one.values,
-            {"units": one["unit"].item(), "long_name": one["meaning"].item()},
-        )
-        for one in ds["trajectory"].transpose("quantity", "time")
-    }
-    time = ds["trajectory"]["time"]
-    return xr.Dataset(series, {"time": ("time", time.values, time.attrs)})
+    trajectory = ds["trajectory"]
+    series = trajectory.drop_vars(["unit", "meaning"]).to_dataset("quantity")
+    for one in trajectory.transpose("quantity", "time"):
+        words = {"units": one["unit"].item(), "long_name": one["meaning"].item()}
+        series[one["quantity"].item()].attrs = words
+    return series
 
 
 def find(ds: xr.Dataset, name: str) -> xr.DataArray:

@@ -16,7 +16,7 @@ def sentence(text: str, unit: str = "", width: int = 44) -> str:
     """Return text for an axis: capitalised, with its unit, wrapped."""
     text = plain(text[:1].upper() + text[1:])
     if unit and unit != "1":
-        text += " " + f"[{powers(unit)}]".replace(" ", "\u00a0")  # units are not broken
+        text += f" [{unbroken(unit)}]"
     return textwrap.fill(text, width).replace("\u00a0", " ")
 
 
@@ -24,6 +24,11 @@ def powers(unit: str) -> str:
     """Return a CF unit with raised exponents: ``m2 N-1`` becomes ``m² N⁻¹``."""
     raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
     return re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(raised), unit)
+
+
+def unbroken(unit: str) -> str:
+    """Return a unit as in `powers`, with spaces at which no line breaks."""
+    return powers(unit).replace(" ", "\u00a0")
 
 
 def place_in_words(ds: xr.Dataset, element: Element) -> str:

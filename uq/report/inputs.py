@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import xarray as xr
 
 from uq.analysis.sampled_inputs import compare, laws_and_values
-from uq.drawing.words import powers
+from uq.drawing.words import unbroken
 from uq.inputs.law import Law
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of
@@ -95,7 +95,7 @@ def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
 
 
 def _with_unit(ds: xr.Dataset, name: str, value: float | str) -> str:
-    unit = powers(ds[name].attrs["units"]).replace(" ", "\u00a0")
+    unit = unbroken(ds[name].attrs["units"])
     text = value if isinstance(value, str) else f"{value:.6g}"
     return text if unit == "1" else f"{text}\u00a0{unit}"
 

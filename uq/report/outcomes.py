@@ -10,11 +10,11 @@ from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary
 from uq.contract import Output, Status
-from uq.drawing.words import element_in_words, powers
+from uq.drawing.words import element_in_words, unbroken
 from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
-from uq.wording import TimeUnit, number, percent, percent_interval, time_unit
+from uq.wording import number, percent, percent_interval, unit_of
 
 
 def status_table(ds: xr.Dataset, summary: Summary) -> Table:
@@ -65,9 +65,8 @@ class Outcome:
         quantiles = (one.estimate.value for one in described.parts["quantiles"])
         found = [value for value in quantiles if isfinite(value)]
         typical = abs(found[len(found) // 2]) if found else 0.0
-        unit = powers(described.units).replace(" ", "\u00a0")
-        is_time = described.units == "s"
-        self.unit = time_unit(typical) if is_time else TimeUnit(unit, 1.0, 0.0)
+        unit = unit_of(described.units, typical)
+        self.unit = unit._replace(name=unbroken(unit.name))
 
     @property
     def label(self) -> Cell:
