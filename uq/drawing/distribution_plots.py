@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike
 
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles
 from uq.analysis.lifetime import survival
@@ -153,7 +152,7 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
         _mark(panel, element, replicates_of(rows), unit, colour)
     panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
     panel.set_xlabel(sentence(chosen[0].meaning, unit.name))
-    other = panel.secondary_yaxis("right", functions=(_rest, _rest))
+    other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
     other.set_ylabel("Survival probability")
     if is_wide(ends):
         logarithmic(panel)
@@ -170,10 +169,6 @@ def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, c
             axes.errorbar(
                 at, B_LIVES[name], xerr=reach, fmt="o", ms=MARK, lw=1.0, capsize=2.0, color=colour
             )
-
-
-def _rest(share: ArrayLike) -> ArrayLike:
-    return 1 - np.asarray(share)
 
 
 @styled

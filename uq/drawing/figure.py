@@ -33,7 +33,7 @@ _STYLE: Any = {
     "pdf.fonttype": 42,  # text that can be searched and edited
 }
 styled = mpl.rc_context(_STYLE)
-"""Decorates every function that draws or writes a figure."""
+"""The decorator of every function that draws or writes a figure."""
 
 
 class Drawing(Figure):

@@ -41,7 +41,7 @@ def index_bars(
     method : str, optional
         By default the first that the study asks for.
     found : TargetIndices, optional
-        The indices, if they are known already.
+        The indices, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 

@@ -79,7 +79,7 @@ def figure_of(axes: Axes) -> Figure:
 
 
 def legend(axes: Axes) -> Figure:
-    """Draw the legend, if there is one: below a figure of ours, or below the given axes.
+    """Draw the legend, if there is one: below a `Drawing`, or below the given axes.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def legend(axes: Axes) -> Figure:
 
 
 def finish(axes: Axes) -> Figure:
-    """Add the legend of a panel, with room for it in a figure of ours; return the figure."""
+    """Draw the legend of a panel, make room for it in a `Drawing`, and return the figure."""
     figure = figure_of(axes)
     if isinstance(figure, Drawing):
         entries = len(axes.get_legend_handles_labels()[1])
@@ -115,7 +115,7 @@ def finish(axes: Axes) -> Figure:
 
 
 def heading(axes: Axes, text: str) -> None:
-    """Write the subject of a figure above it, or above its panel in a figure not of ours."""
+    """Write the subject of a figure above a `Drawing`, or else above the panel."""
     if isinstance(figure := figure_of(axes), Drawing):
         figure.suptitle(text, x=0.01, ha="left", fontsize=8)
     else:

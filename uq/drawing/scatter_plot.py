@@ -196,6 +196,6 @@ def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
     columns = np.column_stack(list(inputs.values()))
     far = np.zeros(len(inputs))
     for code in np.unique(codes[codes >= 0]):
-        with suppress(RefusedError):  # with few rows, any distance is chance
+        with suppress(RefusedError):  # with few rows, a distance may be due to chance
             far = np.maximum(far, ks_distances(columns, (codes == code).astype(float)))
     return [list(inputs)[i] for i in np.argsort(-far, kind="stable")]

@@ -1,4 +1,4 @@
-"""What a report says of the rows: how they ended, and the statistics of the outputs."""
+"""The rows in a report: how they ended, and the statistics of the outputs."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -18,7 +18,7 @@ from uq.wording import number, percent, percent_interval, unit_of
 
 
 def status_table(ds: xr.Dataset, summary: Summary) -> Table:
-    """Return how many rows ended how, what that means, and what the first of them said."""
+    """Return the number and share of rows by status, its meaning, and the first message."""
     meaning = {status.label: status.meaning for status in Status}
     rows = []
     for label, found in summary.status.items():
@@ -75,7 +75,7 @@ class Outcome:
 
     @property
     def unit_cell(self) -> Cell:
-        """The unit of the other cells; nothing for a pure number."""
+        """The unit of the other cells; empty for a pure number."""
         return Cell("" if self.unit.name == "1" else self.unit.name)
 
     def in_its_unit(self, value: float) -> str:
@@ -83,11 +83,11 @@ class Outcome:
         return f"{number(value / self.unit.seconds)} {self.unit_cell.text}".strip()
 
     def per(self, one: Statistic) -> float:
-        """Return the length of the unit in which a statistic is told."""
+        """Return the length of the unit in which a statistic is reported."""
         return self.unit.seconds if one.unit == "s" else 1.0
 
     def of(self, part: str, listing: Listing) -> list[Statistic]:
-        """Return the statistics of one entry of the table of statistics that stand in a listing."""
+        """Return the statistics that one entry of `STATISTICS` contributes to a listing."""
         found = [one for one in self.parts[part] if one.is_read_by(Reader.REPORT)]
         return [one for one in found if one.kind.listing == listing]
 
@@ -104,7 +104,7 @@ def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
 
 
 def result_tables(found: list[Outcome], of_lives: bool = False) -> Iterator[Table]:
-    """Yield the tables of statistics, those of lifetimes or all others; no empty ones."""
+    """Yield the tables of statistics that are not empty: of lifetimes, or of all other outputs."""
     listings = dict.fromkeys(
         one.kind.listing
         for part in STATISTICS
@@ -118,7 +118,7 @@ def result_tables(found: list[Outcome], of_lives: bool = False) -> Iterator[Tabl
 
 
 def _table(listing: Listing, found: list[Outcome]) -> Table:
-    """Lay out statistics in columns, in the order in which all of them are read."""
+    """Lay out statistics in columns, in the order of `STATISTICS`."""
     columns = dict.fromkeys(
         _heading(one)
         for part in STATISTICS
@@ -138,7 +138,7 @@ def _heading(one: Statistic) -> str:
 def _rows(
     listing: Listing, outcome: Outcome, columns: tuple[str, ...]
 ) -> Iterator[tuple[Cell, ...]]:
-    """Yield the row of an output, or one for each value that its statistics are about."""
+    """Yield the row of an output, or one for each threshold of its statistics."""
     own = [one for part in STATISTICS for one in outcome.of(part, listing)]
     for at in dict.fromkeys(one.at for one in own):
         here = {_heading(one): one for one in own if one.at == at}
@@ -154,7 +154,7 @@ def _rows(
 def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
     if one is None:
         return Cell("")
-    if listing.by:  # the small print stands in a column of its own
+    if listing.by:  # the small print has its own column
         return cell(replace(one.best, more=""))
     if one.estimate.reason and isnan(one.estimate.value) and one.rows_needed is None:
         return Cell("none", one.estimate.reason)
