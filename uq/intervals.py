@@ -56,6 +56,28 @@ def scatter_interval(value: float, estimates: Floats, confidence: float = CONFID
     return float(value - half), float(value + half)
 
 
+def log_scatter_interval(estimates: Floats) -> Ends:
+    """Return the interval of a small probability from independent estimates of it.
+
+    Parameters
+    ----------
+    estimates : ndarray, shape (R,)
+        Not negative.
+
+    Returns
+    -------
+    low, high : float
+        Student's interval of the logarithms about the mean; if some estimates are zero, that of
+        the estimates themselves, not below zero.
+    """
+    mean = float(estimates.mean())
+    if (estimates > 0).all():
+        low, high = np.exp(scatter_interval(np.log(mean), np.log(estimates)))
+        return low, high
+    low, high = scatter_interval(mean, estimates)
+    return np.maximum(low, 0.0), high
+
+
 def mean_interval(
     values: Floats, replicate: Replicates = None, confidence: float = CONFIDENCE
 ) -> Ends:

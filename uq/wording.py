@@ -1,15 +1,11 @@
 """Numbers, intervals and laws as text, for tables on a terminal and in a report."""
 
 import re
-from collections.abc import Mapping
 from math import floor, inf, isfinite, log10
 from typing import Any, NamedTuple
 
 from uq.estimate import Estimate
 from uq.literals import shown
-
-Entry = Mapping[str, Any]
-"""An estimate in plain data: ``value``, ``low``, ``high``, and why one of them is None."""
 
 
 def number(value: float | None) -> str:

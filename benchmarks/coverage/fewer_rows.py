@@ -25,9 +25,8 @@ from benchmarks.coverage.tally import Tally
 from uq.analysis.twin import with_twin
 from uq.estimate import NOTHING
 from uq.exploring.design_points import design_points, drawn_around
-from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
-from uq.exploring.subset_simulation import subset_simulation
-from uq.intervals import UNKNOWN
+from uq.exploring.subset_simulation import subset_interval, subset_simulation
+from uq.intervals import UNKNOWN, log_scatter_interval
 from uq.rows import stopping
 
 UNIFORMS = {

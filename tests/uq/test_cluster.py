@@ -10,9 +10,9 @@ import tempfile
 import time
 
 import numpy as np
+import process_models
 import psutil
 import pytest
-import sample_models
 
 import uq
 from uq import provenance
@@ -61,7 +61,7 @@ def test_workers_give_the_bits_of_this_process(write_study, tidy, model, paramet
 
 @pytest.mark.slow
 def test_all_workers_work(write_study, tidy):
-    study = load_study(write_study(uncertain=("x1",), samples=400), "sample_models:PROCESS")
+    study = load_study(write_study(uncertain=("x1",), samples=400), "process_models:PROCESS")
     ds = runner.compute(study, workers=2, chunk_rows=2)
     # The first rows are computed by a process that is no worker.
     assert len(set(ds["y"].values)) == 3
@@ -75,8 +75,8 @@ def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeyp
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
     # Numba has read its settings: what the environment says now must not reach the workers.
     monkeypatch.setenv("NUMBA_CPU_FEATURES", "+sse2")
-    monkeypatch.setattr(sample_models.numba.config, "CACHE_DIR", "some folder")
-    study = load_study(write_study(uncertain=("x1",)), "sample_models:ENVIRONMENT")
+    monkeypatch.setattr(process_models.numba.config, "CACHE_DIR", "some folder")
+    study = load_study(write_study(uncertain=("x1",)), "process_models:ENVIRONMENT")
     ds = runner.compute(study, workers=1, chunk_rows=1)
     assert len(set(ds["y"].values)) == 1
     monkeypatch.setenv("UQ_TEST", "2")
@@ -93,7 +93,7 @@ def test_workers_are_started_for_longer_studies_only(
     monkeypatch.setattr("uq.running.executor.SHORT_SECONDS", seconds)
     monkeypatch.setattr(local_cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
-    ds = runner.compute(load_study(path, "sample_models:PROCESS"))
+    ds = runner.compute(load_study(path, "process_models:PROCESS"))
     assert len(set(ds["y"].values)) == processes
 
 
@@ -111,7 +111,7 @@ def test_a_worker_that_died_is_replaced(tidy):
 
 @pytest.mark.slow
 def test_an_existing_cluster_is_used(write_study, tidy):
-    study = load_study(write_study(uncertain=("x1",), samples=100), "sample_models:PROCESS")
+    study = load_study(write_study(uncertain=("x1",), samples=100), "process_models:PROCESS")
     with local_cluster.local_workers(1) as crew:
         crew.client.wait_for_workers(1)
         address = crew.client.scheduler.address

@@ -6,9 +6,9 @@ from rare_studies import LAST, WEAR, study
 from scipy import stats
 
 from uq.exploring.design_points import design_points, drawn_around
-from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
 from uq.exploring.rare_events import rare_event
-from uq.exploring.subset_simulation import Found, subset_simulation
+from uq.exploring.subset_simulation import Found, subset_interval, subset_simulation
+from uq.intervals import log_scatter_interval
 
 
 def flat(u, share=2e-5):

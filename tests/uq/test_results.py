@@ -16,7 +16,6 @@ from uq.errors import InputError
 from uq.exploring.simulation import simulate
 from uq.rows import results
 from uq.running import runner
-from uq.running.existing import finished
 from uq.study.definition import load_study, study_from_text
 
 
@@ -135,7 +134,7 @@ def test_a_fixed_parameter_may_be_infinite(write_study, more):
     assert ds["mount_stiffness"].item() == np.inf
     assert ds["mount_stiffness"].attrs["role"] == "fixed"
     assert not ds["sag"].any()
-    assert finished(study, Path("mounted.nc")).identical(ds)
+    assert runner.finished(study, Path("mounted.nc")).identical(ds)
 
 
 def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):

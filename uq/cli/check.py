@@ -6,7 +6,7 @@ from uq.cli.printing import grid, heading, number
 from uq.designs.registry import DESIGNS
 from uq.methods.registry import fed_by
 from uq.rows.sampling import group_size, rows
-from uq.running.existing import output_path
+from uq.running import runner
 from uq.study.definition import Study, load_study
 from uq.wording import law
 
@@ -33,7 +33,7 @@ def check(path: str, model: str | None) -> None:
             *([("seeds", seeds)] * shared),
             ("outputs", ", ".join(study.analysis.outputs)),
             ("sensitivity", f"this design can provide {', '.join(fed_by(kind, dependent))}"),
-            ("result", str(output_path(study))),
+            ("result", str(runner.output_path(study))),
         ]
     )
     heading("\nUncertain inputs")

@@ -6,8 +6,8 @@ from math import isfinite, nan
 from pathlib import Path
 
 from uq.analysis.as_json import comparison_json
-from uq.analysis.compared import Compared, ComparedOutput, Comparison, Side
-from uq.analysis.comparison import comparison
+from uq.analysis.comparison import Comparison, Side, comparison
+from uq.analysis.differences import Compared, ComparedOutput
 from uq.cli.printing import console, grid, heading, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result

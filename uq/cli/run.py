@@ -17,7 +17,6 @@ from uq.contract import Status
 from uq.literals import plain_line
 from uq.rows import results
 from uq.running import runner
-from uq.running.existing import finished, made_elsewhere, output_path
 from uq.running.options import Progress, RunOptions
 from uq.store import folder_of
 from uq.study.definition import Study, load_study
@@ -35,8 +34,8 @@ def run(
     study = load_study(path, model)
     if samples is not None:
         study = study.with_samples(samples)
-    target = output_path(study, output)
-    if not options.fresh and (ds := finished(study, target)) is not None:
+    target = runner.output_path(study, output)
+    if not options.fresh and (ds := runner.finished(study, target)) is not None:
         note = f"{target} is already complete; nothing was computed (--fresh recomputes it)"
     else:
         ds, note = carried_out(target, quiet, options, partial(runner.run_study, study, target))
@@ -78,7 +77,7 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixe
     Rows computed by other code are reported even where all else is quiet, unless they are wanted.
     """
     say_when_interrupted(f"interrupted; the result is complete in {target}")
-    if not mixed and (line := made_elsewhere(study, target, ds)):
+    if not mixed and (line := runner.made_elsewhere(study, target, ds)):
         print(plain_line(line), file=sys.stderr)
     if not quiet:
         from uq.analysis.summary import summarise

@@ -14,7 +14,6 @@ from uq.rows import results
 from uq.running.options import RunOptions
 from uq.upkeep import amending, verification
 from uq.upkeep.status import RunStatus, run_status
-from uq.upkeep.stored_study import study_of
 
 
 def status(path: Path, json: bool) -> None:
@@ -48,7 +47,7 @@ def extend(path: Path, samples: int, model: str | None, quiet: bool, options: Ru
     ds, note = carried_out(
         path, quiet, options, lambda chosen: amending.extend(path, samples, model, chosen)
     )
-    return end(study_of(path, model), ds, path, quiet, note, options.mixed)
+    return end(amending.study_of(path, model), ds, path, quiet, note, options.mixed)
 
 
 def rerun(
@@ -66,7 +65,7 @@ def rerun(
     ds, note = carried_out(
         path, quiet, options, lambda chosen: amending.rerun_failed(path, changes, model, chosen)
     )
-    return end(study_of(path, model), ds, path, quiet, note, options.mixed)
+    return end(amending.study_of(path, model), ds, path, quiet, note, options.mixed)
 
 
 def verify(path: Path, model: str | None) -> int:

@@ -3,5 +3,5 @@
 - `simulation`: one row.
 - `basins`, on a `grid` of parameters, whose rows settle on `attractors`.
 - `rare_events`, by `subset_simulation` or importance sampling around `design_points`. Both evaluate
-  a `limit_state`, which runs the model; `rare_event_intervals` has their intervals.
+  a `limit_state`, which runs the model.
 """

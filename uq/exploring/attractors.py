@@ -12,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.contract import Floats
+
 STANDARD_ERRORS = 4.0
 """Of the difference between two values: a smaller difference is no gap."""
 
@@ -29,8 +31,8 @@ class Compared(NamedTuple):
         Relative to the largest finite magnitude among the values; 0: equal or not.
     """
 
-    values: NDArray[np.float64]
-    errors: NDArray[np.float64]
+    values: Floats
+    errors: Floats
     tolerance: float
 
 

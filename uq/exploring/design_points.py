@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from scipy.special import logsumexp
 
+from uq.contract import Floats
 from uq.errors import InputError
-from uq.exploring.subset_simulation import Floats, LimitState
+from uq.exploring.subset_simulation import Margin
 from uq.interrupts import undone
 
 _STARTS = 8
@@ -18,7 +19,7 @@ _SAME_WAY = 0.7  # cosine between a start and a point found: a search would find
 _APART = 0.5  # standard deviations between distinct design points
 
 
-def design_points(margin: LimitState, u: Floats, margins: Floats) -> Floats:
+def design_points(margin: Margin, u: Floats, margins: Floats) -> Floats:
     """Find where the limit comes closest to the origin of standard normal space.
 
     Parameters

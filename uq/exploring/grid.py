@@ -7,9 +7,8 @@ from operator import index
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uq.contract import Model
+from uq.contract import Floats, Model
 from uq.errors import InputError
 from uq.inputs.values import parameter_problem, read_settings
 from uq.rows.sampling import Rows, row_seeds
@@ -58,7 +57,7 @@ class Grid:
         axes, model = list(self.axes.items()), self.model
         return [model.name, model.version, axes, self.constants, asdict(self.settings)]
 
-    def values(self, name: str) -> NDArray[np.float64]:
+    def values(self, name: str) -> Floats:
         """Return the values along an axis."""
         return np.linspace(*self.axes[name])
 

@@ -9,9 +9,8 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from uq.contract import Output, Status
+from uq.contract import Floats, Output, Status
 from uq.errors import InputError, nearest
-from uq.exploring.subset_simulation import Floats
 from uq.inputs.values import unknown_name
 from uq.rows.columns import censored_name
 from uq.rows.evaluate import Chunk

@@ -8,18 +8,18 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtr
 
+from uq.contract import Floats
 from uq.errors import InputError, nearest
 from uq.exploring.design_points import design_points, drawn_around
 from uq.exploring.limit_state import LimitState, evaluator_of
-from uq.exploring.rare_event_intervals import log_scatter_interval, subset_interval
-from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, Floats, subset_simulation
-from uq.intervals import Ends, binomial_interval
+from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, subset_interval, subset_simulation
+from uq.intervals import Ends, binomial_interval, log_scatter_interval
 from uq.running.options import RunOptions
 from uq.study.definition import Study, load_study
 
 _FEWEST = 100  # rows of a level: 10 chains
 _Generators = list[np.random.Generator]
-_Found = tuple[Floats, Ends, float, dict[str, Any]]
+_Outcome = tuple[Floats, Ends, float, dict[str, Any]]
 """Estimate of each replicate, their interval, its high end if the failed rows were within the
 event, and variables of the result that one method alone gives."""
 
@@ -80,7 +80,7 @@ def rare_event(
     logarithms. Over 300 repetitions with 1000 samples and 8 replicates, they covered probabilities
     of 1e-6 to 1e-5 on three problems of 4 to 6 inputs in 94 to 97 % of cases; the mean of subset
     simulation was 4 to 6 % too large. If replicates never reach the event, the high end is what the
-    rows support (`uq.exploring.rare_event_intervals.subset_interval`): for 8000 independent rows
+    rows support (`uq.exploring.subset_simulation.subset_interval`): for 8000 independent rows
     without a hit, 4.6e-4.
 
     Examples
@@ -130,7 +130,7 @@ def rare_event(
     return ds.assign_attrs(notes="\n".join(_notes(ds, margin)))
 
 
-def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Found:
+def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Outcome:
     failed = []
 
     def counting(u: Floats) -> Floats:
@@ -152,7 +152,7 @@ def _subset(margin: LimitState, samples: int, generators: _Generators) -> _Found
     return estimates, subset_interval(found, samples), float(failed_high), variables
 
 
-def _importance(margin: LimitState, samples: int, generators: _Generators) -> _Found:
+def _importance(margin: LimitState, samples: int, generators: _Generators) -> _Outcome:
     u = generators[0].standard_normal((samples, margin.dimension))
     first = margin(u)
     hits, failed = int((first > 0).sum()), margin.failed

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from uq.contract import Floats
+from uq.intervals import Ends, binomial_interval, log_scatter_interval
 
-LimitState = Callable[[Floats], Floats]
+Margin = Callable[[Floats], Floats]
 """``margin(u)``: points of standard normal space (n, d) -> distance beyond the limit (n,), positive
 within the event, -inf for a row without a value."""
 
@@ -37,7 +38,7 @@ class Found(NamedTuple):
         Levels sampled.
     inside : ndarray, shape (k, d)
         Its rows within the event, in standard normal space, equally likely.
-    reached : float
+    last_level : float
         Probability of the last level, of which the event is a part.
     first_hits : int
         Rows within the event among those of the first level, which are independent.
@@ -48,20 +49,20 @@ class Found(NamedTuple):
     probability: float
     levels: int
     inside: Floats
-    reached: float
+    last_level: float
     first_hits: int
     ended: str
 
 
 def subset_simulation(
-    margin: LimitState, d: int, samples: int, generators: list[np.random.Generator]
+    margin: Margin, d: int, samples: int, generators: list[np.random.Generator]
 ) -> list[Found]:
     """Estimate the probability that the margin is positive, once per generator.
 
     Parameters
     ----------
     margin : callable
-        See `LimitState`. Called with the rows of all replicates at once.
+        See `Margin`. Called with the rows of all replicates at once.
     d : int
         Dimension of standard normal space.
     samples : int
@@ -136,3 +137,34 @@ def _walk(d: int, samples: int, rng: np.random.Generator) -> Generator[Floats, F
             step = min(1.0, step * np.exp((accepted.mean() - _ACCEPTED) / np.sqrt(k)))
         u, g = np.concatenate(chain), np.concatenate(margins)
         levels += 1
+
+
+def subset_interval(found: list[Found], samples: int) -> Ends:
+    """Return the interval that replicates of subset simulation support.
+
+    Parameters
+    ----------
+    found : list of Found
+    samples : int
+        Rows of each level.
+
+    Returns
+    -------
+    low, high : float
+        If every replicate reached the event: from their scatter or, if all ended at the first
+        level, whose rows are independent, that of a share of these rows. Otherwise from zero, or a
+        higher end that the scatter supports, to the lesser of two upper bounds. One is that of the
+        share of the first level's rows. The other gives each replicate that never reached the event
+        the probability of its last level, of which the event is a part.
+    """
+    estimates = np.array([one.probability for one in found])
+    rows = samples * len(found)
+    first = binomial_interval(sum(one.first_hits for one in found) / rows, rows)
+    if all(one.levels == 1 for one in found):
+        return first
+    scatter = log_scatter_interval(estimates)
+    if (estimates > 0).all():
+        return scatter
+    at_most = np.array([one.probability or one.last_level for one in found])
+    high = np.fmin(first[1], log_scatter_interval(at_most)[1])
+    return float(np.fmax(scatter[0], 0.0)), float(high)

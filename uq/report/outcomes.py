@@ -48,7 +48,7 @@ def _share(one: Estimate) -> Cell:
 
 
 class Outcome:
-    """An element of an output: its statistics, its words, the unit it is told in.
+    """An element of an output: its statistics, its words, the unit it is shown in.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Outcome:
         return f"{number(value / self.unit.seconds)} {self.unit_cell.text}".strip()
 
     def per(self, one: Statistic) -> float:
-        """Return the length of the unit in which a statistic is reported."""
+        """Return the length of the unit in which a statistic is shown."""
         return self.unit.seconds if one.unit == "s" else 1.0
 
     def of(self, part: str, listing: Listing) -> list[Statistic]:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Model, Output, Status
+from uq.contract import Mask, Model, Output, Status
 
 
 class Column(NamedTuple):
@@ -54,9 +54,7 @@ def censored_name(output: str) -> str:
     return f"{output}_censored"
 
 
-def failed_rows(
-    status: NDArray[np.int8], required: Iterable[tuple[Output, NDArray[Any]]]
-) -> NDArray[np.bool_]:
+def failed_rows(status: NDArray[np.int8], required: Iterable[tuple[Output, NDArray[Any]]]) -> Mask:
     """Return which rows failed.
 
     A row out of budget failed only if an output is missing.

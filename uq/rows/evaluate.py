@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Model, Status
+from uq.contract import Floats, Model, Status
 from uq.errors import InputError
 from uq.rows.columns import Column, blank_rows, columns_of
 
@@ -45,11 +45,7 @@ class Fault(NamedTuple):
 
 
 def evaluate(
-    model: Model,
-    settings: Any,
-    x: NDArray[np.float64],
-    seed: NDArray[np.uint64],
-    start: int = 0,
+    model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], start: int = 0
 ) -> Chunk:
     """Run a model on some rows.
 
@@ -124,11 +120,7 @@ def joined(chunks: Sequence[Chunk]) -> Chunk:
 
 
 def _call(
-    model: Model,
-    settings: Any,
-    x: NDArray[np.float64],
-    seed: NDArray[np.uint64],
-    expected: Mapping[str, Column],
+    model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], expected: Mapping[str, Column]
 ) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8]] | Fault:
     try:
         with np.errstate(all="ignore"):

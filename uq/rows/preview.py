@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.contract import Floats
 from uq.rows.columns import censored_name
 from uq.rows.workload import Workload
 
@@ -69,7 +70,7 @@ class _Sample:
     """Evenly spaced values of a stream."""
 
     def __init__(self) -> None:
-        self._values: NDArray[np.float64] = np.empty(0)
+        self._values: Floats = np.empty(0)
         self._step, self._next = 1, 0
 
     def add(self, values: NDArray[Any]) -> None:

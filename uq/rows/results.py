@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.contract import Model
+from uq.contract import Floats, Mask, Model
 from uq.errors import InputError, choices, nearest
 from uq.places import node
 from uq.provenance import provenance
@@ -98,7 +98,7 @@ def build(
 def build_rows(
     model: Model,
     settings: Any,
-    values: Mapping[str, float | NDArray[np.float64]],
+    values: Mapping[str, float | Floats],
     columns: Columns,
     status: NDArray[np.int8],
     failures: Mapping[str, str],
@@ -237,7 +237,7 @@ def check(ds: xr.Dataset, path: str | Path = "dataset") -> None:
         raise InputError(f"{path}: not a sound result: {fault}")
 
 
-def failed(ds: xr.Dataset) -> NDArray[np.bool_]:
+def failed(ds: xr.Dataset) -> Mask:
     """Return which rows of a result failed, shape (n,), by the rule of `failed_rows`."""
     required = (
         (output, ds[name].values)

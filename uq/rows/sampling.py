@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.contract import Floats
 from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import factor_ends, ppf_between, ppf_within
 from uq.inputs.data_files import numbers
@@ -34,7 +35,7 @@ class Rows(NamedTuple):
         Position in the group.
     """
 
-    x: NDArray[np.float64]
+    x: Floats
     seed: NDArray[np.uint64]
     replicate: NDArray[np.int32]
     group: NDArray[np.int64]
@@ -88,7 +89,7 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
     return Rows(x, seeds, replicate.astype(np.int32), group, block.astype(np.int16))
 
 
-def _drawn(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
+def _drawn(study: "Study", start: int, stop: int) -> Floats:
     """Return the inputs of the rows start..stop, shape (n, all parameters)."""
     table = study.design
     per_group = table.replicates * group_size(study)
@@ -108,7 +109,7 @@ def _drawn(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
     return physical(study, unit)
 
 
-def physical(study: "Study", unit: NDArray[np.float64]) -> NDArray[np.float64]:
+def physical(study: "Study", unit: Floats) -> Floats:
     """Map points of the unit cube to all parameters of the model.
 
     Parameters
@@ -146,7 +147,7 @@ def physical(study: "Study", unit: NDArray[np.float64]) -> NDArray[np.float64]:
     return _with_ties(study, x)
 
 
-def _imported(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
+def _imported(study: "Study", start: int, stop: int) -> Floats:
     """Return the inputs of the rows start..stop from the imported file."""
     x = _constants(study, stop - start)
     for name, column in study.imported.items():
@@ -154,13 +155,13 @@ def _imported(study: "Study", start: int, stop: int) -> NDArray[np.float64]:
     return _with_ties(study, x)
 
 
-def _constants(study: "Study", count: int) -> NDArray[np.float64]:
+def _constants(study: "Study", count: int) -> Floats:
     x = np.empty((count, len(study.model.parameter_names)))
     x[:] = [study.fixed.get(name, value) for name, value in study.model.nominal.items()]
     return x
 
 
-def _with_ties(study: "Study", x: NDArray[np.float64]) -> NDArray[np.float64]:
+def _with_ties(study: "Study", x: Floats) -> Floats:
     names = study.model.parameter_names
     for name, tied in study.tied.items():
         x[:, names.index(name)] = x[:, names.index(tied.equals)]

@@ -7,7 +7,6 @@ Reading order: `runner` leads from a study to its result. Its `executor` decides
 - On workers: `sent_chunks` sends chunks, and sends them again if a worker is killed; `workers` is
   what a run sees of a `local_cluster` of `dask_worker` processes, or of a `remote_cluster`;
   `dask_task` is their task.
-- Beside them: `options` (what the user chooses and sees), `existing` (a result that is already
-  there), `planning` (what a run will cost), `environment` (what makes another process compute as
-  this one).
+- Beside them: `options` (what the user chooses and sees), `planning` (what a run will cost),
+  `environment` (what makes another process compute as this one).
 """

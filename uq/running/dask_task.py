@@ -12,6 +12,7 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.contract import Floats
 from uq.errors import InputError
 from uq.provenance import differences
 from uq.rows.evaluate import Chunk
@@ -27,7 +28,7 @@ def evaluate_rows(
     spec: ModelSpec,
     versions: Mapping[str, str],
     limit: float | None,
-    x: NDArray[np.float64],
+    x: Floats,
     seed: NDArray[np.uint64],
     start: int,
 ) -> tuple[Chunk, float]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.compilation import compilation
+from uq.contract import Floats
 from uq.interrupts import in_background
 from uq.rows.evaluate import Chunk, evaluate
 from uq.rows.workload import Workload
@@ -107,8 +108,6 @@ class Executor:
         return self._crew
 
 
-def _in_process(
-    workload: Workload, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int
-) -> Chunk:
+def _in_process(workload: Workload, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
     """Compute rows in this process, which nothing protects from them."""
     return in_background(lambda: evaluate(workload.model, workload.settings, x, seed, start))

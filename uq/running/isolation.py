@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Status
+from uq.contract import Floats, Status
 from uq.errors import RunError
 from uq.interrupts import undone
 from uq.rows.evaluate import Chunk, Fault, joined, lost_rows
@@ -41,7 +41,7 @@ _POLL_SECONDS = 0.2  # so that an interrupt is seen
 
 Action = Callable[[], object]
 
-Evaluate = Callable[[NDArray[np.float64], NDArray[np.uint64], int], Chunk]
+Evaluate = Callable[[Floats, NDArray[np.uint64], int], Chunk]
 """``evaluate(x, seed, start)`` -> chunk, as `uq.rows.evaluate.evaluate` for one model."""
 
 
@@ -96,7 +96,7 @@ class Isolated:
         self._grace = 0.0
         self._closed = threading.Event()
 
-    def evaluate(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int = 0) -> Chunk:
+    def evaluate(self, x: Floats, seed: NDArray[np.uint64], start: int = 0) -> Chunk:
         """Run some rows; parameters and exceptions as in `uq.rows.evaluate.evaluate`.
 
         Raises
@@ -115,7 +115,7 @@ class Isolated:
         part = self.evaluate if size > 1 else self._single
         return joined([part(x[i : i + size], seed[i : i + size], start + i) for i in parts])
 
-    def _single(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk:
+    def _single(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
         """Run one row by itself, to find out whether it is guilty."""
         for _ in range(_SINGLE_CRASHES):
             outcome = self._ask(x, seed, start)
@@ -130,7 +130,7 @@ class Isolated:
         self._closed.set()
         self._end(at_once=True)
 
-    def _ask(self, x: NDArray[np.float64], seed: NDArray[np.uint64], start: int) -> Chunk | Fault:
+    def _ask(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk | Fault:
         try:
             connection = self.start()
             connection.send((x, seed, start))

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.contract import Status
+from uq.contract import Mask, Status
 from uq.literals import read_toml
 from uq.rows import results
 from uq.rows.columns import columns_of
@@ -49,7 +49,7 @@ def adopt(store: DiskStore, study: Study, path: Path, all_rows: bool) -> None:
                 store.adopt(blocks_of(numbers), rows, chunk, (made, settings))
 
 
-def variants(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], NDArray[np.bool_]]]:
+def variants(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], Mask]]:
     """Yield the settings of rows that differ from the study's, and which rows have them."""
     if "rerun" not in ds:
         yield {}, np.ones(ds.sizes["sample"], np.bool_)

@@ -16,8 +16,7 @@ from uq.store.adopt import variants
 from uq.store.seal import is_intact
 from uq.study.code import made_here
 from uq.study.definition import Study
-from uq.upkeep.amending import changed_settings
-from uq.upkeep.stored_study import study_of
+from uq.upkeep.amending import changed_settings, study_of
 
 ROWS = 16
 """Rows to recompute."""
