@@ -9,6 +9,7 @@ import sample_models
 import xarray as xr
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from wordings import sentence
 
 import uq
 from uq.contract import Status
@@ -216,6 +217,6 @@ def test_a_complete_result_of_other_code_comes_with_a_warning(write_study, monke
     uq.run(study, workers=0)
     uq.run(study, workers=0)
     monkeypatch.setattr("uq.study.code.code_of", lambda reference: "0" * 16)
-    with pytest.warns(UserWarning, match="holds rows that other code of model 'ishigami' computed"):
+    with pytest.warns(UserWarning, match=sentence("other code", model="ishigami")):
         uq.run(study, workers=0)
     uq.run(study, workers=0, mixed=True)
