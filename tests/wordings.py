@@ -256,7 +256,7 @@ MISTAKES = {
     "run absent.toml": "absent.toml: no such file",
     "run .": ".: is a directory",
     "run broken.toml": "broken.toml: not valid TOML: ",
-    "run small.toml --model nowhere:M": "--model nowhere:M cannot be imported",
+    "run small.toml --model nowhere:M": "model 'nowhere:M' cannot be imported",
     "run small.toml -o folder": "folder: is a folder; give the name of a file in it",
     "run small.toml -o /proc/x.nc": "/proc/x.nc: cannot write in /proc: ",
     "run small.toml -o broken.toml": "broken.toml: not a readable netCDF file; ",

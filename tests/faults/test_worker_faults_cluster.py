@@ -131,7 +131,7 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, i
         if progress.done > 20:
             there.end(there.scheduler)
 
-    with pytest.raises(RunError, match=rf"^--scheduler {there.address}: the scheduler is gone$"):
+    with pytest.raises(RunError, match=rf"^scheduler {there.address}: the scheduler is gone$"):
         patiently(there.address, study, "out.nc", call=runner.run, chunk_rows=2, progress=kill)
     injected("scheduler killed")
     reports = []
@@ -175,7 +175,7 @@ def test_certificates_are_used_and_demanded(start, study, folder):
     with dask.config.set(tls(certificate, certificate, key)):
         ds = patiently(there.address, study, chunk_rows=10)
     assert ds.identical(computed_here(study))
-    with pytest.raises(InputError, match=f"^--scheduler {there.address}: .* certificates: set"):
+    with pytest.raises(InputError, match=f"^scheduler {there.address}: .* certificates: set"):
         runner.compute(study, scheduler=there.address)
     # Somebody with another certificate is refused.
     with (

@@ -127,11 +127,11 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
     with monkeypatch.context() as hasty:
         hasty.setattr(remote_cluster, "_REMOTE_SECONDS", 1)
         for address in ("tcp://127.0.0.1:9", "nonsense://x"):
-            with pytest.raises(InputError, match=rf"^--scheduler {address}: cannot connect: .+$"):
+            with pytest.raises(InputError, match=rf"^scheduler {address}: cannot connect: .+$"):
                 runner.compute(study, scheduler=address)
     with local_cluster.LocalCluster(n_workers=0, dashboard_address=None) as empty:
         address = empty.scheduler_address
-        with pytest.raises(InputError, match=rf"^--scheduler {address}: .* no workers; "):
+        with pytest.raises(InputError, match=rf"^scheduler {address}: .* no workers; "):
             runner.compute(study, scheduler=address)
 
 
@@ -147,7 +147,7 @@ def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monk
     (line,) = refused.value.lines
     here = provenance.versions()
     assert re.fullmatch(
-        rf"--scheduler {address}: worker tcp://\S+ has Python {here['Python']}, numpy "
+        rf"scheduler {address}: worker tcp://\S+ has Python {here['Python']}, numpy "
         rf"{here['numpy']}; this process has Python 2.7, numpy 1.0: install the same on both",
         line,
     )

@@ -93,12 +93,12 @@ def to_group(process):
     os.killpg(process.pid, signal.SIGINT)
 
 
-def check_ended(process, sentence):
+def check_ended(process, beginning):
     out, err = process.communicate(timeout=PATIENCE)
     assert (process.returncode, out) == (130, "")
     *before, last = err.splitlines()
     assert before in ([], [COMPILING])
-    assert last.startswith(sentence)
+    assert last.startswith(beginning)
     assert Path("results").exists() == err.endswith(sentence("resumes"))
 
 

@@ -53,7 +53,7 @@ def test_what_cannot_be_extended_says_why(uq, write_study):
     assert ended.code == 2
     assert ended.err == "out.nc: " + sentence("cannot be extended", design="latin-hypercube")
     fewer = uq("extend", "out.nc", "--samples", 32)
-    assert fewer.code == 2 and fewer.err.startswith("--samples 32: out.nc has 64 ")
+    assert fewer.code == 2 and fewer.err.startswith("samples = 32: out.nc has 64 ")
     assert uq("extend", "none.nc", "--samples", 32).err.startswith(
         sentence("no file", name="none.nc")
     )
@@ -126,8 +126,8 @@ def test_failed_rows_run_again_as_they_were_change_no_bit(uq, result):
     ("arguments", "words"),
     [
         ((), "uq rerun: give --failed, the rows to compute again\n"),
-        (("--failed", "--setting", "fail_abov=1"), "--setting fail_abov = 1: no such setting of"),
-        (("--failed", "--setting", "fail_how=no"), "--setting fail_how = 'no': must be one of"),
+        (("--failed", "--setting", "fail_abov=1"), "setting fail_abov = 1: no such setting of"),
+        (("--failed", "--setting", "fail_how=no"), "setting fail_how = 'no': must be one of"),
     ],
 )
 def test_a_rerun_that_makes_no_sense_is_refused(uq, result, arguments, words):
