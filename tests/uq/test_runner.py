@@ -42,7 +42,7 @@ def test_every_design_gives_the_same_bits_for_any_chunk_size(write_study, design
 
 @pytest.mark.parametrize(("seconds", "rows"), [(1e-3, 1024), (0.004, 1024), (0.1, 50), (20.0, 1)])
 def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_study, seconds, rows):
-    assert dispatch.chunk_rows(workload_of(load_study(write_study())), seconds) == rows
+    assert dispatch.ChunkSizes(workload_of(load_study(write_study()))).good(seconds) == rows
 
 
 @settings(
