@@ -13,13 +13,14 @@ from pathlib import Path
 import numpy as np
 import psutil
 import pytest
+from in_memory import compute
 
 from uq.contract import Status
 from uq.errors import InputError
 from uq.rows.evaluate import KernelError
 from uq.rows.results import open_result
 from uq.rows.workload import workload_of
-from uq.running import isolation, local_cluster, runner, sent_chunks
+from uq.running import isolation, local_cluster, sent_chunks
 from uq.study.definition import load_study
 
 COMMAND = Path(sys.executable).with_name("uq")
@@ -62,7 +63,7 @@ def study_of(write_study):
 @pytest.fixture
 def undisturbed():
     """Return a function that computes a study with nothing that could go wrong."""
-    return lambda study: runner.compute(study, workers=0)
+    return lambda study: compute(study, workers=0)
 
 
 class Killer:
@@ -106,7 +107,7 @@ def test_killed_processes_leave_no_trace(
 ):
     study = study_of(seconds=0.02)
     killer = Killer(module, times, 120, all_of_them)
-    ds = runner.compute(study, workers=2, chunk_rows=5, progress=killer)
+    ds = compute(study, workers=2, chunk_rows=5, progress=killer)
     assert killer.marks == []
     injected(fault, times)
     assert ds.identical(undisturbed(study))
@@ -136,7 +137,7 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, undisturbed, monke
 
     thread = threading.Thread(target=kill_thrice)
     thread.start()
-    ds = runner.compute(study, workers=1, chunk_rows=20)
+    ds = compute(study, workers=1, chunk_rows=20)
     thread.join()
     assert "KilledWorker" in failed
     injected("worker killed three times on a chunk")
@@ -201,9 +202,7 @@ def test_guilty_rows_get_their_status_and_the_others_their_values(
     model, settings, status, words = FAULTS[fault]
     key = "fail_above" if model == "linear" else "above"
     study = study_of(model, samples=100, **settings, **{key: 0.98})
-    ds = runner.compute(
-        study, workers=workers, row_limit=0.5 if fault == "hang" else None, chunk_rows=30
-    )
+    ds = compute(study, workers=workers, row_limit=0.5 if fault == "hang" else None, chunk_rows=30)
     guilty = ds["x1"].values > 0.98
     assert 0 < guilty.sum() < 5
     injected(f"row: {fault}", guilty.sum())
@@ -222,7 +221,7 @@ def test_a_wrong_dtype_refuses_the_model(study_of, injected):
     for workers in (0, 1):
         injected("row: dtype")
         with pytest.raises(KernelError, match="'y' is float32, expected float64"):
-            runner.compute(study, workers=workers, chunk_rows=10)
+            compute(study, workers=workers, chunk_rows=10)
 
 
 @pytest.mark.slow
@@ -238,7 +237,7 @@ def test_compiling_is_no_part_of_the_time_of_a_row(study_of, monkeypatch):
         return answer
 
     monkeypatch.setattr(isolation.Isolated, "_answer", timed)
-    ds = runner.compute(study_of("faulty_models:COMPILING", samples=1), row_limit=1.0)
+    ds = compute(study_of("faulty_models:COMPILING", samples=1), row_limit=1.0)
     assert ds["status"].values.tolist() == [Status.OK]
     assert max(seconds) > 1.0  # or this shows nothing
 
@@ -246,9 +245,9 @@ def test_compiling_is_no_part_of_the_time_of_a_row(study_of, monkeypatch):
 def test_a_time_limit_needs_a_process_to_stop(uq, study_of):
     study = study_of()
     with pytest.raises(InputError, match="needs another process"):
-        runner.compute(study, workers=0, row_limit=1.0)
+        compute(study, workers=0, row_limit=1.0)
     with pytest.raises(InputError, match="must be positive"):
-        runner.compute(study, row_limit=0.0)
+        compute(study, row_limit=0.0)
     ended = uq("run", study.path, "--model", FAULTY, "--workers", 0, "--row-limit", 1)
     assert (ended.code, ended.err.count("\n")) == (2, 1)
 
@@ -350,7 +349,7 @@ def test_everything_listens_on_this_computer_alone(study_of):
                 if connection.status == psutil.CONN_LISTEN:
                     listening.add(connection.laddr.ip)
 
-    runner.compute(study_of(seconds=0.02, samples=60), workers=2, chunk_rows=5, progress=look)
+    compute(study_of(seconds=0.02, samples=60), workers=2, chunk_rows=5, progress=look)
     assert listening == {"127.0.0.1"}
 
 
@@ -369,7 +368,7 @@ def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
     thread.start()
     try:
         with pytest.raises(local_cluster.RunError, match="worker process"):
-            runner.compute(study_of(seconds=0.5, samples=600), workers=1, chunk_rows=1)
+            compute(study_of(seconds=0.5, samples=600), workers=1, chunk_rows=1)
     finally:
         stop.set()
         thread.join()
@@ -381,4 +380,4 @@ def test_workers_that_can_start_no_process_end_the_run(study_of, monkeypatch, in
     said = "no worker could compute rows .*: a process for the rows could not start: exit code 3"
     injected("workers that can start no process")
     with pytest.raises(local_cluster.RunError, match=said):
-        runner.compute(study_of(seconds=0.01), workers=1, chunk_rows=20)
+        compute(study_of(seconds=0.01), workers=1, chunk_rows=20)

@@ -10,6 +10,7 @@ import time
 import dask
 import psutil
 import pytest
+from in_memory import compute
 
 from uq.errors import InputError, RunError
 from uq.running import remote_cluster, runner
@@ -95,7 +96,7 @@ def study(write_study):
     return load_study(path, FAULTY)
 
 
-def patiently(address, *arguments, call=runner.compute, **options):
+def patiently(address, *arguments, call=compute, **options):
     """Run on a cluster that may still be starting."""
     end = time.monotonic() + PATIENCE
     while True:
@@ -125,7 +126,7 @@ def test_workers_come_and_go(start, study, injected):
 
     ds = patiently(there.address, study, chunk_rows=2, progress=change)
     injected("worker joins or leaves a cluster", 2)
-    assert ds.identical(runner.compute(study, workers=0))
+    assert ds.identical(compute(study, workers=0))
     assert there.scheduler.poll() is None
 
 
@@ -143,7 +144,7 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, i
     reports = []
     ds = runner.run(study, "out.nc", workers=0, progress=reports.append)
     assert reports[0].found > 20
-    assert ds.identical(runner.compute(study, workers=0))
+    assert ds.identical(compute(study, workers=0))
 
 
 def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch, injected):
@@ -180,15 +181,15 @@ def test_certificates_are_used_and_demanded(start, study, folder):
     there = start(protocol="tls", options=files)
     with dask.config.set(tls(certificate, certificate, key)):
         ds = patiently(there.address, study, chunk_rows=10)
-    assert ds.identical(runner.compute(study, workers=0))
+    assert ds.identical(compute(study, workers=0))
     with pytest.raises(InputError, match=f"^--scheduler {there.address}: .* certificates: set"):
-        runner.compute(study, scheduler=there.address)
+        compute(study, scheduler=there.address)
     # Somebody with another certificate is a stranger.
     with (
         dask.config.set(tls(certificate, *self_signed(folder / "theirs"))),
         pytest.raises(InputError),
     ):
-        runner.compute(study, scheduler=there.address)
+        compute(study, scheduler=there.address)
 
 
 def test_workers_left_alone_keep_no_process(start, study):
