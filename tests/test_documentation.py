@@ -48,7 +48,7 @@ def blocks(name, language):
     return re.findall(rf"^```{language}\n(.*?)^```", SOURCES[name], re.DOTALL | re.MULTILINE)
 
 
-@pytest.mark.parametrize("module", ["generated", "uq.contract", *EXAMPLES])
+@pytest.mark.parametrize("module", ["generated.markdown", "uq.contract", *EXAMPLES])
 def test_examples_in_docstrings_run(module, folder):
     shutil.copytree(HOUSE / "studies", "studies")
     found = doctest.testmod(importlib.import_module(module), extraglobs={"uq": public})

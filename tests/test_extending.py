@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
+import scipy
 
 HOUSE = Path(__file__).parents[1]
 sys.path[:0] = [str(HOUSE / "docs"), str(HOUSE / "tests" / "uq")]
@@ -28,7 +29,7 @@ from uq.drawing.panel import column, figure_of  # noqa: E402
 from uq.estimate import Estimate  # noqa: E402
 from uq.inputs.law import Law, Positive  # noqa: E402
 from uq.inputs.registry import LAWS  # noqa: E402
-from uq.methods.indices import Indices, Kind  # noqa: E402
+from uq.methods.indices import IndexKind, Indices  # noqa: E402
 from uq.methods.method import Method  # noqa: E402
 from uq.methods.registry import METHODS  # noqa: E402
 from uq.report import page  # noqa: E402
@@ -86,7 +87,7 @@ def toy_design(monkeypatch):
     monkeypatch.setitem(DESIGNS, "mirrored", Design("pairs of opposite points", mirrored))
 
 
-R2 = Kind("R2", "squared correlation (R2)", "variance")
+R2 = IndexKind("R2", "squared correlation (R2)", "variance")
 
 
 def squared_correlation(sample):
@@ -215,8 +216,8 @@ class Rayleigh(Law):
     distribution: Literal["rayleigh"]
     mode: Positive
 
-    def _scipy(self):
-        return "rayleigh", {"scale": self.mode}
+    def frozen(self):
+        return scipy.stats.rayleigh(scale=self.mode)
 
 
 def test_a_law_is_accepted_drawn_shown_and_documented(

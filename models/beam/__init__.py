@@ -7,7 +7,7 @@ Reading order; each part imports only those above it:
 
     parameters    inputs, settings and outputs
     structure     the rod as one oscillator per mode, and the load on it
-    exact         one propagator: from event to event, the yardstick
+    exact         one propagator: from event to event, the reference
     lanes         the other: many beams at a time in fixed steps, twenty times as fast
     start         propagator, gaps and state at the start
     response      the settled response at constant gaps

@@ -10,7 +10,7 @@ from models.beam.response.neighbouring_starts import add_neighbour_error
 from models.beam.response.response import Response
 from models.beam.response.settling import NINE_IN_TEN, settle
 from models.beam.response.step_error import add_step_error
-from models.beam.start import PROPAGATORS, initial_gaps, initial_state
+from models.beam.start import PROPAGATORS, initial_gaps, initial_state, wear_shares
 from models.beam.structure.modal import Array, beams
 from models.beam.structure.propagation import Propagator, System
 from models.beam.structure.random_load import has_band
@@ -106,7 +106,7 @@ def _simulate_group(
     work, error = settled.work.copy(), settled.error.copy()
     add_step_error(propagator, system, state, gaps, settled)
     add_neighbour_error(propagator, system, begin, gaps, settled)
-    share = _wear_shares(p)
+    share = wear_shares(p)
     growths = np.asarray(settings.depths) / p.initial_gap[:, None]
     lives = Lives.nothing(*growths.shape)
     known = np.isfinite(settled.work).all(axis=1)
@@ -124,11 +124,6 @@ def _simulate_group(
         for field, some in zip(lives, part, strict=True):
             field[rows] = some
     return settled, lives
-
-
-def _wear_shares(p: Rows) -> NDArray[np.float64]:
-    """Return the wear coefficient of each site over that of the left, shape (n, 2)."""
-    return np.stack([np.ones_like(p.initial_gap), p.wear_coefficient_ratio], axis=1)
 
 
 def _take(s: Simulated, rows: NDArray[np.intp]) -> Simulated:
@@ -156,7 +151,7 @@ def _in_units(
     error = np.where(reached, error, np.nan)
 
     work = s.response.work
-    fastest = (work * _wear_shares(p)).max(axis=1) * wear_rate * p.forcing_frequency
+    fastest = (work * wear_shares(p)).max(axis=1) * wear_rate * p.forcing_frequency
     depths = np.asarray(settings.depths)
     with np.errstate(divide="ignore"):
         linear = depths / (fastest * p.initial_gap)[:, None]

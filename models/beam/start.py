@@ -1,4 +1,4 @@
-"""The start of a beam: its propagator, gaps and state."""
+"""The start of a beam: its propagator, gaps, shares of wear and state."""
 
 import numpy as np
 
@@ -22,8 +22,14 @@ def one_system(beams: Beams, settings: Settings) -> tuple[Propagator, System]:
 
 
 def initial_gaps(p: Rows) -> Array:
-    """Return the initial right and left gaps, in units of their mean X0, shape (n, 2)."""
-    return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
+    """Return the initial right and left gaps, in units of their mean X0, shape (n, 2) or (2,)."""
+    return np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=-1)
+
+
+def wear_shares(p: Rows) -> Array:
+    """Return the wear coefficient of each site over that of the right, shape (n, 2) or (2,)."""
+    ratio = p.wear_coefficient_ratio
+    return np.stack([np.ones_like(ratio, float), ratio], axis=-1)
 
 
 def initial_state(propagator: Propagator, system: System, p: Rows) -> Array:

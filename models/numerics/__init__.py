@@ -1,1 +1,26 @@
-"""Numerical methods that machines share; nothing here depends on a machine."""
+"""Numerical methods that machines share; nothing here depends on a machine.
+
+Reading order; a module imports only those above it:
+
+    propagator      the interface of everything that advances machines in time
+    cache           where compiled code is kept
+    jit             how kernels are compiled
+    fma             fused multiply-add where the source says so
+    blocks          lanes: systems that advance together, and their memory
+    sincos          sine and cosine without branches
+    elementary      elementary functions of arrays, with the same bits on every processor
+    linear          many small linear systems
+    symmetric       eigenvalues of many symmetric matrices
+    multipliers     the largest multiplier of many linear maps
+    exponents       Lyapunov exponents
+    batch_means     time means with their errors
+    events          event location within a step
+    tableaux        coefficients of the Runge-Kutta methods
+    tsit5           order 5, many systems, fixed steps
+    nystrom         any tableau for q'' = f(q, q'), many systems, fixed steps
+    dop8            order 8, many systems, with an error estimate
+    dop853_step     order 8(5,3), one system: a step
+    dop853          the same over any time, through guarded modes
+    newton          damped Newton's method
+    continuation    branches of solutions, through folds
+"""

@@ -8,11 +8,10 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from models.numerics.blocks import LANES
+from models.numerics.blocks import LANES, layout
 from models.numerics.fma import fma
 from models.numerics.jit import lean
 from models.numerics.tableaux import DORMAND_PRINCE_8, ERROR_3, ERROR_5
-from models.numerics.tsit5 import Layout
 
 STAGES = 12
 
@@ -45,15 +44,9 @@ WEIGHTS = DORMAND_PRINCE_8.b
 """Of the stages in the new state."""
 
 
-def layout(quantities: int) -> Layout:
-    """Return the layout for states of so many quantities; see `models.numerics.tsit5.Layout`."""
-    whole = quantities * LANES
-    return Layout(0, whole, 2 * whole, (2 + STAGES) * whole)
-
-
 def combiner(quantities: int) -> Callable[[int, Any], None]:
     """Return the kernel that prepares the next stage; see `models.numerics.tsit5.combiner`."""
-    y, out, k, _ = layout(quantities)
+    y, out, k, _ = layout(quantities, STAGES)
     n = quantities * LANES
     k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11, k12 = (k + i * n for i in range(STAGES))
 
@@ -136,7 +129,7 @@ def estimator(quantities: int, measured: int) -> Callable[[Any, Any, Any], None]
         the measured quantities, each times its entry of share; error has room for (1 + 2 measured)
         LANES numbers.
     """
-    _, _, k, _ = layout(quantities)
+    _, _, k, _ = layout(quantities, STAGES)
     n = quantities * LANES
     k1 = k
     k6, k7, k8, k9, k10, k11, k12 = (k + i * n for i in range(5, STAGES))

@@ -1,9 +1,9 @@
 """The interface of everything that advances machines in time.
 
 A `Propagator` advances many machines at once: `models.beam.lanes`, `models.beam.exact`,
-`models.vibrator.lanes`, `models.mole.lanes`. A `Yardstick` follows one machine to any tolerance:
-`models.vibrator.exact`, `models.mole.exact`. Any package or module with these functions is one.
-`tests/models/test_propagators.py` checks what is stated here for all of them.
+`models.vibrator.lanes`, `models.mole.lanes`. A `ReferencePropagator` follows one machine to any
+tolerance: `models.vibrator.exact`, `models.mole.exact`. Any package or module with these functions
+is one. `tests/models/test_propagators.py` checks what is stated here for all of them.
 """
 
 from collections.abc import Iterator
@@ -82,7 +82,7 @@ class Propagator(Protocol):
 
 
 @runtime_checkable
-class Yardstick(Protocol):
+class ReferencePropagator(Protocol):
     """Follows one machine over any time, with an error that shrinks with the tolerance."""
 
     def start(self, params: Any, system: Any, /) -> Any:

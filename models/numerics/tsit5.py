@@ -5,9 +5,9 @@ known to the compiler: otherwise a sum over seven arrays is not vectorised.
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
-from models.numerics.blocks import LANES
+from models.numerics.blocks import LANES, layout
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
 from models.numerics.tableaux import TSITOURAS_5
@@ -17,28 +17,6 @@ STAGES = 6
 _, (_A21,), (_A31, _A32), (_A41, _A42, _A43), (_A51, _A52, _A53, _A54), _LAST = TSITOURAS_5.a
 _A61, _A62, _A63, _A64, _A65 = _LAST
 _B1, _B2, _B3, _B4, _B5, _B6 = TSITOURAS_5.b
-
-
-class Layout(NamedTuple):
-    """Layout of a block of lanes; the quantities of one lane are LANES apart.
-
-    Attributes
-    ----------
-    state, argument, slopes, size : int
-        Offsets of the state, the argument of the next stage (after the last stage: the new state)
-        and the slopes of the stages, times the step; and the total length.
-    """
-
-    state: int
-    argument: int
-    slopes: int
-    size: int
-
-
-def layout(quantities: int) -> Layout:
-    """Return the layout for states of this many quantities."""
-    whole = quantities * LANES
-    return Layout(0, whole, 2 * whole, (2 + STAGES) * whole)
 
 
 def combiner(quantities: int) -> Callable[[int, Any], None]:
@@ -54,7 +32,7 @@ def combiner(quantities: int) -> Callable[[int, Any], None]:
     kernel
         ``combine(stage, block)``, given the slopes of the first `stage` stages.
     """
-    y, out, k_1, _ = layout(quantities)
+    y, out, k_1, _ = layout(quantities, STAGES)
     whole = quantities * LANES
     k_2, k_3, k_4, k_5, k_6 = (k_1 + i * whole for i in range(1, STAGES))
 

@@ -10,8 +10,10 @@ from typing import NamedTuple
 
 import command
 import pytest
+from faulty_studies import FAULTY
 
 from uq.store.folder import history
+from uq.study.definition import load_study
 
 PATIENCE = 180.0
 """How long a busy machine may take for what should take a moment [s]."""
@@ -194,6 +196,21 @@ def study(write_study):
     return write_study(
         model="patient", uncertain=("x1", "x2"), samples=1500, more="[analysis]\nmax_failed = 1.0"
     )
+
+
+@pytest.fixture
+def study_of(write_study):
+    """Return a function that writes a study of a faulty model and loads it."""
+
+    def make(model=FAULTY, samples=120, **settings):
+        text = "\n".join(f"{key} = {value!r}" for key, value in settings.items())
+        name = "linear" if model == "linear" else "faulty"
+        law = 'distribution = "uniform", lower = 0.0, upper = 1.0'
+        more = f"[settings]\n{text}"
+        path = write_study(model=name, uncertain=("x1",), samples=samples, law=law, more=more)
+        return load_study(path, None if model == "linear" else model)
+
+    return make
 
 
 @pytest.fixture

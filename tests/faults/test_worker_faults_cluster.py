@@ -10,14 +10,11 @@ import time
 import dask
 import psutil
 import pytest
+from faulty_studies import PATIENCE, computed_here
 from in_memory import compute
 
 from uq.errors import InputError, RunError
 from uq.running import remote_cluster, runner
-from uq.study.definition import load_study
-
-PATIENCE = 60.0
-FAULTY = "faulty_models:FAULTY"
 
 
 class Cluster:
@@ -89,11 +86,8 @@ def start(folder):
 
 
 @pytest.fixture
-def study(write_study):
-    law = 'distribution = "uniform", lower = 0.0, upper = 1.0'
-    more = "[settings]\nseconds = 0.05"
-    path = write_study(model="faulty", uncertain=("x1",), samples=100, law=law, more=more)
-    return load_study(path, FAULTY)
+def study(study_of):
+    return study_of(seconds=0.05, samples=100)
 
 
 def patiently(address, *arguments, call=compute, **options):
@@ -126,7 +120,7 @@ def test_workers_come_and_go(start, study, injected):
 
     ds = patiently(there.address, study, chunk_rows=2, progress=change)
     injected("worker joins or leaves a cluster", 2)
-    assert ds.identical(compute(study, workers=0))
+    assert ds.identical(computed_here(study))
     assert there.scheduler.poll() is None
 
 
@@ -138,13 +132,13 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, i
         if progress.done > 20:
             there.end(there.scheduler)
 
-    with pytest.raises(RunError, match=rf"^--scheduler {there.address}: the scheduler is gone$"):
+    with pytest.raises(RunError, match=rf"^scheduler {there.address}: the scheduler is gone$"):
         patiently(there.address, study, "out.nc", call=runner.run, chunk_rows=2, progress=kill)
     injected("scheduler killed")
     reports = []
     ds = runner.run(study, "out.nc", workers=0, progress=reports.append)
     assert reports[0].found > 20
-    assert ds.identical(compute(study, workers=0))
+    assert ds.identical(computed_here(study))
 
 
 def test_a_cluster_without_workers_ends_the_run(start, study, monkeypatch, injected):
@@ -181,10 +175,10 @@ def test_certificates_are_used_and_demanded(start, study, folder):
     there = start(protocol="tls", options=files)
     with dask.config.set(tls(certificate, certificate, key)):
         ds = patiently(there.address, study, chunk_rows=10)
-    assert ds.identical(compute(study, workers=0))
-    with pytest.raises(InputError, match=f"^--scheduler {there.address}: .* certificates: set"):
+    assert ds.identical(computed_here(study))
+    with pytest.raises(InputError, match=f"^scheduler {there.address}: .* certificates: set"):
         compute(study, scheduler=there.address)
-    # Somebody with another certificate is a stranger.
+    # Somebody with another certificate is refused.
     with (
         dask.config.set(tls(certificate, *self_signed(folder / "theirs"))),
         pytest.raises(InputError),

@@ -1,4 +1,4 @@
-"""Every propagator and every yardstick of the machines, with what each needs to be called alike."""
+"""Every propagator of the machines, with what each needs to be called alike."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -158,9 +158,9 @@ CARRIED = {
 
 
 class Followed(NamedTuple):
-    """A yardstick and one machine; `clock` and `numbers` read time and components off a state."""
+    """A reference propagator and a machine; `clock` and `numbers` read time and components."""
 
-    yardstick: Any
+    propagator: Any
     params: Any
     system: Any
     scales: np.ndarray
@@ -171,7 +171,7 @@ class Followed(NamedTuple):
     def propagate(self, state, seconds, tolerance=1e-9, times=()):
         at = self.clock(state)
         times = at + np.asarray(times, float)
-        return self.yardstick.propagate(self.system, state, at + seconds, tolerance, times=times)
+        return self.propagator.propagate(self.system, state, at + seconds, tolerance, times=times)
 
 
 def followed_mole():

@@ -6,7 +6,7 @@ from propagators import CARRIED, FOLLOWED, N
 
 from models import beam, mole, vibrator
 from models.numerics.dop853 import REACHED_END
-from models.numerics.propagator import Propagator, Yardstick
+from models.numerics.propagator import Propagator, ReferencePropagator
 
 PERIODS = 6
 
@@ -117,12 +117,12 @@ def apart(followed, one, other):
     return np.abs((followed.numbers(one) - followed.numbers(other)) / followed.scales).max()
 
 
-def test_it_has_the_functions_of_a_yardstick(followed):
-    assert isinstance(followed.yardstick, Yardstick)
+def test_it_has_the_functions_of_a_reference_propagator(followed):
+    assert isinstance(followed.propagator, ReferencePropagator)
 
 
 def test_what_is_followed_is_left_as_it_is_and_goes_the_same_way_again(followed):
-    state, again = (followed.yardstick.start(followed.params, followed.system) for _ in range(2))
+    state, again = (followed.propagator.start(followed.params, followed.system) for _ in range(2))
     assert np.array_equal(followed.numbers(state), followed.numbers(again))
     motion = followed.propagate(state, followed.seconds)
     assert motion.status == REACHED_END
@@ -133,7 +133,7 @@ def test_what_is_followed_is_left_as_it_is_and_goes_the_same_way_again(followed)
 
 
 def test_it_goes_on_as_if_it_had_never_stopped_and_samples_the_way(followed):
-    start = followed.yardstick.start(followed.params, followed.system)
+    start = followed.propagator.start(followed.params, followed.system)
     stops = followed.seconds * np.array([0.3, 0.77, 1.0])
     whole = followed.propagate(start, followed.seconds, 1e-11, stops)
     state, begin = start, 0.0
@@ -147,7 +147,7 @@ def test_it_goes_on_as_if_it_had_never_stopped_and_samples_the_way(followed):
 
 
 def test_its_error_shrinks_with_the_tolerance(followed):
-    start = followed.yardstick.start(followed.params, followed.system)
+    start = followed.propagator.start(followed.params, followed.system)
     known, *others = (
         followed.propagate(start, followed.seconds, tolerance).state
         for tolerance in (1e-13, 1e-9, 1e-6)

@@ -1,14 +1,9 @@
-"""Models for the tests of the platform: slow ones, broken ones, one of every kind of output."""
+"""Models for the tests of the platform: one output of every kind, cheap twins, noise, sums."""
 
 import math
-import os
-import time
-import zlib
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Annotated, NamedTuple
 
-import numba
 import numpy as np
 
 from uq.contract import Model, Output, Parameter, Setting, Status, Trajectory
@@ -72,7 +67,8 @@ KINDS = Model(
 )
 
 
-def _simple(name, batch, **more):
+def simple(name, batch, **more):
+    """Return a model of two inputs, with one output ``y`` unless other outputs are given."""
     declared = {
         "title": "For a test",
         "version": "1",
@@ -87,116 +83,12 @@ def ok(n):
     return np.zeros(n, dtype=np.int8)
 
 
-def _mark():
-    """Tell whoever watches that a row is being computed."""
-    if place := os.environ.get("UQ_TEST_MARK"):
-        Path(place).touch()
-
-
-def _sleep(x, seed, settings):
-    _mark()
-    time.sleep(settings.seconds * len(x))
+def _plain(x, seed, settings):
     return {"y": x[:, 0].copy()}, ok(len(x))
 
 
-SLEEPING = _simple("sleeping", _sleep)
-
-
-@numba.njit(nogil=True)
-def _count(steps):
-    z = np.uint64(1)
-    for _ in range(steps):
-        z ^= z << np.uint64(13)
-        z ^= z >> np.uint64(7)
-        z ^= z << np.uint64(17)
-    return z
-
-
-def _spin(x, seed, settings):
-    _mark()
-    # One kernel call that does not return to Python: about a second per 4e8 steps.
-    z = _count(int(settings.seconds * 4e8) * len(x))
-    return {"y": x[:, 0] + 0.0 * float(z)}, ok(len(x))
-
-
-SPINNING = _simple("spinning", _spin)
-
-
-def _compile(x, seed, settings):
-    _mark()
-    lines = [f"    z += math.sin(z * {i}.5) + math.exp(-z / {i + 1})" for i in range(3000)]
-    names = {}
-    exec("\n".join(["def f(z):", *lines, "    return z"]), {"math": math}, names)
-    return {"y": x[:, 0] + 0.0 * numba.njit(names["f"])(1.0)}, ok(len(x))
-
-
-COMPILING = _simple("compiling", _compile)
-"""Spends half a minute or more in the compiler."""
-
-
-def _process(x, seed, settings):
-    time.sleep(settings.seconds * len(x))
-    return {"y": np.full(len(x), float(os.getpid()))}, ok(len(x))
-
-
-PROCESS = _simple("process", _process)
-"""Says which process computed a row."""
-
-VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "UQ_TEST")
-
-
-def _environment(x, seed, settings):
-    import numba.core.codegen as codegen
-    from numba import config
-
-    here = [os.environ.get(name) for name in VARIABLES]
-    here += [config.CACHE_DIR, config.CPU_FEATURES or codegen.get_host_cpu_features()]
-    return {"y": np.full(len(x), float(hash_of(repr(here))))}, ok(len(x))
-
-
-def hash_of(text):
-    return zlib.crc32(text.encode())
-
-
-ENVIRONMENT = _simple("environment", _environment)
-"""Tells one environment from another."""
-
-
-def _dying(x, seed, settings):
-    if np.any(x[:, 0] > 0.8) and os.environ["UQ_TEST_SURVIVOR"] != str(os.getpid()):
-        os._exit(1)
-    return {"y": x[:, 0].copy()}, ok(len(x))
-
-
-DYING = _simple("dying", _dying)
-"""Kills its process at large x1, unless that is the survivor."""
-
-WRONG_NAME = _simple("wrong-name", lambda x, seed, settings: ({"z": x[:, 0]}, ok(len(x))))
-WRONG_DTYPE = _simple(
-    "wrong-dtype", lambda x, seed, settings: ({"y": x[:, 0].astype(np.float32)}, ok(len(x)))
-)
-WRONG_SHAPE = _simple("wrong-shape", lambda x, seed, settings: ({"y": x.copy()}, ok(len(x))))
-WRONG_STATUS = _simple(
-    "wrong-status", lambda x, seed, settings: ({"y": x[:, 0].copy()}, ok(len(x)) + np.int8(99))
-)
-NO_TUPLE = _simple("no-tuple", lambda x, seed, settings: {"y": x[:, 0].copy()})
-A_LIST = _simple("a-list", lambda x, seed, settings: ({"y": list(x[:, 0])}, ok(len(x))))
-WRONG_CATEGORY = replace(
-    _simple(
-        "wrong-category", lambda x, seed, settings: ({"y": ok(len(x)) + np.int8(2)}, ok(len(x)))
-    ),
-    outputs={"y": Output("1", "kind", kind="category", categories=("a", "b"))},
-)
-
-
-def _mutating(x, seed, settings):
-    y = x[:, 0].copy()
-    x[:] = -1.0
-    return {"y": y}, ok(len(x))
-
-
-MUTATING = _simple("mutating", _mutating)
-"""Writes into its input."""
+PLAIN = simple("plain", _plain)
+"""y = x1."""
 
 
 class Mounting(NamedTuple):
@@ -210,7 +102,7 @@ def _sag(x, seed, settings):
     return {"sag": 9.81 * x[:, 1] / x[:, 0]}, ok(len(x))
 
 
-MOUNTED = _simple(
+MOUNTED = simple(
     "mounted", _sag, parameters=Mounting, outputs={"sag": Output("m", "deflection of the mount")}
 )
 """Has a parameter that is infinite unless given."""
@@ -244,7 +136,7 @@ def _paired(x, seed, settings):
     return outputs, ok(len(x))
 
 
-PAIRED = _simple(
+PAIRED = simple(
     "paired",
     _paired,
     outputs={
@@ -272,7 +164,7 @@ def _series(x, seed, settings):
     return {"y": total + 0.3 * x[:, 1]}, ok(len(x))
 
 
-SERIES = _simple("series", _series, settings=Terms)
+SERIES = simple("series", _series, settings=Terms)
 """y = exp(x1) + 0.3 x2, or less than that with few terms."""
 
 
@@ -286,7 +178,7 @@ def _added(x, seed, settings):
     return {"y": x.sum(axis=1)}, ok(len(x))
 
 
-ADDED = _simple("added", _added, parameters=Summands)
+ADDED = simple("added", _added, parameters=Summands)
 """y = a + b + c."""
 
 
@@ -302,7 +194,7 @@ def _noisy(x, seed, settings):
     return {"y": x1 + noise, "crossed": x1 + 2 * x2 * noise}, ok(len(x))
 
 
-NOISY = _simple(
+NOISY = simple(
     "noisy",
     _noisy,
     outputs={
@@ -318,5 +210,5 @@ def _sometimes(x, seed, settings):
     return {"y": x[:, 0] + x[:, 1] * _noise(seed)}, ok(len(x))
 
 
-SOMETIMES = _simple("sometimes", _sometimes, random=True, random_unless={"x2": 0.0})
+SOMETIMES = simple("sometimes", _sometimes, random=True, random_unless={"x2": 0.0})
 """Depends on its seed unless x2 is 0."""

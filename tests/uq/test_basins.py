@@ -8,6 +8,7 @@ from sys import executable
 from typing import Annotated, NamedTuple
 
 import numpy as np
+import process_models
 import pytest
 import sample_models
 import xarray as xr
@@ -155,14 +156,14 @@ def test_workers_give_the_bits_of_this_process():
 @pytest.mark.slow
 def test_workers_take_part():
     axes = {"x1": (0.0, 1.0, 12), "x2": (0.0, 1.0, 10)}
-    ds = uq.basins("sample_models:PROCESS", axes, settings={"seconds": 0.03}, workers=2)
+    ds = uq.basins("process_models:PROCESS", axes, settings={"seconds": 0.03}, workers=2)
     # The first rows are computed by a process that is no worker.
     assert len(set(ds["y"].values.ravel()) - {float(os.getpid())}) == 3
 
 
 def test_a_model_that_workers_would_not_find_runs_here(monkeypatch):
     monkeypatch.setattr("uq.running.executor.SHORT_SECONDS", 0.0)
-    ds = uq.basins(sample_models.PROCESS, {"x1": (0.0, 1.0, 64)}, settings={"seconds": 0.02})
+    ds = uq.basins(process_models.PROCESS, {"x1": (0.0, 1.0, 64)}, settings={"seconds": 0.02})
     assert set(ds["y"].values) == {float(os.getpid())}
 
 

@@ -10,9 +10,9 @@ import tempfile
 import time
 
 import numpy as np
+import process_models
 import psutil
 import pytest
-import sample_models
 from in_memory import compute
 
 import uq
@@ -62,7 +62,7 @@ def test_workers_give_the_bits_of_this_process(write_study, tidy, model, paramet
 
 @pytest.mark.slow
 def test_all_workers_work(write_study, tidy):
-    study = load_study(write_study(uncertain=("x1",), samples=400), "sample_models:PROCESS")
+    study = load_study(write_study(uncertain=("x1",), samples=400), "process_models:PROCESS")
     ds = compute(study, workers=2, chunk_rows=2)
     # The first rows are computed by a process that is no worker.
     assert len(set(ds["y"].values)) == 3
@@ -76,8 +76,8 @@ def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeyp
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", "1")
     # Numba has read its settings: what the environment says now must not reach the workers.
     monkeypatch.setenv("NUMBA_CPU_FEATURES", "+sse2")
-    monkeypatch.setattr(sample_models.numba.config, "CACHE_DIR", "some folder")
-    study = load_study(write_study(uncertain=("x1",)), "sample_models:ENVIRONMENT")
+    monkeypatch.setattr(process_models.numba.config, "CACHE_DIR", "some folder")
+    study = load_study(write_study(uncertain=("x1",)), "process_models:ENVIRONMENT")
     ds = compute(study, workers=1, chunk_rows=1)
     assert len(set(ds["y"].values)) == 1
     monkeypatch.setenv("UQ_TEST", "2")
@@ -94,7 +94,7 @@ def test_workers_are_started_for_longer_studies_only(
     monkeypatch.setattr("uq.running.executor.SHORT_SECONDS", seconds)
     monkeypatch.setattr(local_cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
-    ds = compute(load_study(path, "sample_models:PROCESS"))
+    ds = compute(load_study(path, "process_models:PROCESS"))
     assert len(set(ds["y"].values)) == processes
 
 
@@ -112,7 +112,7 @@ def test_a_worker_that_died_is_replaced(tidy):
 
 @pytest.mark.slow
 def test_an_existing_cluster_is_used(write_study, tidy):
-    study = load_study(write_study(uncertain=("x1",), samples=100), "sample_models:PROCESS")
+    study = load_study(write_study(uncertain=("x1",), samples=100), "process_models:PROCESS")
     with local_cluster.local_workers(1) as crew:
         crew.client.wait_for_workers(1)
         address = crew.client.scheduler.address
@@ -128,11 +128,11 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
     with monkeypatch.context() as hasty:
         hasty.setattr(remote_cluster, "_REMOTE_SECONDS", 1)
         for address in ("tcp://127.0.0.1:9", "nonsense://x"):
-            with pytest.raises(InputError, match=rf"^--scheduler {address}: cannot connect: .+$"):
+            with pytest.raises(InputError, match=rf"^scheduler {address}: cannot connect: .+$"):
                 compute(study, scheduler=address)
     with local_cluster.LocalCluster(n_workers=0, dashboard_address=None) as empty:
         address = empty.scheduler_address
-        with pytest.raises(InputError, match=rf"^--scheduler {address}: .* no workers; "):
+        with pytest.raises(InputError, match=rf"^scheduler {address}: .* no workers; "):
             compute(study, scheduler=address)
 
 
@@ -148,7 +148,7 @@ def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monk
     (line,) = refused.value.lines
     here = provenance.versions()
     assert re.fullmatch(
-        rf"--scheduler {address}: worker tcp://\S+ has Python {here['Python']}, numpy "
+        rf"scheduler {address}: worker tcp://\S+ has Python {here['Python']}, numpy "
         rf"{here['numpy']}; this process has Python 2.7, numpy 1.0: install the same on both",
         line,
     )

@@ -58,7 +58,7 @@ def test_compilation_is_heard_of(program):
 @pytest.mark.slow
 def test_a_terminal_shows_that_a_model_compiles(folder):
     ours, theirs = pty.openpty()
-    command = [COMMAND, "simulate", "sample_models:SPINNING", "--json"]
+    command = [COMMAND, "simulate", "process_models:SPINNING", "--json"]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
     ended = subprocess.run(command, stdout=subprocess.PIPE, stderr=theirs, env=environment)
     os.close(theirs)

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 import sample_models
+import wrong_models
 
 from models.analytic import EXPONENTIAL_WEAR, LINEAR
 from uq.contract import Output, Status
@@ -125,7 +126,7 @@ def test_what_is_not_a_number_has_one_pattern_of_bits():
     ],
 )
 def test_a_model_that_breaks_its_contract_is_refused(model, words):
-    model = getattr(sample_models, model)
+    model = getattr(wrong_models, model)
     x = np.full((4, 2), 0.5)
     with pytest.raises(KernelError) as refused:
         evaluate(model, sample_models.Settings(), x, np.zeros(4, np.uint64))
@@ -134,7 +135,7 @@ def test_a_model_that_breaks_its_contract_is_refused(model, words):
 
 def test_a_model_cannot_write_into_the_design():
     x = np.full((4, 2), 0.5)
-    chunk = evaluate(sample_models.MUTATING, None, x, np.zeros(4, np.uint64))
+    chunk = evaluate(wrong_models.MUTATING, None, x, np.zeros(4, np.uint64))
     assert np.all(x == 0.5)
     assert np.all(chunk.columns["y"] == 0.5)
 

@@ -36,7 +36,7 @@ def started(write_study, folder):
         path = write_study(
             uncertain=("x1",), samples=10_000, more=f"[settings]\nseconds = {seconds}"
         )
-        command = [COMMAND, "run", path, "--model", f"sample_models:{model}", *options]
+        command = [COMMAND, "run", path, "--model", f"process_models:{model}", *options]
         processes.append(
             subprocess.Popen(
                 [sys.executable, "-c", program] if program else command,
@@ -179,7 +179,7 @@ def test_in_a_script_it_is_the_exception_of_python(started):
         "import signal, uq\n"
         # As in a terminal, also where the tests run in the background and ignore it.
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "study = uq.load_study('small.toml', 'sample_models:SLEEPING')\n"
+        "study = uq.load_study('small.toml', 'process_models:SLEEPING')\n"
         "try:\n"
         "    uq.run(study, workers=2, chunk_rows=4)\n"
         "except KeyboardInterrupt:\n"

@@ -18,7 +18,7 @@ MISTAKES = {
     "run absent.toml": "absent.toml: no such file",
     "run .": ".: is a directory",
     "run broken.toml": "broken.toml: not valid TOML: ",
-    "run small.toml --model nowhere:M": "--model nowhere:M cannot be imported",
+    "run small.toml --model nowhere:M": "model 'nowhere:M' cannot be imported",
     "run small.toml -o folder": "folder: is a folder; give the name of a file in it",
     "run small.toml -o /proc/x.nc": "/proc/x.nc: cannot write in /proc: ",
     "run small.toml -o broken.toml": "broken.toml: not a readable netCDF file; ",
@@ -78,7 +78,7 @@ def test_a_mistake_is_one_line_and_leaves_nothing_behind(uq, write_study, folder
 
 def test_a_wrong_model_of_ones_own_is_one_line(uq, write_study, folder):
     path = write_study(model="x", uncertain=("x1",))
-    ended = uq("run", path, "--model", "sample_models:WRONG_DTYPE")
+    ended = uq("run", path, "--model", "wrong_models:WRONG_DTYPE")
     assert ended.code == 2
     assert ended.err == "model 'wrong-dtype': 'y' is float32, expected float64\n"
     assert everything(folder) == ["small.toml"]

@@ -20,7 +20,7 @@ def test_the_cost_of_rows_that_sleep(write_study, monkeypatch):
     monkeypatch.setattr(planning, "PILOT_SECONDS", 0.5)
     more = "[settings]\nseconds = 0.01"
     study = load_study(
-        write_study(uncertain=("x1",), samples=3000, more=more), "sample_models:SLEEPING"
+        write_study(uncertain=("x1",), samples=3000, more=more), "process_models:SLEEPING"
     )
     cost, pilot = planning.pilot(study, workers=2)
     assert cost.rows == 3000

@@ -133,7 +133,7 @@ def test_curves_of_one_seed_give_no_plain_statistics(uq, folder):
     assert found["notes"][0].startswith(f"no statistics: the rows of a 'fast' design {reason}")
     with pytest.raises(InputError, match=f"the rows of the first, a 'fast' design, {reason}"):
         compare(ds, ds)
-    plain = summarised(computed(noisy("fast", 65, 8, model="SLEEPING")))
+    plain = summarised(computed(noisy("fast", 65, 8, model="PLAIN")))
     assert plain["rows_used"] == 1040 and plain["outputs"]["y"]["mean"] == pytest.approx(0.5, 0.1)
     (folder / "noisy.toml").write_text(noisy("fast", 65, 2).text)
     assert (

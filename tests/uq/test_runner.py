@@ -89,7 +89,7 @@ def test_chunks_are_whole_groups_and_full_blocks(write_study):
 
 def test_chunks_fill_the_blocks_of_a_kernel_unless_a_size_is_asked_for(write_study):
     path = write_study(uncertain=("x1",), samples=2000, more="[settings]\nseconds = 0.001")
-    study = load_study(path, "sample_models:SLEEPING")
+    study = load_study(path, "process_models:SLEEPING")
     blocked = replace(study, model=replace(study.model, block=96))
     seen = []
     compute(blocked, workers=0, progress=seen.append)
@@ -169,7 +169,7 @@ def test_the_output_is_checked_before_anything_is_computed(write_study, folder):
 
 
 def test_a_model_wrong_for_every_row_is_refused(write_study):
-    study = load_study(write_study(model="x", uncertain=("x1",)), "sample_models:WRONG_SHAPE")
+    study = load_study(write_study(model="x", uncertain=("x1",)), "wrong_models:WRONG_SHAPE")
     with pytest.raises(KernelError) as refused:
         compute(study, workers=0)
     assert refused.value.lines == (

@@ -72,7 +72,7 @@ def test_the_points_of_a_curve_share_a_seed():
 @pytest.mark.parametrize("method", DRAWN)
 def test_deterministic_models_keep_their_rows_their_seeds_and_their_identity(method):
     samples = max(16, DESIGNS[method].least)
-    random, plain = (noisy(method, samples, 2, model) for model in ("NOISY", "SLEEPING"))
+    random, plain = (noisy(method, samples, 2, model) for model in ("NOISY", "PLAIN"))
     one, other = (row_block(study, 0, rows(study)) for study in (random, plain))
     assert len(np.unique(other.seed)) == len(other.seed)
     grouped = method in GROUPED
@@ -90,7 +90,7 @@ def with_name(study, other):
 
 def test_plain_rows_of_a_random_model_are_what_they_were():
     # A and B, of which plain statistics are made, keep their seeds.
-    random, plain = (noisy(samples=16, model=model) for model in ("NOISY", "SLEEPING"))
+    random, plain = (noisy(samples=16, model=model) for model in ("NOISY", "PLAIN"))
     one, other = (row_block(study, 0, rows(study)) for study in (random, plain))
     for label, block in (("A", 0), ("B", 3)):
         mine, old = (own.seed[own.block == block] for own in (one, other))

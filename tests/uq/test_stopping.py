@@ -150,7 +150,7 @@ def test_a_new_description_changes_no_number_of_rows(folder):
 
 
 def test_the_budget_is_that_of_the_file(folder):
-    with pytest.raises(InputError, match=r"--samples 100: .* at most .* its file, 4096"):
+    with pytest.raises(InputError, match=r"samples = 100: .* at most .* its file, 4096"):
         runner.run(study(0.2).with_samples(100), "out.nc")
     assert list(folder.iterdir()) == []
 

@@ -124,8 +124,8 @@ def test_rbd_fast_gives_no_index_of_an_input_with_equal_values():
     assert np.isnan(found["x2"])
     assert found["x1"] == pytest.approx(1 / 12 / y.var(), abs=0.06)
     assert indices_.notes == (
-        "rbd-fast sorts the rows by each input, so it accepts none with many equal values: x2; use"
-        " delta, pawn or quantile",
+        "the method sorts the rows by each input, so it accepts none with many equal values: x2;"
+        " use delta, pawn or quantile",
     )
     with pytest.raises(RefusedError, match="it accepts none with many equal values: x2"):
         of_plain_sample("rbd-fast", {"x2": binary}, y, QUANTILES)

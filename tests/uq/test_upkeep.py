@@ -55,7 +55,7 @@ def test_what_cannot_be_extended_says_why(uq, write_study):
         "number; run it again, into another output or with --fresh\n"
     )
     fewer = uq("extend", "out.nc", "--samples", 32)
-    assert fewer.err == "--samples 32: out.nc has 64 already; ask for more\n"
+    assert fewer.err == "samples = 32: out.nc has 64 already; ask for more\n"
     assert uq("extend", "none.nc", "--samples", 32).err.startswith("none.nc: no such file; ")
     assert Path("out.nc").read_bytes() == before
 
@@ -126,8 +126,8 @@ def test_failed_rows_run_again_as_they_were_change_no_bit(uq, result):
     ("arguments", "words"),
     [
         ((), "uq rerun: give --failed, the rows to compute again\n"),
-        (("--failed", "--setting", "fail_abov=1"), "--setting fail_abov = 1: no such setting of"),
-        (("--failed", "--setting", "fail_how=no"), "--setting fail_how = 'no': must be one of"),
+        (("--failed", "--setting", "fail_abov=1"), "setting fail_abov = 1: no such setting of"),
+        (("--failed", "--setting", "fail_how=no"), "setting fail_how = 'no': must be one of"),
     ],
 )
 def test_a_rerun_that_makes_no_sense_is_refused(uq, result, arguments, words):

@@ -6,7 +6,9 @@ from math import isfinite
 from typing import Any
 
 from uq import json_form
-from uq.analysis.compared import Compared, ComparedOutput, Comparison, OnlyChange, Side
+from uq.analysis.comparison import Comparison, Side
+from uq.analysis.differences import Compared, ComparedOutput
+from uq.analysis.input_changes import OnlyChange, Spread
 from uq.analysis.life_fit import Fit
 from uq.analysis.statistics.statistic import Reader
 from uq.analysis.statistics.table import EMPTY, JSON_ORDER
@@ -19,18 +21,13 @@ def summary_json(summary: Summary) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``samples`` and ``status`` count all rows. Everything else is about the ``rows_used``, the
+        ``samples`` and ``status`` count all rows. Everything else describes the ``rows_used``, the
         independent ones: ``regime`` (label -> count and share with interval), ``outputs`` (name of
-        element -> mean, sd, their intervals, ``tail``: the shape k of its heavier tail with its
-        interval, the number of values it was fitted to and their side, ``reasons``: why the tail
-        rules out any of these four, quantiles, tolerance, thresholds, ``b_lives`` of lifetimes,
-        ``between_regimes``: the share of the variance of the number named ``of``, itself or the
-        logarithm or rank of a lifetime, that lies between them,
-        ``accuracy``: how many rows state an error beyond the accuracy asked for, if one was,
-        counts of never, censored, undefined and failed rows) and ``notes``, sentences on what is
-        missing. A number that does not exist or is not finite is None; beside it ``never``,
-        ``low_censored`` and the like state why. Where rows failed, each probability, quantile and
-        B-life has ``failed_low`` and ``failed_high`` (`uq.analysis.failed_rows`).
+        element -> its statistics, each under its key) and ``notes``, sentences on what is missing.
+        A number that does not exist or is not finite is None; beside it ``never``,
+        ``low_censored`` and the like state why. Where rows failed, ``failed_low`` and
+        ``failed_high`` bound an estimate (`uq.analysis.failed_rows`). ``fits``, if asked for: the
+        laws fitted to a lifetime.
     """
     return {
         "samples": summary.samples,
@@ -47,7 +44,7 @@ def _described(one: Described) -> dict[str, Any]:
     for name in dict.fromkeys((*JSON_ORDER, *one.parts)):
         statistics = [s for s in one.parts[name] if s.is_read_by(Reader.JSON)]
         if name in EMPTY:
-            found[name] = dict(EMPTY[name] or {}) if statistics else EMPTY[name]
+            found[name] = {} if statistics else EMPTY[name]
         for (parent, _), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.write)):
             members = list(group)
             _put(found, parent, members[0].kind.write(members))
@@ -61,15 +58,11 @@ def _fit(fit: Fit) -> dict[str, Any]:
         found["p_value"] = fit.p_value
     if fit.refused:
         return found | {"refused": fit.refused}
-    parameters = {name: json_form.numbers(one) for name, one in fit.parameters.items()}
-    return (
-        found
-        | {"parameters": parameters, "assumes": fit.assumes}
-        | {
-            name: json_form.numbers(one) | {"extrapolated": name in fit.extrapolated}
-            for name, one in fit.b_lives.items()
-        }
-    )
+    found["parameters"] = {name: json_form.numbers(one) for name, one in fit.parameters.items()}
+    found["assumes"] = fit.assumes
+    for name, one in fit.b_lives.items():
+        found[name] = json_form.numbers(one) | {"extrapolated": name in fit.extrapolated}
+    return found
 
 
 def _put(found: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> None:
@@ -88,10 +81,10 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
         and b of each entry that differs. ``only``: the one input that differs, if it is the only
         thing: name, units, and mean and sd of each; else None. ``pairing``: ``rows``,
         ``replicates``, ``strangers`` or ``unknown``. ``regime``: label -> estimate; ``outputs``:
-        element -> its statistics under their keys in a summary, where one is ``a`` and ``b``, as
+        element -> its statistics under their keys in a summary, each with ``a`` and ``b``, as
         `summary_json` has them, and ``difference``: ``value``, ``low``, ``high`` of b less a, and
-        ``identical`` where the rows are paired and agree: then there is no
-        interval; that of sd also has ``ratio``. ``notes``: sentences.
+        ``identical`` where the rows are paired and agree: then there is no interval. A scale also
+        has ``ratio``. ``notes``: sentences.
     """
     return {
         "a": _about(comparison.first),
@@ -109,15 +102,15 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
 
 
 def _about(one: Side) -> dict[str, Any]:
-    said = one.summary
-    counts = {"samples": said.samples, "rows_used": said.rows_used, "status": said.status}
-    return {"title": one.title} | counts
+    facts = {name: getattr(one.summary, name) for name in ("samples", "rows_used", "status")}
+    return {"title": one.title} | facts
 
 
 def _only(one: OnlyChange) -> dict[str, Any]:
-    means, sds = (one.first.mean, one.second.mean), (one.first.sd, one.second.sd)
-    pairs = {"mean": dict(zip("ab", means, strict=True)), "sd": dict(zip("ab", sds, strict=True))}
-    return {"name": one.name, "units": one.units} | pairs
+    found = {
+        key: {"a": getattr(one.first, key), "b": getattr(one.second, key)} for key in Spread._fields
+    }
+    return {"name": one.name, "units": one.units} | found
 
 
 def _output(one: ComparedOutput) -> dict[str, Any]:

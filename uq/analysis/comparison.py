@@ -1,13 +1,13 @@
 """Two studies of one model: what was changed, and how their outputs differ."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.compared import Comparison, OnlyChange, Side
-from uq.analysis.differences import compared_output, compared_regimes
-from uq.analysis.input_changes import changes, only_change, spread
+from uq.analysis.differences import Compared, ComparedOutput, compared_output, compared_regimes
+from uq.analysis.input_changes import Change, OnlyChange, changes, only_change
 from uq.analysis.pairing import Pair
 from uq.analysis.summary import Summary, summarise
 from uq.errors import InputError
@@ -20,6 +20,42 @@ from uq.rows.elements import (
     why_no_statistics,
 )
 from uq.study.file import AnalysisTable
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of two results: its title, and a summary of what either study asks for."""
+
+    title: str
+    summary: Summary
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """The comparison of two results.
+
+    Attributes
+    ----------
+    first, second : Side
+    changed : list of Change
+        Differences between the studies.
+    only : OnlyChange, optional
+        The input that differs, if nothing else does.
+    pairing : str
+        ``rows``, ``replicates``, ``strangers`` or ``unknown``.
+    regimes : dict of str to Compared
+    outputs : dict of str to ComparedOutput
+    notes : list of str
+    """
+
+    first: Side
+    second: Side
+    changed: list[Change]
+    only: OnlyChange | None
+    pairing: str
+    regimes: Mapping[str, Compared]
+    outputs: Mapping[str, ComparedOutput]
+    notes: list[str]
 
 
 def compare(first: xr.Dataset, second: xr.Dataset) -> pd.DataFrame:
@@ -70,18 +106,18 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
     ]
     changed = changes(*results)
     return Comparison(
-        Side(str(first.attrs["title"]), found[0]),
-        Side(str(second.attrs["title"]), found[1]),
-        changed,
-        _only(results, only_change(changed)),
-        pair.kinship.name.lower().removesuffix("_imported"),
-        dict(compared_regimes(pair, found)),
-        {
+        first=Side(str(first.attrs["title"]), found[0]),
+        second=Side(str(second.attrs["title"]), found[1]),
+        changed=changed,
+        only=only_change(first, second, changed),
+        pairing=pair.kinship.name.lower().removesuffix("_imported"),
+        regimes=dict(compared_regimes(pair, found)),
+        outputs={
             name: compared_output(pair, [one[name] for one in elements], found)
             for name in elements[0]
             if name in elements[1]
         },
-        list(_notes(pair, found, elements)),
+        notes=list(_notes(pair, found, elements)),
     )
 
 
@@ -128,20 +164,12 @@ def _asked(analyses: list[AnalysisTable], outputs: list[str]) -> AnalysisTable:
     return AnalysisTable().model_copy(update=asked)
 
 
-def _only(results: tuple[xr.Dataset, ...], name: str | None) -> OnlyChange | None:
-    if name is None:
-        return None
-    units = str(results[0][name].attrs["units"])
-    return OnlyChange(name, units, *(spread(ds, name) for ds in results))
-
-
 def _notes(pair: Pair, found: list[Summary], elements: list[dict[str, Element]]) -> Iterator[str]:
     yield pair.kinship.value
     for which, one in zip("AB", found, strict=True):
         yield from (f"{which}: {note}" for note in one.notes)
     if any(one.most_failed for one in found):
         yield "Differences are between the rows that did not fail."
-    of_a, of_b = elements
-    for which, mine, other in (("A", of_a, of_b), ("B", of_b, of_a)):
+    for which, mine, other in zip("AB", elements, elements[::-1], strict=True):
         if alone := [name for name in mine if name not in other]:
             yield f"Only {which} has {', '.join(alone)}."

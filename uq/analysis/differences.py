@@ -1,19 +1,53 @@
 """Differences between the statistics of two results."""
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain
 from math import isnan
 
 from uq import two_samples
 from uq.analysis import estimators
-from uq.analysis.compared import Compared, ComparedOutput
 from uq.analysis.estimators import Sample
 from uq.analysis.pairing import Pair
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import Summary
-from uq.contract import Status
 from uq.estimate import NOTHING, Estimate
-from uq.rows.elements import Element, flags
+from uq.rows.elements import Element
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A statistic of two results.
+
+    Attributes
+    ----------
+    first, second : Statistic
+    difference : Estimate
+        The second less the first.
+    identical : bool
+        Whether the rows are paired and both rows of each pair agree: then there is no interval.
+    ratio : Estimate, optional
+        The second over the first, for a scale.
+    """
+
+    first: Statistic
+    second: Statistic
+    difference: Estimate
+    identical: bool = False
+    ratio: Estimate | None = None
+
+
+@dataclass(frozen=True)
+class ComparedOutput:
+    """An element of an output: name in the table of statistics -> what is compared of it."""
+
+    units: str
+    parts: Mapping[str, tuple[Compared, ...]]
+
+    @property
+    def statistics(self) -> tuple[Compared, ...]:
+        """All of them in order."""
+        return tuple(chain.from_iterable(self.parts.values()))
 
 
 def compared_regimes(pair: Pair, found: list[Summary]) -> Iterator[tuple[str, Compared]]:
@@ -21,20 +55,11 @@ def compared_regimes(pair: Pair, found: list[Summary]) -> Iterator[tuple[str, Co
     shares = [one.regimes for one in found]
     if not all(shares):
         return
-    codes = [rows["regime"].values for rows in pair.rows]
-    kept = [
-        (code >= 0) | (rows["status"].values == Status.OK)
-        for code, rows in zip(codes, pair.rows, strict=True)
-    ]
-    numbers = [{label: n for n, label in flags(rows["regime"])} for rows in pair.rows]
+    members = [estimators.in_regimes(rows) for rows in pair.rows]
     for label in shares[0]:
         if label in shares[1]:
-            samples = [
-                Sample(mask, (code == number[label]).astype(float))
-                for mask, code, number in zip(kept, codes, numbers, strict=True)
-            ]
-            both = [replace(one[label], estimator=estimators.share()) for one in shares]
-            yield label, _compared(pair, both, samples, samples)
+            samples = [one[label] for one in members]
+            yield label, _compared(pair, [one[label] for one in shares], samples, samples)
 
 
 def compared_output(pair: Pair, elements: list[Element], found: list[Summary]) -> ComparedOutput:

@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from uq import order_statistics
-from uq.rows.elements import Element, Floats, Mask
+from uq.contract import Status
+from uq.rows.elements import Element, Floats, Mask, flags
 
 
 class Sample(NamedTuple):
@@ -25,6 +27,17 @@ def with_value(element: Element) -> Sample:
 def whole(element: Element) -> Sample:
     """Return value and censoring of each row."""
     return Sample(element.present, np.column_stack([element.values, element.censored]))
+
+
+def in_regimes(rows: xr.Dataset) -> dict[str, Sample]:
+    """Return which rows are in each regime, of those that did not fail without one."""
+    codes = rows["regime"].values
+    kept = (codes >= 0) | (rows["status"].values == Status.OK)
+    return {
+        label: Sample(kept, (codes == code).astype(float))
+        for code, label in flags(rows["regime"])
+        if code >= 0
+    }
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from uq.literals import shown
-from uq.rows.elements import independent_rows, study_file_of
+from uq.rows.elements import Floats, independent_rows, study_file_of
 from uq.study.file import StudyFile, Tied
 from uq.wording import law
 
@@ -36,6 +36,15 @@ class Spread(NamedTuple):
     sd: float
 
 
+class OnlyChange(NamedTuple):
+    """The only input that differs between two studies, with its spread in each."""
+
+    name: str
+    units: str
+    first: Spread
+    second: Spread
+
+
 def changes(first: xr.Dataset, second: xr.Dataset) -> list[Change]:
     """Return all differences between two studies, apart from [analysis].
 
@@ -48,19 +57,22 @@ def changes(first: xr.Dataset, second: xr.Dataset) -> list[Change]:
     -------
     list of Change
     """
-    return [*_frame(first, second), *_inputs(first, second)]
+    sides = [(ds, study_file_of(ds)) for ds in (first, second)]
+    return [*_frame(sides), *_inputs(sides)]
 
 
-def _frame(first: xr.Dataset, second: xr.Dataset) -> Iterator[Change]:
-    studies = study_file_of(first), study_file_of(second)
-    frames = [dict(_entries(ds, study)) for ds, study in zip((first, second), studies, strict=True)]
+Side = tuple[xr.Dataset, StudyFile]
+
+
+def _frame(sides: list[Side]) -> Iterator[Change]:
+    frames = [dict(_entries(*side)) for side in sides]
     for place in dict.fromkeys((*frames[0], *frames[1])):
         one, other = (shown(f[place]) if place in f else "default" for f in frames)
         if one != other:
             yield Change(*place, one, other)
     ranks = [
         study.dependence.model_dump(exclude={"source"}) if study.dependence else None
-        for study in studies
+        for _, study in sides
     ]
     if ranks[0] != ranks[1]:
         told = (", ".join(one["parameters"]) if one else "none" for one in ranks)
@@ -76,14 +88,11 @@ def _entries(ds: xr.Dataset, study: StudyFile) -> Iterator[tuple[tuple[str, str]
         yield ("setting", name), value
 
 
-def _inputs(first: xr.Dataset, second: xr.Dataset) -> Iterator[Change]:
-    studies = study_file_of(first), study_file_of(second)
+def _inputs(sides: list[Side]) -> Iterator[Change]:
+    first, second = (ds for ds, _ in sides)
     for name, variable in first.data_vars.items():
         if variable.attrs["role"] in ("input", "fixed") and name in second:
-            one, other = (
-                _stated(ds, study, str(name))
-                for ds, study in zip((first, second), studies, strict=True)
-            )
+            one, other = (_stated(*side, str(name)) for side in sides)
             if one != other:
                 yield Change("input", str(name), one[0], other[0])
 
@@ -104,13 +113,15 @@ def _stated(ds: xr.Dataset, study: StudyFile, name: str) -> tuple[str, Any]:
     return told, entry.model_dump(exclude={"source", "file", "column"}, exclude_none=True)
 
 
-def spread(ds: xr.Dataset, name: str) -> Spread:
-    """Return how an input of a result scatters among its independent rows."""
-    values = independent_rows(ds)[name].values
-    return Spread(float(values.mean()), float(values.std(ddof=1)) if values.size > 1 else 0.0)
-
-
-def only_change(found: list[Change]) -> str | None:
-    """Return the only input in which two studies differ, if nothing but their design does, too."""
+def only_change(first: xr.Dataset, second: xr.Dataset, found: list[Change]) -> OnlyChange | None:
+    """Return the only input that differs, if nothing else but the design does."""
     decisive = [change for change in found if change.kind != "design"]
-    return decisive[0].name if [change.kind for change in decisive] == ["input"] else None
+    if [change.kind for change in decisive] != ["input"]:
+        return None
+    name = decisive[0].name
+    spreads = (_spread(independent_rows(ds)[name].values) for ds in (first, second))
+    return OnlyChange(name, str(first[name].attrs["units"]), *spreads)
+
+
+def _spread(values: Floats) -> Spread:
+    return Spread(float(values.mean()), float(values.std(ddof=1)) if values.size > 1 else 0.0)

@@ -114,7 +114,7 @@ def _variables(
 ) -> dict[str, Any]:
     """Return every variable of `survival` for one element, named and ordered as there."""
     plain = curve(element, time, replicate)
-    band_low, band_high = band(element, time) if replicate is None else _no_band(time)
+    band_low, band_high = _band(element, time, replicate)
     rows = int(element.present.sum())
     found = plain._asdict() | {"band_low": band_low, "band_high": band_high}
     found |= {"never": element.never.sum() / rows if rows else np.nan, "rows": rows}
@@ -148,11 +148,11 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
     return Curve(found.share, *interval)
 
 
-def band(element: Element, time: Floats) -> Ends:
-    """Return the simultaneous 95 % band of `survival` for one element of independent rows."""
+def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:
+    """Return the simultaneous 95 % band of `survival` for one element; NaN for replicates."""
     values, censored = element.at_least, element.censored[element.present]
-    if len(values) == 0:
-        return _no_band(time)
+    if len(values) == 0 or replicate is not None:
+        return np.full(len(time), np.nan), np.full(len(time), np.nan)
     found = outliving(values, censored, time, element.declared.never_known_at_once)
     among = found.among or found
     at_risk = found.ending * len(values) - np.searchsorted(np.sort(values), time)
@@ -189,7 +189,3 @@ def _greenwood(estimate: Outliving) -> Ends:
     ends = (np.where(few, *pair) for pair in zip(exact, (low, high), strict=True))
     low, high = (np.where(known, end, np.nan) for end in ends)
     return low, high
-
-
-def _no_band(time: Floats) -> Ends:
-    return np.full(len(time), np.nan), np.full(len(time), np.nan)

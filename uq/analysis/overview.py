@@ -23,15 +23,11 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        Index: name of the element. Columns: units, mean, sd and each quantile, with ``_low`` and
-        ``_high`` for the 95 % interval; ``tail_k``, the shape of the heavier tail (no variance
-        from 0.5 on, no mean from 1 on); tolerance bounds, where the study asks for them, with the
-        rows they need; counts of rows never, censored, undefined and failed, and, where an accuracy
-        was asked for, of those whose error is larger (``accuracy_missed``); ``B1``, ``B10`` and
-        ``B50`` of lifetimes; and for each threshold ``P(>t)`` and ``P(<t)`` with their intervals,
-        where it is one of the output's.
-        Where rows failed, ``_failed_low`` and ``_failed_high`` are the ends with these rows at best
-        and at worst. Infinity means never, NaN that there is no estimate.
+        Index: name of the element. Columns: ``units``, and every statistic under its own name, such
+        as ``mean``, ``q0.5``, ``B10`` or ``P(>t)``, with ``_low`` and ``_high`` for the 95 %
+        interval; ``docs/statistics.md`` explains each. Where rows failed, ``_failed_low`` and
+        ``_failed_high`` are the ends with these rows at best and at worst. Infinity means never,
+        NaN that there is no estimate.
 
     Examples
     --------

@@ -16,16 +16,10 @@ from uq import intervals, two_samples
 from uq.analysis.estimators import MEAN, SD, Estimator, Sample
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
-from uq.rows.elements import (
-    Floats,
-    are_independent,
-    independent_rows,
-    replicates_of,
-    study_file_of,
-)
+from uq.rows.elements import Floats, are_independent, independent_rows, replicates_of, study_file_of
 from uq.study.file import Tied
 
-_ROUNDING = 1e-6  # the root of what an interval that is a difference of two may lose
+_ROUNDING = 1e-6  # an interval so much narrower than the plain ones is zero but for rounding
 
 WORST = -1.0
 """The correlation at which a difference is least certain."""
@@ -185,33 +179,22 @@ class Pair:
         return 0.0 if self.kinship is Kinship.STRANGERS else WORST
 
     def _correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
-        if self.kinship is Kinship.REPLICATES:
-            return self._replicates_correlation(estimator, samples)
-        if self._shared is None:
-            return self.unpaired
-        pulls = []
-        for sample in samples:
-            pull = np.zeros(len(sample.numbers))
-            if sample.kept.any():
-                pull[sample.kept] = estimator.pull(sample.numbers[sample.kept])
-            pulls.append(pull)
-        return correlation(pulls[0], pulls[1], self._shared, estimator.is_share)
+        """Return that of the influences of paired rows, or of their means in paired replicates.
 
-    def _replicates_correlation(self, estimator: Estimator, samples: list[Sample]) -> float:
-        """Return the correlation of the mean influences of replicates; NaN where one has no rows.
-
-        Together with Woodruff's intervals this gives Student's t interval of the linearised
-        differences between replicates, whose own quantiles are poor estimates.
+        The second is NaN where a replicate has no rows. Together with Woodruff's intervals it gives
+        Student's t interval of the linearised differences between replicates, whose own quantiles
+        are poor estimates.
         """
-        pulls = []
-        for i, sample in enumerate(samples):
-            pull = sample._replace(numbers=np.zeros(len(sample.numbers)))
-            if sample.kept.any():
-                pull.numbers[sample.kept] = estimator.pull(sample.numbers[sample.kept])
-            pulls.append(self._by_replicate(MEAN, i, pull))
-        if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in pulls):
+        if self._shared is None and self.kinship is not Kinship.REPLICATES:
+            return self.unpaired
+        pulls = [_pull(estimator, sample) for sample in samples]
+        if self._shared is not None:
+            first, second = (pull.numbers for pull in pulls)
+            return correlation(first, second, self._shared, estimator.is_share)
+        means = [self._by_replicate(MEAN, i, pull) for i, pull in enumerate(pulls)]
+        if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in means):
             return np.nan
-        return float(np.asarray(np.corrcoef(pulls))[0, 1])
+        return float(np.asarray(np.corrcoef(means))[0, 1])
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
         of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])
@@ -222,6 +205,14 @@ class Pair:
             if len(values):
                 found[r] = estimator.of(values)
         return found
+
+
+def _pull(estimator: Estimator, sample: Sample) -> Sample:
+    """Return the influence of each row, 0 of those that take no part."""
+    pull = np.zeros(len(sample.numbers))
+    if sample.kept.any():
+        pull[sample.kept] = estimator.pull(sample.numbers[sample.kept])
+    return Sample(sample.kept, pull)
 
 
 def _newcombe(sample: Sample) -> Estimate:
@@ -236,9 +227,7 @@ def _newcombe(sample: Sample) -> Estimate:
 
 def _factor(value: float, above: Floats, below: Floats) -> Estimate:
     """Return a ratio with the interval from the logarithms of the replicates' ratios."""
-    if not (
-        value > 0 and (above > 0).all() and (below > 0).all()
-    ):  # also False where they are unknown
+    if not (value > 0 and (above > 0).all() and (below > 0).all()):  # nor where one is unknown
         return Estimate(value)
     ends = intervals.scatter_interval(float(np.log(value)), np.log(above / below))
     return Estimate(value, *np.exp(ends).tolist())

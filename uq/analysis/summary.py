@@ -8,12 +8,12 @@ from typing import Any
 import xarray as xr
 
 from uq import json_form
+from uq.analysis.estimators import in_regimes, share
 from uq.analysis.failed_rows import failed_share_bounds
 from uq.analysis.life_fit import Fit, fits_of
 from uq.analysis.statistics.statistic import Context, Kind, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.statistics.thresholds import share_of
-from uq.contract import Status
 from uq.designs.registry import DESIGNS
 from uq.rows import stopping
 from uq.rows.elements import (
@@ -90,7 +90,7 @@ class Described:
         return next((one for one in self.statistics if one.key == key), None)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Summary:
     """The summary of a result.
 
@@ -125,6 +125,7 @@ class Summary:
 def summarise(
     ds: xr.Dataset,
     analysis: AnalysisTable | None = None,
+    *,
     regime: str | None = None,
     fits: bool = False,
 ) -> Summary:
@@ -156,13 +157,13 @@ def summarise(
     if most:
         notes.append(SOME_FAILED.format(most=most, rows=rows.sizes["sample"]))
     return Summary(
-        ds.sizes["sample"],
-        rows.sizes["sample"],
-        status_counts(ds),
-        regime_shares(rows) if "regime" in output_names(ds) else {},
-        {element.name: _described(element, context, fits) for element in elements},
-        most,
-        notes,
+        samples=ds.sizes["sample"],
+        rows_used=rows.sizes["sample"],
+        status=status_counts(ds),
+        regimes=regime_shares(rows) if "regime" in output_names(ds) else {},
+        outputs={element.name: _described(element, context, fits) for element in elements},
+        most_failed=most,
+        notes=notes,
     )
 
 
@@ -181,20 +182,19 @@ def status_counts(ds: xr.Dataset) -> dict[str, int]:
 
 def regime_shares(rows: xr.Dataset) -> dict[str, Statistic]:
     """Return the share of each regime among the independent rows that did not fail."""
-    codes, replicate = rows["regime"].values, replicates_of(rows)
-    kept = (codes >= 0) | (rows["status"].values == Status.OK)
-    within = None if replicate is None else replicate[kept]
+    replicate = replicates_of(rows)
     return {
         label: Statistic(
             ("regime", label),
             label,
-            share_of(codes[kept] == code, within),
+            share_of(hits[kept], None if replicate is None else replicate[kept]),
             kind=REGIME,
-            failed=failed_share_bounds(codes == code, ~kept, replicate),
-            facts={"count": int((codes[kept] == code).sum())},
+            failed=failed_share_bounds(hits, ~kept, replicate),
+            facts={"count": int(hits[kept].sum())},
+            estimator=share(),
         )
-        for code, label in flags(rows["regime"])
-        if code >= 0
+        for label, (kept, numbers) in in_regimes(rows).items()
+        for hits in [numbers > 0]
     }
 
 

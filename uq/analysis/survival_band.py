@@ -19,6 +19,7 @@ AT_RISK = 10
 
 
 def simultaneous_band(
+    *,
     ending: float,
     among: Floats,
     deviation: Floats,

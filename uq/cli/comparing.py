@@ -6,12 +6,12 @@ from math import isfinite, nan
 from pathlib import Path
 
 from uq.analysis.as_json import comparison_json
-from uq.analysis.compared import Compared, ComparedOutput, Comparison, Side
-from uq.analysis.comparison import comparison
+from uq.analysis.comparison import Comparison, Side, comparison
+from uq.analysis.differences import Compared, ComparedOutput
 from uq.cli.printing import console, grid, heading, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
-from uq.wording import estimated, interval, known, number, time_unit
+from uq.wording import estimated, interval, known, number, unit_of
 
 _TOLD = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -71,10 +71,7 @@ def _unit(output: ComparedOutput) -> tuple[str, float]:
     """Return the unit in which an output is shown, and its length."""
     medians = [one.first.estimate.value for one in output.parts["quantiles"]]
     typical = medians[len(medians) // 2] if medians else nan
-    if output.units != "s" or not isfinite(typical):
-        return output.units, 1.0
-    unit = time_unit(abs(typical))
-    return unit.name, unit.seconds
+    return unit_of(output.units, typical)[:2]
 
 
 Line = tuple[str, ...]

@@ -8,7 +8,7 @@ from uq.cli.printing import grid, heading, paragraph
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import Sensitivities, TargetIndices
 from uq.json_form import numbers
-from uq.methods.indices import S1, Kind, Null
+from uq.methods.indices import S1, IndexKind, Null
 
 
 def plain(found: Sensitivities) -> dict[str, Any]:
@@ -60,7 +60,7 @@ def show(found: Sensitivities) -> None:
             paragraph(note, indent=2)
 
 
-def _lines(table: Values, nulls: Mapping[Kind, Null]) -> Iterator[list[str]]:
+def _lines(table: Values, nulls: Mapping[IndexKind, Null]) -> Iterator[list[str]]:
     for label, estimates in lines(table, nulls):
         pairs = zip(table, estimates, strict=True)
         cells = ((kind.text(one.value), kind.interval(one)) for kind, one in pairs)

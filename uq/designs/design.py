@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uq.designs import seeds
-from uq.designs.layouts import CROSSED, PLAIN, Layout
+from uq.designs.layouts import CROSSED, PLAIN, Layout, own_seeds
 from uq.designs.streams import Points
 
 MAX_SAMPLES = 2**30
@@ -65,7 +64,7 @@ class Design:
     @property
     def shares_seeds(self) -> bool:
         """Whether rows of a random model share seeds."""
-        return self.layout.shared_seeds is not seeds.own
+        return self.layout.shared_seeds is not own_seeds
 
     def blocks(self, d: int, second_order: bool, random: bool = False) -> int:
         """Return the number of rows in a group."""

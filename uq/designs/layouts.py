@@ -1,9 +1,19 @@
-"""How the rows of a design belong together: what its sensitivity methods need to know of it."""
+"""How the rows of a design belong together: what its sensitivity methods need to know of it.
+
+Rows of a random model that a design compares with each other share a seed: their difference is then
+the effect of the input at that seed, not of noise.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from uq.designs import seeds
+import numpy as np
+from numpy.typing import NDArray
+
+Places = NDArray[np.int64]
+Rule = Callable[[Places, Places, tuple[str, ...]], tuple[Places, Places]]
+"""Group and block of rows, and the labels of the blocks -> group and block of the row whose seed
+they take."""
 
 NOISE = "noise"
 """The block of a crossed design of a random model that has the inputs of A and the seed of B."""
@@ -20,7 +30,7 @@ class Layout:
     labels : callable
         ``labels(parameters, second_order, random)`` -> the names of the blocks of rows, in order.
     shared_seeds : callable
-        Which rows of a random model share a seed; see `uq.designs.seeds`.
+        Which rows of a random model share a seed; see `Rule`.
     one_at_a_time : bool
         Whether each row of a group differs from the one before it in one input.
     by_block : bool
@@ -29,9 +39,34 @@ class Layout:
 
     needs: str
     labels: Callable[[tuple[str, ...], bool, bool], tuple[str, ...]]
-    shared_seeds: seeds.Rule
+    shared_seeds: Rule
     one_at_a_time: bool = False
     by_block: bool = False
+
+
+def own_seeds(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
+    """Give each row a seed of its own."""
+    return group, block
+
+
+def _of_ends(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
+    """Give A and what is mixed into it the seed of A; the others, with the noise block, that of B.
+
+    First-order and second-order indices are products of rows of both sides, total ones differences
+    of rows of one.
+    """
+    of_a = np.array([label == "A" or label.startswith("AB_") for label in labels])
+    return group, np.where(of_a[block], labels.index("A"), labels.index("B"))
+
+
+def _of_groups(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
+    """Give all rows of a path or trajectory the seed of its first."""
+    return group, np.zeros_like(block)
+
+
+def _of_curves(group: Places, block: Places, labels: tuple[str, ...]) -> tuple[Places, Places]:
+    """Give all points of a curve, which is a block, the seed of its first."""
+    return np.zeros_like(group), block
 
 
 def _sample(parameters: tuple[str, ...], second_order: bool, random: bool) -> tuple[str, ...]:
@@ -56,8 +91,8 @@ def _curves(parameters: tuple[str, ...], second_order: bool, random: bool) -> tu
     return tuple(f"curve_{name}" for name in parameters)
 
 
-PLAIN = Layout("rows have a value", _sample, seeds.own)
-CROSSED = Layout("groups are whole", _crossed, seeds.of_ends)
-TRAJECTORIES = Layout("trajectories are whole", _steps, seeds.of_groups, one_at_a_time=True)
-PATHS = Layout("paths are whole", _places, seeds.of_groups, one_at_a_time=True)
-CURVES = Layout("curves are whole", _curves, seeds.of_curves, by_block=True)
+PLAIN = Layout("rows have a value", _sample, own_seeds)
+CROSSED = Layout("groups are whole", _crossed, _of_ends)
+TRAJECTORIES = Layout("trajectories are whole", _steps, _of_groups, one_at_a_time=True)
+PATHS = Layout("paths are whole", _places, _of_groups, one_at_a_time=True)
+CURVES = Layout("curves are whole", _curves, _of_curves, by_block=True)

@@ -61,7 +61,7 @@ class Entry:
 
     draw: Callable[..., Figure]
     of: Callable[[Findings], Iterator[Subject]]
-    caption: str
+    caption: str = "{name}: {meaning}"
     section: Literal["inputs", "rows", "results", "sensitivities", "convergence", ""] = "results"
     applies: tuple[Applies, ...] = ()
     in_report: tuple[Applies, ...] = ()

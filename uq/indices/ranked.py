@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from math import isfinite
 
 from uq.estimate import Estimate
-from uq.methods.indices import Kind, Null
+from uq.methods.indices import IndexKind, Null
 
-Values = Mapping[Kind, Mapping[str, Estimate]]
+Values = Mapping[IndexKind, Mapping[str, Estimate]]
 
 
 def ranking(values: Values) -> list[str]:
@@ -20,13 +20,13 @@ def size(index: Estimate) -> float:
     return index.value if isfinite(index.value) else 0.0
 
 
-def lines(values: Values, nulls: Mapping[Kind, Null]) -> list[tuple[str, list[Estimate]]]:
+def lines(values: Values, nulls: Mapping[IndexKind, Null]) -> list[tuple[str, list[Estimate]]]:
     """Return label and estimates, one of each kind, of each line of a table.
 
     Parameters
     ----------
-    values : dict of Kind to dict
-    nulls : dict of Kind to Null
+    values : dict of IndexKind to dict
+    nulls : dict of IndexKind to Null
         What inputs without effect reach; not known for pairs.
 
     Returns

@@ -15,7 +15,7 @@ from uq.indices.few_hits import few_hits
 from uq.indices.independent_inputs import notes_on_inputs, why_dependent
 from uq.indices.samples import sample_of
 from uq.indices.targets import Target
-from uq.methods.indices import Indices, Kind, RefusedError
+from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.method import Method
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.methods.sample import Sample
@@ -45,7 +45,7 @@ class TargetIndices:
     indices: Indices = Indices({})
     refused: str = ""
 
-    def kinds(self, of_pairs: bool = False) -> dict[Kind, Mapping[str, Estimate]]:
+    def kinds(self, of_pairs: bool = False) -> dict[IndexKind, Mapping[str, Estimate]]:
         """Return the indices of single inputs, or those of pairs."""
         values = self.indices.values.items()
         return {kind: found for kind, found in values if kind.of_pairs == of_pairs}

@@ -1,15 +1,16 @@
 """The laws of an uncertain parameter: names and arguments; scipy.stats does the rest.
 
-Each law is a small frozen table, as in a study file, that names its `scipy.stats` counterpart.
+Each law is a small frozen table, as in a study file, with its `scipy.stats` counterpart.
 `uq.inputs.observed` has the laws of listed values, `uq.inputs.registry` all laws.
 """
 
 from math import exp, log, log1p, sqrt
 from typing import Any, Literal
 
+import scipy  # which imports scipy.stats when it is first used
 from pydantic import ConfigDict, Field
 
-from uq.inputs.law import Law, Positive, Scipy
+from uq.inputs.law import Law, Positive
 
 
 class Uniform(Law):
@@ -21,8 +22,8 @@ class Uniform(Law):
     lower: float
     upper: float
 
-    def _scipy(self) -> Scipy:
-        return "uniform", {"loc": self.lower, "scale": self.upper - self.lower}
+    def frozen(self) -> Any:
+        return scipy.stats.uniform(loc=self.lower, scale=self.upper - self.lower)
 
 
 class LogUniform(Law):
@@ -34,8 +35,8 @@ class LogUniform(Law):
     lower: Positive
     upper: Positive
 
-    def _scipy(self) -> Scipy:
-        return "loguniform", {"a": self.lower, "b": self.upper}
+    def frozen(self) -> Any:
+        return scipy.stats.loguniform(a=self.lower, b=self.upper)
 
 
 class Normal(Law):
@@ -45,8 +46,8 @@ class Normal(Law):
     mean: float
     sd: Positive
 
-    def _scipy(self) -> Scipy:
-        return "norm", {"loc": self.mean, "scale": self.sd}
+    def frozen(self) -> Any:
+        return scipy.stats.norm(loc=self.mean, scale=self.sd)
 
 
 class TruncatedNormal(Law):
@@ -60,20 +61,18 @@ class TruncatedNormal(Law):
     lower: float
     upper: float
 
-    def _scipy(self) -> Scipy:
-        return "truncnorm", {
-            "a": (self.lower - self.mean) / self.sd,
-            "b": (self.upper - self.mean) / self.sd,
-            "loc": self.mean,
-            "scale": self.sd,
-        }
+    def frozen(self) -> Any:
+        return scipy.stats.truncnorm(
+            a=(self.lower - self.mean) / self.sd,
+            b=(self.upper - self.mean) / self.sd,
+            loc=self.mean,
+            scale=self.sd,
+        )
 
     def parent(self) -> tuple[Any, float, float]:
         """Return the normal law before truncation, and the ends of the truncation."""
-        from scipy import stats
-
         lower, upper = self.truncate or (self.lower, self.upper)
-        return stats.norm(self.mean, self.sd), max(lower, self.lower), min(upper, self.upper)
+        return scipy.stats.norm(self.mean, self.sd), max(lower, self.lower), min(upper, self.upper)
 
 
 class LogNormal(Law):
@@ -93,12 +92,12 @@ class LogNormal(Law):
     median: Positive | None = None
     sigma: Positive | None = Field(None, description="standard deviation of the logarithm")
 
-    def _scipy(self) -> Scipy:
+    def frozen(self) -> Any:
         if self.mean is not None and self.cv is not None:
             variance = log1p(self.cv * self.cv)
-            return "lognorm", {"s": sqrt(variance), "scale": exp(log(self.mean) - variance / 2)}
+            return scipy.stats.lognorm(s=sqrt(variance), scale=exp(log(self.mean) - variance / 2))
         assert self.median is not None and self.sigma is not None
-        return "lognorm", {"s": self.sigma, "scale": self.median}
+        return scipy.stats.lognorm(s=self.sigma, scale=self.median)
 
 
 class Triangular(Law):
@@ -111,13 +110,9 @@ class Triangular(Law):
     mode: float
     upper: float
 
-    def _scipy(self) -> Scipy:
+    def frozen(self) -> Any:
         width = self.upper - self.lower
-        return "triang", {
-            "c": (self.mode - self.lower) / width,
-            "loc": self.lower,
-            "scale": width,
-        }
+        return scipy.stats.triang(c=(self.mode - self.lower) / width, loc=self.lower, scale=width)
 
 
 class Pert(Law):
@@ -130,14 +125,14 @@ class Pert(Law):
     mode: float
     upper: float
 
-    def _scipy(self) -> Scipy:
+    def frozen(self) -> Any:
         width = self.upper - self.lower
-        return "beta", {
-            "a": 1 + 4 * (self.mode - self.lower) / width,
-            "b": 1 + 4 * (self.upper - self.mode) / width,
-            "loc": self.lower,
-            "scale": width,
-        }
+        return scipy.stats.beta(
+            a=1 + 4 * (self.mode - self.lower) / width,
+            b=1 + 4 * (self.upper - self.mode) / width,
+            loc=self.lower,
+            scale=width,
+        )
 
 
 class Beta(Law):
@@ -151,13 +146,10 @@ class Beta(Law):
     lower: float
     upper: float
 
-    def _scipy(self) -> Scipy:
-        return "beta", {
-            "a": self.alpha,
-            "b": self.beta,
-            "loc": self.lower,
-            "scale": self.upper - self.lower,
-        }
+    def frozen(self) -> Any:
+        return scipy.stats.beta(
+            a=self.alpha, b=self.beta, loc=self.lower, scale=self.upper - self.lower
+        )
 
 
 class Weibull(Law):
@@ -167,8 +159,8 @@ class Weibull(Law):
     shape: Positive
     scale: Positive
 
-    def _scipy(self) -> Scipy:
-        return "weibull_min", {"c": self.shape, "scale": self.scale}
+    def frozen(self) -> Any:
+        return scipy.stats.weibull_min(c=self.shape, scale=self.scale)
 
 
 class Gamma(Law):
@@ -178,8 +170,8 @@ class Gamma(Law):
     shape: Positive
     scale: Positive
 
-    def _scipy(self) -> Scipy:
-        return "gamma", {"a": self.shape, "scale": self.scale}
+    def frozen(self) -> Any:
+        return scipy.stats.gamma(a=self.shape, scale=self.scale)
 
 
 class Gumbel(Law):
@@ -189,8 +181,8 @@ class Gumbel(Law):
     mode: float
     scale: Positive
 
-    def _scipy(self) -> Scipy:
-        return "gumbel_r", {"loc": self.mode, "scale": self.scale}
+    def frozen(self) -> Any:
+        return scipy.stats.gumbel_r(loc=self.mode, scale=self.scale)
 
 
 class Exponential(Law):
@@ -199,5 +191,5 @@ class Exponential(Law):
     distribution: Literal["exponential"]
     mean: Positive
 
-    def _scipy(self) -> Scipy:
-        return "expon", {"scale": self.mean}
+    def frozen(self) -> Any:
+        return scipy.stats.expon(scale=self.mean)

@@ -1,13 +1,12 @@
 """What all laws of an uncertain parameter share."""
 
+from abc import abstractmethod
 from math import inf
 from typing import Annotated, Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 Positive = Annotated[float, Field(gt=0)]
-Scipy = tuple[str, dict[str, Any]]
-
 
 LIST = Field(strict=False)
 """Of a tuple, whose items stay strict: TOML has lists only."""
@@ -34,12 +33,9 @@ class Law(BaseModel):
         None, description="another uncertain parameter; the law is that of its factor"
     )
 
+    @abstractmethod
     def frozen(self) -> Any:
         """Return the law, before `truncate`, as a frozen `scipy.stats` distribution."""
-        from scipy import stats
-
-        name, arguments = self._scipy()
-        return getattr(stats, name)(**arguments)
 
     def parent(self) -> tuple[Any, float, float]:
         """Return the frozen law before any truncation, and the ends of the truncation.
@@ -48,9 +44,6 @@ class Law(BaseModel):
         and accurate in both tails.
         """
         return (self.frozen(), *(self.truncate or (-inf, inf)))
-
-    def _scipy(self) -> Scipy:
-        raise NotImplementedError
 
     @model_validator(mode="after")
     def _check_order(self) -> Self:

@@ -5,10 +5,11 @@ from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 import numpy as np
+import scipy
 from pydantic import Field, model_validator
 
 from uq.contract import Floats
-from uq.inputs.law import LIST, Law, Positive, Scipy
+from uq.inputs.law import LIST, Law, Positive
 
 Numbers = Annotated[tuple[float, ...], LIST]
 
@@ -115,8 +116,9 @@ class IntegerRange(Listed):
     lower: int = Field(ge=-(2**53), le=2**53)
     upper: int = Field(ge=-(2**53), le=2**53)
 
-    def _scipy(self) -> Scipy:
-        return "randint", {"low": self.lower, "high": self.upper + 1}
+    def frozen(self) -> Any:
+        """Return the law before `truncate`."""
+        return scipy.stats.randint(low=self.lower, high=self.upper + 1)
 
     def between(self, low: float, high: float) -> tuple[float, float] | None:
         """Return the first and the last whole number between two ends, or None."""
@@ -181,6 +183,6 @@ class Histogram(Law):
 
     def frozen(self) -> Any:
         """Return the law before `truncate` as a `scipy.stats.rv_histogram`."""
-        from scipy import stats
-
-        return stats.rv_histogram((np.array(self.counts), np.array(self.edges)), density=False)
+        return scipy.stats.rv_histogram(
+            (np.array(self.counts), np.array(self.edges)), density=False
+        )

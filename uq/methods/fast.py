@@ -7,7 +7,7 @@ import numpy as np
 from uq.designs.curves import HARMONICS
 from uq.estimate import Estimate
 from uq.intervals import is_constant
-from uq.methods.indices import ALL_NOISE, S1, ST, Indices, Kind, RefusedError
+from uq.methods.indices import ALL_NOISE, S1, ST, IndexKind, Indices, RefusedError
 from uq.methods.sample import Sample
 
 
@@ -53,7 +53,7 @@ def fast_indices(sample: Sample) -> Indices:
     omega = floor((points - 1) / (2 * HARMONICS))
     # The estimator loses digits for values far from zero.
     y = y - y[whole].mean()
-    indices: dict[Kind, dict[str, Estimate]] = {S1: {}, ST: {}}
+    indices: dict[IndexKind, dict[str, Estimate]] = {S1: {}, ST: {}}
     scatter = dict.fromkeys(indices, 0.0)
     for i, name in enumerate(parameters):
         moving = y[whole[:, i] & moves[:, i], i]

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from uq.estimate import Estimate
-from uq.methods.indices import Indices, Kind, Null, RefusedError
+from uq.methods.indices import IndexKind, Indices, Null, RefusedError
 from uq.methods.sample import Floats, Sample
 
 MIN_ROWS = 64
@@ -25,11 +25,11 @@ DUMMIES = 19
 TIED = 0.05
 """An input has many equal values if one of them has a larger share of the rows than this."""
 
-Measure = Callable[[Floats, Sample], tuple[dict[Kind, Floats], tuple[str, ...]]]
+Measure = Callable[[Floats, Sample], tuple[dict[IndexKind, Floats], tuple[str, ...]]]
 """Columns of inputs, shape (n, k), and the sample -> raw indices, shape (k,) each, and notes."""
 
 
-def one_kind(kind: Kind, measure: Callable[[Floats, Floats], Floats]) -> Measure:
+def one_kind(kind: IndexKind, measure: Callable[[Floats, Floats], Floats]) -> Measure:
     """Return the measure of one kind of index, from columns of inputs and the output."""
     return lambda x, sample: ({kind: measure(x, sample.values)}, ())
 
@@ -37,7 +37,7 @@ def one_kind(kind: Kind, measure: Callable[[Floats, Floats], Floats]) -> Measure
 def beside_nulls(
     measure: Measure,
     corrected: Callable[[Floats, Floats], Floats] = lambda raw, idle: raw,
-    sorts_rows: bool = False,
+    instead: str = "",
 ) -> Callable[[Sample], Indices]:
     """Return the estimate of indices with the null of inputs without effect.
 
@@ -47,8 +47,9 @@ def beside_nulls(
         See `Measure`; NaN for an input whose rows are all in one slice.
     corrected : callable, optional
         ``corrected(raw, idle)`` -> indices, from raw ones and those of inputs without effect.
-    sorts_rows : bool, optional
-        Whether it sorts the rows by each input, and so accepts none with many equal values.
+    instead : str, optional
+        The methods for inputs with many equal values, if this one sorts the rows by each input and
+        so accepts none; "" if it does accept them.
 
     Returns
     -------
@@ -62,22 +63,22 @@ def beside_nulls(
         columns = np.column_stack([*x.values(), rng.random((len(sample.values), DUMMIES))])
         raw, notes = measure(columns, sample)
         idle = {kind: one[len(x) :] for kind, one in raw.items()}
-        found: dict[Kind, dict[str, Estimate]] = {kind: {} for kind in raw}
+        found: dict[IndexKind, dict[str, Estimate]] = {kind: {} for kind in raw}
         notes = (*notes, *_no_slices(list(x), raw))
         tied = [name for name, column in x.items() if _is_tied(column)]
-        if sorts_rows and tied:
-            notes = (*notes, _no_order(tied, len(x)))
+        if instead and tied:
+            notes = (*notes, _no_order(tied, len(x), instead))
         for i, (name, column) in enumerate(x.items()):
             own = idle
             sliced = not all(np.isnan(one[i]) for one in raw.values())
-            if name in tied and sliced and not sorts_rows:
+            if name in tied and sliced and not instead:
                 shuffled = np.column_stack([rng.permutation(column) for _ in range(DUMMIES)])
                 own, _ = measure(shuffled, sample)
                 reached = {kind: corrected(one, one) for kind, one in own.items()}
                 notes = (*notes, _own_null(name, reached))
             for kind, one in raw.items():
                 value = float(corrected(one[i], own[kind]))
-                lost = name in tied and sorts_rows
+                lost = name in tied and instead
                 found[kind][name] = Estimate(np.nan if lost else value)
         reached = {kind: corrected(one, one) for kind, one in idle.items()}
         return Indices(found, notes, {kind: _null(one, len(x)) for kind, one in reached.items()})
@@ -116,18 +117,18 @@ def _is_tied(column: Floats) -> bool:
     return bool(counts.max() > max(TIED * len(column), 1))
 
 
-def _no_order(tied: list[str], inputs: int) -> str:
-    """Return which inputs RBD-FAST cannot sort the rows by; refuse if that is all of them."""
+def _no_order(tied: list[str], inputs: int, instead: str) -> str:
+    """Return which inputs a method cannot sort the rows by; refuse if that is all of them."""
     said = (
-        "rbd-fast sorts the rows by each input, so it accepts none with many equal values:"
-        f" {', '.join(tied)}; use delta, pawn or quantile"
+        "the method sorts the rows by each input, so it accepts none with many equal values:"
+        f" {', '.join(tied)}; use {instead}"
     )
     if len(tied) == inputs:
         raise RefusedError(said)
     return said
 
 
-def _no_slices(names: Sequence[str], raw: Mapping[Kind, Floats]) -> list[str]:
+def _no_slices(names: Sequence[str], raw: Mapping[IndexKind, Floats]) -> list[str]:
     """Return which inputs have all rows in one slice; refuse if that is all of them."""
     said = [
         f"{name} has too few rows of any value but one: no {' or '.join(lost)}"
@@ -139,7 +140,7 @@ def _no_slices(names: Sequence[str], raw: Mapping[Kind, Floats]) -> list[str]:
     return said
 
 
-def _own_null(name: str, own: Mapping[Kind, Floats]) -> str:
+def _own_null(name: str, own: Mapping[IndexKind, Floats]) -> str:
     known = {kind.key: one.max() for kind, one in own.items() if np.isfinite(one).all()}
     reached = ", ".join(f"{kind} = {one:.2g}" for kind, one in known.items())
     return (

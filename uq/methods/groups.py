@@ -14,15 +14,15 @@ from scipy import stats
 
 from uq.estimate import Estimate
 from uq.intervals import CONFIDENCE, scatter_interval
-from uq.methods.indices import Kind
+from uq.methods.indices import IndexKind
 from uq.methods.sample import Floats
 
 ENOUGH_ROWS, ENOUGH_SHARE = 50, 0.22
 """Where the variance rests on fewer rows of each replicate, and on less than this share of them,
 intervals are widened. Of a normal law it rests on a third of the rows."""
 
-Values = Mapping[Kind, Mapping[str, float]]
-"""Kind of index -> input -> value."""
+Values = Mapping[IndexKind, Mapping[str, float]]
+"""IndexKind of index -> input -> value."""
 
 
 def by_replicates(
@@ -31,7 +31,7 @@ def by_replicates(
     replicates: Sequence[Floats],
     what: str,
     lacking: str = "",
-) -> tuple[dict[Kind, dict[str, Estimate]], tuple[str, ...]]:
+) -> tuple[dict[IndexKind, dict[str, Estimate]], tuple[str, ...]]:
     """Estimate from all groups together, with intervals from the same estimate by replicates.
 
     Parameters
@@ -60,7 +60,7 @@ def by_replicates(
         notes = (f"no intervals: {lacking}",)
     scatter = [] if notes else [estimate(own) for own in replicates]
 
-    def with_interval(kind: Kind, label: str, value: float) -> Estimate:
+    def with_interval(kind: IndexKind, label: str, value: float) -> Estimate:
         return Estimate(
             value, *scatter_interval(value, np.array([own[kind][label] for own in scatter]))
         )

@@ -10,8 +10,8 @@ from uq.estimate import Estimate
 from uq.methods.indices import S1, S2, SHAPLEY, ST, Indices, Null, RefusedError
 from uq.methods.sample import Floats, Sample
 
-MIN_ROWS = 300
-"""SALib accepts no fewer."""
+MIN_ROWS = 600
+"""Half of them are held out; SALib accepts no fewer than the other 300."""
 
 EXPLAINED = 0.8
 """An expansion that explains less of the rows held out does not represent the output."""
@@ -24,13 +24,15 @@ _TERMS_PER_ROW = 0.8
 _MOST_TERMS = 500
 
 
-def hdmr_indices(sample: Sample) -> Indices:
+def hdmr_indices(sample: Sample, instead: str) -> Indices:
     """Estimate the indices of an expansion in functions of one and of two inputs.
 
     Parameters
     ----------
     sample : Sample
-        Of independent inputs.
+        Of independent inputs; `MIN_ROWS` rows or more.
+    instead : str
+        The methods to use for an output with few values.
 
     Returns
     -------
@@ -42,7 +44,7 @@ def hdmr_indices(sample: Sample) -> Indices:
     Raises
     ------
     RefusedError
-        Too few rows, an input with a single value, or no degree of polynomials explains enough of
+        Few values, an input with a single value, or no degree of polynomials explains enough of
         the rows held out.
 
     References
@@ -56,13 +58,9 @@ def hdmr_indices(sample: Sample) -> Indices:
     if len(np.unique(y)) < _LEAST_VALUES:
         raise RefusedError(
             f"it has fewer than {_LEAST_VALUES} values, and no polynomial has such steps; use"
-            " rbd-fast, pawn or regional"
+            f" {instead}"
         )
     n = min(len(y), _MOST_ROWS)
-    if n < MIN_ROWS * 2:
-        raise RefusedError(
-            f"only {len(y)} rows have a value; {2 * MIN_ROWS} are needed, half of them held out"
-        )
     names = [*x, ""]
     rng = np.random.default_rng(0)
     chosen = rng.permutation(len(y))[:n]  # imported rows may come in a meaningful order

@@ -9,7 +9,7 @@ from uq.estimate import Estimate
 
 
 @dataclass(frozen=True)
-class Kind:
+class IndexKind:
     """One kind of index.
 
     Attributes
@@ -43,10 +43,10 @@ class Kind:
         return "" if ends == ["-", "-"] else " to ".join(ends)
 
 
-S1 = Kind("S1", "alone (S1)", "variance")
-ST = Kind("ST", "with all interactions (ST)", "variance")
-S2 = Kind("S2", "in pairs (S2)", "variance", of_pairs=True)
-SHAPLEY = Kind("shapley", "Shapley effect", "variance")
+S1 = IndexKind("S1", "alone (S1)", "variance")
+ST = IndexKind("ST", "with all interactions (ST)", "variance")
+S2 = IndexKind("S2", "in pairs (S2)", "variance", of_pairs=True)
+SHAPLEY = IndexKind("shapley", "Shapley effect", "variance")
 
 
 @dataclass(frozen=True)
@@ -71,20 +71,20 @@ class Indices:
 
     Attributes
     ----------
-    values : dict of Kind to dict
+    values : dict of IndexKind to dict
         Input (``"first,second"`` for a pair) -> Estimate; the kind that inputs are ranked by last
         of those that are not of pairs.
     notes : tuple of str
         Sentences on what is missing, and why.
-    nulls : dict of Kind to Null
+    nulls : dict of IndexKind to Null
         Where the method has no intervals.
     noise : Estimate or None
         Share of the variance that remains once all inputs are known, where the rows determine it.
     """
 
-    values: Mapping[Kind, Mapping[str, Estimate]]
+    values: Mapping[IndexKind, Mapping[str, Estimate]]
     notes: tuple[str, ...] = ()
-    nulls: Mapping[Kind, Null] = field(default_factory=dict)
+    nulls: Mapping[IndexKind, Null] = field(default_factory=dict)
     noise: Estimate | None = None
 
 

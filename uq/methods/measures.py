@@ -28,13 +28,15 @@ def rbd_fast(x: Floats, y: Floats) -> Floats:
     return unskew_S1(share, _HARMONICS, len(y))
 
 
-def delta(x: Floats, y: Floats) -> Floats:
+def delta(x: Floats, y: Floats, instead: str) -> Floats:
     """Estimate Borgonovo's delta: the mean area between the density in a slice and anywhere.
 
     Parameters
     ----------
     x : ndarray, shape (n, d)
     y : ndarray, shape (n,)
+    instead : str
+        The methods to use where it is refused.
 
     Returns
     -------
@@ -57,8 +59,7 @@ def delta(x: Floats, y: Floats) -> Floats:
     _, counts = np.unique(y, return_counts=True)
     if counts.max() > max(_TIED * n, 1):
         raise RefusedError(
-            f"{counts.max()} rows share one value, and delta compares densities; use rbd-fast or"
-            " pawn"
+            f"{counts.max()} rows share one value, and delta compares densities; use {instead}"
         )
     scores = stats.norm.ppf((stats.rankdata(y) - 0.5) / n)
     grid = np.linspace(scores.min(), scores.max(), _GRID)
@@ -143,8 +144,8 @@ def ks_distances(x: Floats, event: Floats) -> Floats:
     happens = event == 1
     if not (happens | (event == 0)).all():
         raise RefusedError(
-            "not an event: 'regional' compares the rows in which something happens with the rest;"
-            " ask for a category, or for P(T < t) by a threshold in [analysis]"
+            "not an event: the rows in which something happens are compared with the rest; ask for"
+            " a category, or for P(T < t) by a threshold in [analysis]"
         )
     least = int(min(happens.sum(), (~happens).sum()))
     if least < MIN_SIDE:

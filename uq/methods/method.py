@@ -7,7 +7,7 @@ import numpy as np
 
 from uq.designs.layouts import PLAIN, Layout
 from uq.intervals import is_constant
-from uq.methods.indices import Indices, Kind, RefusedError
+from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.sample import Sample
 
 NO_EFFECT = "the same value in all rows: nothing depends on the inputs"
@@ -27,7 +27,7 @@ class Method:
     estimate : callable
         ``estimate(sample)`` -> `Indices`, or `RefusedError`. Groups with a row without a value are
         left out by it (`Sample.whole`); every row of a plain sample has a value.
-    kinds : tuple of Kind
+    kinds : tuple of IndexKind
         What it estimates; none where that depends on the study.
     gives : str
         The same in words.
@@ -50,14 +50,14 @@ class Method:
     noise : str
         How it treats the noise of a random model where rows share seeds.
     pilot : callable or None
-        ``pilot(sample)`` -> Kind -> the largest standard deviation, over inputs, of a group's term
+        ``pilot(sample)`` -> kind -> the largest standard deviation, over inputs, of a group's term
         in the mean that an index is; given where ``uq plan`` and ``uq convergence`` show indices.
     """
 
     question: str
     layout: Layout
     estimate: Callable[[Sample], Indices]
-    kinds: tuple[Kind, ...]
+    kinds: tuple[IndexKind, ...]
     gives: str = ""
     source: str = ""
     intervals: str = ""
@@ -69,7 +69,7 @@ class Method:
     takes_numbers: bool = True
     scale_free: bool = False
     noise: str = ""
-    pilot: Callable[[Sample], dict[Kind, float]] | None = None
+    pilot: Callable[[Sample], dict[IndexKind, float]] | None = None
 
     @property
     def of_variance(self) -> bool:

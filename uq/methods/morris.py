@@ -5,16 +5,16 @@ import numpy as np
 from uq.designs.trajectories import STEP
 from uq.intervals import ROUNDING, is_constant
 from uq.methods.groups import Values, by_replicates
-from uq.methods.indices import Indices, Kind, RefusedError
+from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.method import NO_EFFECT
 from uq.methods.sample import Floats, Sample
 
 MIN_TRAJECTORIES = 4
 """Fewer trajectories than this do not give a useful mean."""
 
-MU = Kind("mu", "mean effect (mu)", "output")
-SIGMA = Kind("sigma", "scatter of effects (sigma)", "output")
-MU_STAR = Kind("mu_star", "mean magnitude of effects (mu*)", "output")
+MU = IndexKind("mu", "mean effect (mu)", "output")
+SIGMA = IndexKind("sigma", "scatter of effects (sigma)", "output")
+MU_STAR = IndexKind("mu_star", "mean magnitude of effects (mu*)", "output")
 
 
 def morris_indices(sample: Sample) -> Indices:

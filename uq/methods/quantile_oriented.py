@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.methods.indices import Kind, RefusedError
+from uq.methods.indices import IndexKind, RefusedError
 from uq.methods.sample import Floats, Sample
 from uq.methods.slices import by_slices, even_cuts
 
@@ -15,7 +15,7 @@ _ROWS_IN_SLICE = 30
 _ROWS_BEYOND = 5
 
 
-def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[Kind, Floats], tuple[str, ...]]:
+def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[IndexKind, Floats], tuple[str, ...]]:
     """Estimate the index of each input for each quantile.
 
     With psi(r) = r (p - [r < 0]), whose mean E psi(Y - q) is least at the quantile q of Y, the
@@ -31,7 +31,7 @@ def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[Kind, Floats], tup
     Returns
     -------
     indices : dict
-        Kind -> raw indices, shape (d,), from slices of equally many rows, or by value where an
+        IndexKind -> raw indices, shape (d,), from slices of equally many rows, or by value where an
         input has few values. They are biased upwards, since a quantile is fitted to each slice:
         those of inputs without effect show by how much. NaN where an input varies within one slice
         only.
@@ -60,7 +60,8 @@ def quantile_indices(x: Floats, sample: Sample) -> tuple[dict[Kind, Floats], tup
             notes.append(f"all values on one side of {name} are equal: no input can move it")
         else:
             cuts = even_cuts(len(y), min(len(y) // rows, MOST_SLICES))
-            found[Kind(name, name)] = 1 - by_slices(x, cuts, partial(_remains, y, p), rows) / whole
+            remains = by_slices(x, cuts, partial(_remains, y, p), rows)
+            found[IndexKind(name, name)] = 1 - remains / whole
     if not found:
         raise RefusedError("; ".join(notes))
     return found, tuple(notes)

@@ -9,10 +9,10 @@ from functools import partial
 from uq.designs.design import Design
 from uq.designs.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
 from uq.designs.registry import DESIGNS
+from uq.methods import hdmr
 from uq.methods.fast import fast_indices
 from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
-from uq.methods.hdmr import hdmr_indices
-from uq.methods.indices import S1, S2, SHAPLEY, ST, Kind
+from uq.methods.indices import S1, S2, SHAPLEY, ST, IndexKind
 from uq.methods.measures import delta, ks_distances, pawn, rbd_fast
 from uq.methods.method import Method
 from uq.methods.morris import MIN_TRAJECTORIES, MU, MU_STAR, SIGMA, morris_indices
@@ -20,9 +20,9 @@ from uq.methods.quantile_oriented import quantile_indices, without_optimism
 from uq.methods.shapley import MIN_PATHS, shapley_indices
 from uq.methods.sobol import MIN_GROUPS, pilot, sobol_indices
 
-DELTA = Kind("delta", "Borgonovo's delta")
-PAWN = Kind("pawn", "PAWN, median")
-KS = Kind("KS", "Kolmogorov's distance of the rows where it happens")
+DELTA = IndexKind("delta", "Borgonovo's delta")
+PAWN = IndexKind("pawn", "PAWN, median")
+KS = IndexKind("KS", "Kolmogorov's distance of the rows where it happens")
 
 _AT_ONE_SEED = (
     "shares of the variance at one seed, in which noise that does not depend on the inputs has no"
@@ -35,14 +35,14 @@ _of_any_inputs = partial(_of_plain_rows, assumes_independence=False)
 METHODS = {
     "rbd-fast": _of_plain_rows(
         "how much of the variance, alone",
-        estimate=beside_nulls(one_kind(S1, rbd_fast), sorts_rows=True),
+        estimate=beside_nulls(one_kind(S1, rbd_fast), instead="delta, pawn or quantile"),
         kinds=(S1,),
         source="random balance, bias corrected",
         most_rows=200_000,
     ),
     "delta": _of_any_inputs(
         "how much the whole distribution moves",
-        estimate=beside_nulls(one_kind(DELTA, delta)),
+        estimate=beside_nulls(one_kind(DELTA, partial(delta, instead="rbd-fast or pawn"))),
         kinds=(DELTA,),
         source="Plischke et al. (2013), on normal scores of the output",
         most_rows=10_000,
@@ -58,10 +58,11 @@ METHODS = {
     ),
     "hdmr": _of_plain_rows(
         "how much of the variance, alone, in pairs and in total",
-        estimate=hdmr_indices,
+        estimate=partial(hdmr.hdmr_indices, instead="rbd-fast, pawn or regional"),
         kinds=(S1, ST, SHAPLEY, S2),
         source="polynomials in one and in two inputs (Li et al. 2010); refused where they explain"
-        " less than 80 % of rows held out",
+        f" less than {100 * hdmr.EXPLAINED:g} % of rows held out",
+        least=hdmr.MIN_ROWS,
     ),
     "quantile": _of_any_inputs(
         "which inputs move a quantile, or B10 of a life",

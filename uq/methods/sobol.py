@@ -9,14 +9,14 @@ import numpy as np
 from uq.designs.layouts import NOISE
 from uq.intervals import is_constant
 from uq.methods.groups import Values, by_replicates, effective_rows, one_more_row, widened
-from uq.methods.indices import S1, S2, ST, Indices, Kind, RefusedError
+from uq.methods.indices import S1, S2, ST, IndexKind, Indices, RefusedError
 from uq.methods.method import NO_VARIANCE
 from uq.methods.sample import Floats, Sample
 
 MIN_GROUPS = 8
 """Fewer groups than this do not give a useful index."""
 
-_NOISE = Kind(NOISE, "share of noise", "variance")
+_NOISE = IndexKind(NOISE, "share of noise", "variance")
 
 
 def sobol_indices(sample: Sample) -> Indices:
@@ -110,7 +110,7 @@ def _estimates(blocks: Sequence[str], y: Floats) -> Values:
     return found
 
 
-def pilot(sample: Sample) -> dict[Kind, float]:
+def pilot(sample: Sample) -> dict[IndexKind, float]:
     """Return the largest standard deviation, over inputs, of a group's share in S1 and in ST.
 
     Parameters
@@ -120,7 +120,7 @@ def pilot(sample: Sample) -> dict[Kind, float]:
 
     Returns
     -------
-    dict of Kind to float
+    dict of IndexKind to float
     """
     y = sample.grouped[sample.whole]
     block = dict(zip(sample.blocks, ((y - y.mean()) / y.std()).T, strict=True))

@@ -8,13 +8,13 @@ from typing import NamedTuple
 import xarray as xr
 
 from uq.analysis.findings import Findings
-from uq.drawing.figure import in_words, sentence
 from uq.drawing.index_plot import subject
+from uq.drawing.words import in_words, sentence
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.ranked import Values, lines, ranking, size
 from uq.indices.sensitivities import TargetIndices, methods
-from uq.methods.indices import S1, Kind, Null
+from uq.methods.indices import S1, IndexKind, Null
 from uq.report.cells import Cell, Table
 from uq.report.pictures import Picture, pictures
 from uq.wording import percent
@@ -135,7 +135,7 @@ def _leading(ds: xr.Dataset, method: str, words: str, found: TargetIndices) -> s
     return f"{leader} explains {percent(index.value)} of the variance of {what} ({name})."
 
 
-def _table(caption: str, values: Values, nulls: Mapping[Kind, Null]) -> Table:
+def _table(caption: str, values: Values, nulls: Mapping[IndexKind, Null]) -> Table:
     rows = [
         (Cell(label), *(_cell(kind, one) for kind, one in zip(values, estimates, strict=True)))
         for label, estimates in lines(values, nulls)
@@ -143,6 +143,6 @@ def _table(caption: str, values: Values, nulls: Mapping[Kind, Null]) -> Table:
     return Table(caption, ("input", *(kind.key for kind in values)), rows)
 
 
-def _cell(kind: Kind, one: Estimate) -> Cell:
+def _cell(kind: IndexKind, one: Estimate) -> Cell:
     key = one.value if isfinite(one.value) else None
     return Cell(kind.text(one.value), kind.interval(one), key)

@@ -206,7 +206,7 @@ def _check_budget(study: Study) -> None:
         budget = read_study_text(study.text, study.path).design.samples
         if study.design.samples != budget:
             raise InputError(
-                f"--samples {study.design.samples}: a study with [design] until uses at most the"
+                f"samples = {study.design.samples}: a study with [design] until uses at most the"
                 f" samples of its file, {budget}: change them there"
             )
 

@@ -36,8 +36,7 @@ def find_model(reference: str) -> Model:
         There is no such model, or its package cannot be imported. A broken model does not affect
         the others.
     """
-    label = f"--model {reference}" if ":" in reference else f"model '{reference}'"
-    return _load(_point(reference), label)
+    return _load(_point(reference), f"model '{reference}'")
 
 
 def module_of(reference: str) -> str:

@@ -166,7 +166,7 @@ def settled_orbit(beam: Beam, state: Array, gaps: Array, period: int = 1) -> Orb
     Raises
     ------
     ValueError
-        If the beam does not settle on an orbit of this period.
+        If the beam does not settle on an orbit of this period, or `period` is not positive.
     """
     if period < 1:
         raise ValueError(f"period must be positive: {period!r}")

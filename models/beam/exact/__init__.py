@@ -13,7 +13,8 @@ Reading order; a module imports only those above it:
     propagator      many beams over whole forcing periods
 """
 
-from models.beam.exact.propagator import CLOCK, advance, monodromy, start
+from models.beam.exact.one_beam import CLOCK
+from models.beam.exact.propagator import advance, monodromy, start
 from models.beam.exact.systems import finer, groups
 
 __all__ = ["CLOCK", "advance", "finer", "groups", "monodromy", "start"]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from models.beam.exact.tip_bounds import parabola, reach, tip_after, weigh
+from models.beam.exact.tip_bounds import clear_time, parabola, tip_after, weigh
 from models.beam.exact.within_phase import split
 from models.beam.structure.modal import Array
 from models.numerics.jit import kernel
@@ -43,8 +43,8 @@ def _fly(phase, weight, power, gaps, near, to_end):
         if s == to_end:
             break
         h = min(
-            reach(to_right, tip.v, tip.a, tip.bound_a, tip.bound_j),
-            reach(to_left, -tip.v, -tip.a, tip.bound_a, tip.bound_j),
+            clear_time(to_right, tip.v, tip.a, tip.bound_a, tip.bound_j),
+            clear_time(to_left, -tip.v, -tip.a, tip.bound_a, tip.bound_j),
         )
         s = min(s + max(h, _SHORTEST), to_end)
         evaluations += 1
@@ -88,7 +88,7 @@ def _touch(phase, weight, power, side, gap, near, slow, to_end):
         else:
             h = min(
                 parabola(max(-speed, 0.0), gathering, tip.bound_j),
-                reach(depth, -speed, -gathering, tip.bound_a, tip.bound_j),
+                clear_time(depth, -speed, -gathering, tip.bound_a, tip.bound_j),
             )
         s = min(s + max(h, _SHORTEST), to_end)
         evaluations += 1

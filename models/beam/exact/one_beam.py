@@ -11,7 +11,18 @@ from models.beam.exact.events import (
 )
 from models.beam.exact.tip_bounds import tip_at
 from models.beam.exact.within_phase import join
+from models.beam.structure.modal import Array
 from models.numerics.jit import kernel
+
+CLOCK, OWED = -3, -2
+"""Columns of a state after z and dz/d(Omega t) of each mode: the clock, and the work of unfinished
+contacts at the right and the left site."""
+
+
+def velocities(state: Array) -> Array:
+    """Return dz/d(Omega t) of all modes, a view of n states: velocities per radian of the force."""
+    modes = (state.shape[1] + CLOCK) // 2
+    return state[:, modes:CLOCK]
 
 
 @kernel
@@ -28,9 +39,8 @@ def _sample(phase, weight, power, theta, until, trace):
 def advance_beam(free, contact, state, gaps, growth, record):
     """Advance one beam over the periods of its record."""
     work, strobe, peak, trace = record
-    size = len(state) - 3
-    m = size // 2
-    y, owed = state[:size], state[size + 1 :]
+    y, owed = state[:CLOCK], state[OWED:]
+    m = len(y) // 2
     room = scratch(free, contact)
     steps = len(trace) // len(work)
     for period in range(len(work)):
@@ -60,4 +70,4 @@ def advance_beam(free, contact, state, gaps, growth, record):
             join(phase, room.coefficient, event.after, room.power, y)
             theta, site = until, event.site
         strobe[period, 0], strobe[period, 1] = y[:m].sum(), y[m:].sum()
-        state[size] += 1
+        state[CLOCK] += 1

@@ -63,9 +63,7 @@ def phases(beams: Beams, row: int) -> tuple[Phase, Phase]:
     free, contact : Phase
     """
     forcing, force, stiffness = beams.forcing[row], beams.force[row], beams.stiffness[row]
-    w = beams.frequency[row] / forcing
-    d = beams.decay[row] / forcing
-    b = beams.mobility[row] / forcing**2
+    w, d, b = beams.in_phase_time(row, forcing)
     response = b / (w**2 - 1 + 2j * d)
     flexibility = b / w**2
     phasor = np.zeros((2, COUNT if beams.load[row]["power"] > 0 else 0))
@@ -92,9 +90,7 @@ def set_lines(free: Phase, contact: Phase, beams: Beams, row: int, lines: Array)
         As `models.beam.structure.random_lines.draw` sets them.
     """
     forcing, stiffness = beams.forcing[row], beams.stiffness[row]
-    w = beams.frequency[row] / forcing
-    d = beams.decay[row] / forcing
-    b = beams.mobility[row] / forcing**2
+    w, d, b = beams.in_phase_time(row, forcing)
     speed = lines[:, SPEED, None]
     response = b / (w**2 - speed**2 + 2j * d * speed)
     held = 1 + stiffness * response.sum(axis=1, keepdims=True)

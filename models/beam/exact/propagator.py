@@ -1,4 +1,4 @@
-"""Exact propagation from event to event: the yardstick of the beam.
+"""Exact propagation from event to event: the reference for the beam.
 
 Free flight and contact are linear, see `models.beam.exact.phases`, and the instants between them
 are found to rounding, see `models.beam.exact.events`. One beam at a time, at about twenty times the
@@ -7,7 +7,7 @@ cost of `models.beam.lanes`. Like that, a `models.beam.structure.propagation.Pro
 
 import numpy as np
 
-from models.beam.exact.one_beam import advance_beam
+from models.beam.exact.one_beam import CLOCK, advance_beam
 from models.beam.exact.passage import passage
 from models.beam.exact.phases import set_lines
 from models.beam.exact.systems import System
@@ -16,8 +16,6 @@ from models.beam.structure.modal import Array
 from models.beam.structure.propagation import Record
 from models.beam.structure.random_lines import COUNT, SPEED, TURN, draw, turn_at
 
-CLOCK = -3
-
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:
     """Return z and dz/d(Omega t) of each mode, the clock, and the work of unfinished contacts.
@@ -25,7 +23,7 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
     The shape is (n, 2 m + 3); the last two are the work at the right and the left site.
     """
     n, m = system.modal.shape
-    state = np.zeros((n, 2 * m + 3))
+    state = np.zeros((n, 2 * m - CLOCK))
     state[:, 0] = displacement
     state[:, m] = velocity / system.beams.forcing
     return state
@@ -55,10 +53,9 @@ def monodromy(system: System, state: Array, gaps: Array, periods: int) -> Array:
     NaN where `advance` returns NaN.
     """
     out = np.zeros((*state.shape, state.shape[1]))
-    size = 2 * system.modal.shape[1]
     for i, pair in enumerate(system.phases):
-        found = passage(Beam.of(pair), state[i, :size], gaps[i], periods=periods)
-        out[i, :size, :size] = found.tangents[:, :size]
+        found = passage(Beam.of(pair), state[i, :CLOCK], gaps[i], periods=periods)
+        out[i, :CLOCK, :CLOCK] = found.tangents[:, :CLOCK]
     return out
 
 
@@ -77,7 +74,7 @@ def _advance_random(
             record.work[period:] = record.strobe[period:] = np.nan
             record.trace[period * steps :] = np.nan
             return
-        epoch, since = divmod(int(state[-3]), int(load["epoch"]))
+        epoch, since = divmod(int(state[CLOCK]), int(load["epoch"]))
         if epoch != drawn:
             draw(load, epoch, lines)
             set_lines(free, contact, system.beams, row, lines)

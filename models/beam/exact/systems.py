@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from models.beam.exact.phases import Phase, phases
 from models.beam.parameters import Settings
-from models.beam.structure.modal import Array, Beams, reach, steady_response
+from models.beam.structure.modal import Array, Beams, free_reach, steady_response
 from models.beam.structure.propagation import LONGEST
 
 TRACE_STEPS = 200
@@ -23,13 +23,13 @@ class System(NamedTuple):
         Free flight and contact of each beam.
     modal : ndarray, shape (n, m), complex
         Steady amplitude of each mode without contact.
-    reach, beams, steps
+    free_reach, beams, steps
         As there; steps are those of a trace.
     """
 
     phases: tuple[tuple[Phase, Phase], ...]
     modal: NDArray[np.complex128]
-    reach: Array
+    free_reach: Array
     beams: Beams
     steps: int
 
@@ -41,7 +41,9 @@ class System(NamedTuple):
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return some of the beams."""
         chosen = tuple(self.phases[i] for i in rows)
-        return System(chosen, self.modal[rows], self.reach[rows], self.beams.take(rows), self.steps)
+        return System(
+            chosen, self.modal[rows], self.free_reach[rows], self.beams.take(rows), self.steps
+        )
 
 
 def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
@@ -50,7 +52,7 @@ def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp],
     each = tuple(phases(beams, i) for i in range(len(rows)))
     steps = settings.steps_per_period or TRACE_STEPS
     modal = steady_response(beams)
-    yield rows, System(each, modal, reach(beams), beams, steps)
+    yield rows, System(each, modal, free_reach(beams), beams, steps)
 
 
 def finer(system: System, state: Array) -> Iterator[tuple[NDArray[np.intp], System, Array]]:

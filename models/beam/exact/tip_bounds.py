@@ -96,7 +96,7 @@ def parabola(distance, closing, bound):
 
 
 @kernel
-def reach(distance, closing, gathering, bound, bound_next):
+def clear_time(distance, closing, gathering, bound, bound_next):
     """Return a time for which a distance is certain to stay positive.
 
     It closes at the speed `closing`, with an acceleration `gathering` that never exceeds `bound`

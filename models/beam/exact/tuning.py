@@ -71,9 +71,9 @@ class Tuning:
     def _steady(self, forcing: float) -> tuple[tuple[NDArray[np.complex128], ...], ...]:
         """Return the steady amplitude of each mode and its derivative, free and in contact."""
         b = self._beams
-        w, d = b.frequency[0] / forcing, b.decay[0] / forcing
+        w, d, mobility = b.in_phase_time(0, forcing)
         dynamic = w**2 - 1 + 2j * d
-        free = b.mobility[0] / forcing**2 / dynamic
+        free = mobility / dynamic
         change = free * (2 - 2j * d) / dynamic
         stiff = 1 + b.stiffness[0] * free.sum()
         contact = free / stiff

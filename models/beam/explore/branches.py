@@ -12,6 +12,7 @@ from models.beam.branches.worn_orbit import wear_along
 from models.beam.exact.tuning import Tuning
 from models.beam.explore.orbit_labels import labelled_events, labelled_orbits, named
 from models.beam.parameters import Params, Settings
+from models.beam.start import initial_gaps, wear_shares
 from models.beam.structure.modal import Array, beams
 from models.beam.units import wear_per_work
 
@@ -80,7 +81,8 @@ def continue_orbit(
     Raises
     ------
     ValueError
-        If no such orbit is found at the start, or the load is random.
+        If no such orbit is found at the start, an argument is not as stated, the load is random, or
+        the settings ask for residual flexibility.
     """
     if parameter not in _ABOUT:
         raise ValueError(f"parameter must be 'forcing_frequency' or 'gap', not {parameter!r}")
@@ -92,7 +94,7 @@ def continue_orbit(
     params = params._replace(forcing_frequency=forcing)
     tuning = _tuning(params, settings or Settings())
     x0 = params.initial_gap
-    new = np.array([1 + params.gap_asymmetry / 2, 1 - params.gap_asymmetry / 2])
+    new = initial_gaps(params)
     if parameter == "forcing_frequency":
 
         def setting(value: float) -> Setting:
@@ -154,17 +156,16 @@ def follow_wear(
     Raises
     ------
     ValueError
-        If no stable orbit of this period is found at the initial gaps, or the load is random.
+        If no stable orbit of this period is found at the initial gaps, an argument is not as
+        stated, the load is random, or the settings ask for residual flexibility.
     """
     if not accuracy > 0:
         raise ValueError(f"accuracy must be positive: {accuracy!r}")
     tuning = _tuning(params, settings or Settings())
     beam = tuning.at(tuning.forcing)
     x0 = params.initial_gap
-    gaps = np.array([1 + params.gap_asymmetry / 2, 1 - params.gap_asymmetry / 2])
-    orbit = settled_orbit(beam, _first_state(params, tuning, state), gaps, period)
-    share = np.array([1.0, params.wear_coefficient_ratio])
-    worn = wear_along(beam, orbit, share, stop / x0, accuracy)
+    orbit = settled_orbit(beam, _first_state(params, tuning, state), initial_gaps(params), period)
+    worn = wear_along(beam, orbit, wear_shares(params), stop / x0, accuracy)
     frequencies = np.full(len(worn.orbits), params.forcing_frequency)
     ds = labelled_orbits(params, tuning, worn.orbits, frequencies)
     scaled = [event._replace(value=event.value * x0) for event in worn.events]

@@ -49,7 +49,8 @@ def bifurcation_diagram(
     Raises
     ------
     ValueError
-        If a frequency is not positive, `sweep` is not one of the three, or the load is random.
+        If a frequency or `periods` is not positive, `sweep` is not one of the three, or is not
+        ``none`` with residual flexibility, or the load is random.
     """
     check_counts(periods=periods)
     frequency = np.asarray(forcing_frequency, float)

@@ -6,7 +6,7 @@ import xarray as xr
 from models.beam.explore.labels import WORDS, check_counts, dataset, equal_rows
 from models.beam.parameters import Params, Settings
 from models.beam.response.settling import settle
-from models.beam.start import initial_gaps, initial_state, one_system
+from models.beam.start import initial_gaps, initial_state, one_system, wear_shares
 from models.beam.structure.modal import beams
 from models.beam.units import watt, wear_per_work
 from models.beam.wear.accelerated_life import LOOKS, run_life
@@ -43,7 +43,8 @@ def wear_history(
     Raises
     ------
     ValueError
-        If a look would be too short to identify a regime, or the load is random.
+        If a count is not positive, a look would be too short to identify a regime, or the load is
+        random.
     """
     check_counts(periods=periods, looks=looks)
     if periods < looks * WINDOW:
@@ -56,10 +57,9 @@ def wear_history(
     gaps, x0 = initial_gaps(p), p.initial_gap
     state = initial_state(propagator, system, p)
     settled = settle(propagator, system, state, gaps)
-    share = np.array([[1.0, params.wear_coefficient_ratio]])
     growths = np.asarray(settings.depths) / x0[:, None]
     life = run_life(
-        propagator, system, state, gaps, settled.work, share, growths, periods, looks
+        propagator, system, state, gaps, settled.work, wear_shares(p), growths, periods, looks
     ).history
     seen = np.flatnonzero(np.isfinite(life.time[0]))
     regime = confirmed_regimes(life.regime, CONFIRMED * max(1, looks // LOOKS))

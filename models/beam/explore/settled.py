@@ -36,7 +36,8 @@ def work_rate_against_gap(
     Raises
     ------
     ValueError
-        If a gap is not positive, `sweep` is not one of the three, or the load is random.
+        If a gap is not positive, `sweep` is not one of the three, or is not ``none`` with residual
+        flexibility, or the load is random.
     """
     apart = _gaps(gaps)
     p = equal_rows(params, len(apart))
@@ -87,7 +88,7 @@ def phase_portrait(
     Raises
     ------
     ValueError
-        If a gap is not positive, `sweep` is not one of the three, or the load is random.
+        As `work_rate_against_gap`, or if `periods` is not positive.
     """
     check_counts(periods=periods)
     apart = _gaps(gaps)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam import exact
+from models.beam.exact.one_beam import velocities
 from models.beam.parameters import Params, Rows, Settings
 from models.beam.response.response import Response
 from models.beam.response.settling import settle
@@ -30,6 +31,11 @@ def settled_rows(
     settled : Response
     record : Record
         Of the further periods.
+
+    Raises
+    ------
+    ValueError
+        If `sweep` is not one of the three, or is not ``none`` with residual flexibility.
     """
     if sweep not in ("none", "up", "down"):
         raise ValueError(f"sweep must be 'none', 'up' or 'down', not {sweep!r}")
@@ -50,12 +56,11 @@ def settled_rows(
             continue
         order = rows if sweep == "up" else rows[::-1]
         before, now = order[0], state[order[:1]]
-        m = b.frequency.shape[1]
         for row in order:
             one = np.array([row])
             if np.isfinite(now).all():
-                # The state contains velocities per radian of the force.
-                now[:, m : 2 * m] *= b.forcing[before] / b.forcing[row]
+                speeds = velocities(now)
+                speeds *= b.forcing[before] / b.forcing[row]
             else:  # the neighbour could not be followed
                 now = state[one]
             yield one, *look(system.take(one), now, gaps[one])

@@ -2,6 +2,7 @@
 
 Reading order; a module imports only those above it:
 
+    layout        the columns of a state
     recurrence    one mode over one step
     systems       beams that share a step size
     states        initial states, and states in half steps
@@ -11,7 +12,8 @@ Reading order; a module imports only those above it:
     propagator    many beams over whole forcing periods
 """
 
-from models.beam.lanes.propagator import CLOCK, advance, monodromy
+from models.beam.lanes.layout import CLOCK
+from models.beam.lanes.propagator import advance, monodromy
 from models.beam.lanes.states import finer, start
 from models.beam.lanes.systems import groups
 

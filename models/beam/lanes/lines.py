@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.lanes.layout import CLOCK
 from models.beam.structure.modal import Array
 from models.beam.structure.random_lines import AMPLITUDE, COUNT, SPEED, TURN, draw, turn_at
 from models.beam.structure.random_response import add_modes, respond
@@ -86,7 +87,7 @@ def draw_lines(load, state, first, steps, lines):
         n = min(first + lane, last)
         if load.load[n]["power"] > 0:
             is_random = True
-            epoch = int(state[n, state.shape[1] - 1]) // load.load[n]["epoch"]
+            epoch = int(state[n, CLOCK]) // load.load[n]["epoch"]
             _draw_lane(load, n, epoch, steps, lines, lane)
     return is_random
 
@@ -118,7 +119,7 @@ def redraw_lines(load, state, first, period, steps, lines, w, stride):
     last = state.shape[0] - 1
     for lane in range(LANES):
         n = min(first + lane, last)
-        clock = int(state[n, state.shape[1] - 1]) + period
+        clock = int(state[n, CLOCK]) + period
         length = load.load[n]["epoch"]
         if load.load[n]["power"] == 0 or clock == 0 or clock % length:
             continue
@@ -147,7 +148,7 @@ def sum_lines(load, state, first, period, lines):
     since = np.empty(LANES)
     for lane in range(LANES):
         n = min(first + lane, last)
-        since[lane] = (int(state[n, state.shape[1] - 1]) + period) % load.load[n]["epoch"]
+        since[lane] = (int(state[n, CLOCK]) + period) % load.load[n]["epoch"]
     for j in range(COUNT):
         for lane in range(LANES):
             k = j * _LINE * LANES + lane

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from models.beam.lanes.layout import CLOCK, X1
 from models.beam.lanes.lines import Lines, Load
 from models.beam.lanes.steps import advance_blocks, room
 from models.beam.lanes.systems import System
@@ -10,9 +11,7 @@ from models.beam.structure.modal import Array
 from models.beam.structure.propagation import Record
 from models.numerics.elementary import cos, sin
 
-CLOCK = -1
-
-_NOWHERE = 1e6  # displacement, relative to the gap plus the reach of the tip without contact
+_LOST = 1e6  # displacement, relative to the gap plus the reach of the tip without contact
 
 
 def advance(
@@ -41,7 +40,7 @@ def advance(
         tuple(record),
     )
     # Steps too long for the ringing of a long contact amplify it: this is no motion of the beam.
-    lost = np.flatnonzero(~(np.abs(state[:, 2 * m + 1]) <= _NOWHERE * (1 + system.reach)))
+    lost = np.flatnonzero(~(np.abs(state[:, 2 * m + X1]) <= _LOST * (1 + system.free_reach)))
     for field in (state, *record):
         field[lost] = np.nan
     return record

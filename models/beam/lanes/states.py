@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.lanes.layout import CLOCK, SHARED, X1, X2, P, modes_of
 from models.beam.lanes.recurrence import is_static, mode_step
 from models.beam.lanes.systems import System, gains, systems
 from models.beam.structure.modal import Array
@@ -25,10 +26,9 @@ def _open(load, forcing, oscillators, opening):
 
 
 def start(system: System, displacement: Array, velocity: Array) -> Array:
-    """Return y and r of each mode, penetration, two displacements a step apart, and the clock.
+    """Return the state in the layout of `models.beam.lanes.layout`, shape (n, 2 m + 4).
 
-    The shape is (n, 2 m + 4), the newer displacement first. A contact present at the start acts
-    from the end of the first step on.
+    A contact present at the start acts from the end of the first step on.
     """
     n, _, m = system.modes.shape
     to_displacement, to_velocity, moving = system.begin.transpose(1, 0, 2)
@@ -42,11 +42,10 @@ def start(system: System, displacement: Array, velocity: Array) -> Array:
         v -= opening[:, 1, :m]
     z[:, 0] += displacement
     v[:, 0] += velocity
-    state = np.zeros((n, 2 * m + 4))
+    state = np.zeros((n, 2 * m + SHARED))
     state[:, :m] = z
     state[:, m : 2 * m] = to_displacement * z + to_velocity * v - system.modes[:, 0] * z
-    state[:, 2 * m + 1] = displacement
-    state[:, 2 * m + 2] = displacement
+    state[:, 2 * m + X1] = state[:, 2 * m + X2] = displacement
     return state
 
 
@@ -59,7 +58,7 @@ def finer(system: System, state: Array) -> Iterator[tuple[NDArray[np.intp], Syst
 def _in_half_steps(system: System, state: Array, fine: System) -> Array:
     """Return nearly the same state, shape (n, 2 m' + 4)."""
     b = system.beams
-    out = np.zeros((len(state), 2 * fine.modes.shape[2] + 4))
+    out = np.zeros((len(state), 2 * fine.modes.shape[2] + SHARED))
     step = 2 * np.pi / (system.beams.forcing * system.steps)
     modal = (system.modal * system.beams.forcing[:, None]).imag.sum(axis=1)
     _refine(b.frequency, b.decay, gains(b), b.moving, step, -modal, state, out)
@@ -69,9 +68,10 @@ def _in_half_steps(system: System, state: Array, fine: System) -> Array:
 @kernel
 def _refine(frequency, decay, gain, moving, step, velocity, state, out):
     """Set `out` to the state in half steps; `velocity` is that of the tip without contact."""
-    m, size = (state.shape[1] - 4) // 2, (out.shape[1] - 4) // 2
+    m, size = modes_of(state), modes_of(out)
     for n in range(len(state)):
-        p, x1, x2 = state[n, 2 * m], state[n, 2 * m + 1], state[n, 2 * m + 2]
+        p = state[n, 2 * m + P]
+        x1, x2 = state[n, 2 * m + X1], state[n, 2 * m + X2]
         h = step[n]
         speed = velocity[n]
         for i in range(min(size, moving[n])):
@@ -87,6 +87,6 @@ def _refine(frequency, decay, gain, moving, step, velocity, state, out):
                 _, p12, _, p22, _, _, b1, b2 = mode_step(w, d, h / 2)
                 y = z - g * b1 * p
                 out[n, i], out[n, size + i] = y, p12 * (v - g * b2 * p) - p22 * y
-        out[n, 2 * size], out[n, 2 * size + 1] = p, x1
-        out[n, 2 * size + 2] = 0.75 * x1 + 0.25 * x2 - 0.25 * h * speed
-        out[n, 2 * size + 3] = state[n, 2 * m + 3]
+        out[n, 2 * size + P], out[n, 2 * size + X1] = p, x1
+        out[n, 2 * size + X2] = 0.75 * x1 + 0.25 * x2 - 0.25 * h * speed
+        out[n, CLOCK] = state[n, CLOCK]

@@ -19,6 +19,7 @@ the sampled penetration; this reduces the measured error of a work-rate by a fac
 
 import numpy as np
 
+from models.beam.lanes.layout import CLOCK, UNROLL, X1, X2, P, modes_of, padded
 from models.beam.lanes.lines import draw_lines, redraw_lines, sum_lines
 from models.beam.structure.modal import Array
 from models.numerics.blocks import LANES, aligned
@@ -26,17 +27,15 @@ from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
 _NOTHING = 1e-150  # of the gap
-_UNROLL = 4  # modes in the straight-line body of the inner loop
 _MODE = 6  # slots of a mode: y, r, t, d, alpha, beta
-# slots of a lane besides its modes
-_P, _RIGHT, _LEFT, _RE, _IM, _STIFF, _SIGMA, _X1, _X2 = range(9)
+# slots of a lane besides its modes, after those of a state
+_RIGHT, _LEFT, _RE, _IM, _STIFF, _SIGMA = range(3, 9)
 _WORK_R, _WORK_L, _PEAK_R, _PEAK_L, _SUM, _RANDOM, _HEAD = range(9, 16)
 
 
 def room(modes: int) -> tuple[Array, Array]:
     """Return room for the modes of a block of lanes, and for its other slots."""
-    padded = -(-modes // _UNROLL) * _UNROLL
-    return aligned(padded * _MODE * LANES), aligned(_HEAD * LANES)
+    return aligned(padded(modes) * _MODE * LANES), aligned(_HEAD * LANES)
 
 
 @kernel
@@ -54,9 +53,8 @@ def _load(system_modes, sigma, response, state, gaps, first, w, head):
             w[k + LANES] = state[n, m + i]
             for c in range(4):
                 w[k + (2 + c) * LANES] = system_modes[n, c, i]
-        head[_P * LANES + lane] = state[n, 2 * m]
-        head[_X1 * LANES + lane] = state[n, 2 * m + 1]
-        head[_X2 * LANES + lane] = state[n, 2 * m + 2]
+        for slot in (P, X1, X2):
+            head[slot * LANES + lane] = state[n, 2 * m + slot]
         head[_RIGHT * LANES + lane] = gaps[n, 0]
         head[_LEFT * LANES + lane] = gaps[n, 1]
         head[_RE * LANES + lane] = response[n].real
@@ -68,16 +66,15 @@ def _load(system_modes, sigma, response, state, gaps, first, w, head):
 @kernel
 def _store(w, head, first, state, gaps, peak):
     """Store lanes back into their rows."""
-    m = (state.shape[1] - 4) // 2
+    m = modes_of(state)
     for n in range(first, min(first + LANES, state.shape[0])):
         lane = n - first
         for i in range(m):
             k = i * _MODE * LANES + lane
             state[n, i] = w[k]
             state[n, m + i] = w[k + LANES]
-        state[n, 2 * m] = head[_P * LANES + lane]
-        state[n, 2 * m + 1] = head[_X1 * LANES + lane]
-        state[n, 2 * m + 2] = head[_X2 * LANES + lane]
+        for slot in (P, X1, X2):
+            state[n, 2 * m + slot] = head[slot * LANES + lane]
         gaps[n, 0] = head[_RIGHT * LANES + lane]
         gaps[n, 1] = head[_LEFT * LANES + lane]
         peak[n, 0] = head[_PEAK_R * LANES + lane]
@@ -91,8 +88,8 @@ def _step(w, head, groups, cosine, sine):
         head[_SUM * LANES + lane] = 0.0
     for g in range(groups):
         for lane in range(LANES):
-            p = head[_P * LANES + lane]
-            k = g * (_UNROLL * _MODE * LANES) + lane
+            p = head[P * LANES + lane]
+            k = g * (UNROLL * _MODE * LANES) + lane
             y = w[k]
             y0 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
             w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
@@ -123,8 +120,8 @@ def _step(w, head, groups, cosine, sine):
             _STIFF * LANES + lane
         ]
         x = fma(head[_SIGMA * LANES + lane], p, free)
-        x1 = head[_X1 * LANES + lane]
-        before, after = x1 - head[_X2 * LANES + lane], x - x1
+        x1 = head[X1 * LANES + lane]
+        before, after = x1 - head[X2 * LANES + lane], x - x1
         # The corrections below make p non-zero just after contact: p does not indicate contact.
         in_right, in_left = x1 > right, x1 < -left
         # Two divisions in one: for the parabola at the turning point, and for the crossing's
@@ -150,9 +147,9 @@ def _step(w, head, groups, cosine, sine):
         # The missed impulse of a force with a kink inside the step, and of a curved one.
         p += 0.5 * side * d0 * d * (inverse * curvature) if crossed else 0.0
         p -= (after - before) / 12 if d > 0.0 else 0.0
-        head[_X2 * LANES + lane] = x1
-        head[_X1 * LANES + lane] = x
-        head[_P * LANES + lane] = p
+        head[X2 * LANES + lane] = x1
+        head[X1 * LANES + lane] = x
+        head[P * LANES + lane] = p
 
 
 @kernel
@@ -171,7 +168,7 @@ def advance_blocks(
     work, strobe, peak, trace = record
     n, periods, _ = work.shape
     steps = cosine.size
-    groups = w.size // (_UNROLL * _MODE * LANES)
+    groups = w.size // (UNROLL * _MODE * LANES)
     for first in range(0, n, LANES):
         _load(system_modes, sigma, response, state, gaps, first, w, head)
         rows = min(LANES, n - first)
@@ -187,27 +184,25 @@ def advance_blocks(
             for s in range(steps):
                 if s == steps - 1:
                     for lane in range(LANES):
-                        last_but_two[lane] = head[_X2 * LANES + lane]
+                        last_but_two[lane] = head[X2 * LANES + lane]
                 if is_random:
                     for lane in range(LANES):
                         head[_RANDOM * LANES + lane] = lines.total[s * LANES + lane]
                 _step(w, head, groups, cosine[s], sine[s])
                 if trace.size:
                     for lane in range(rows):
-                        trace[first + lane, period * steps + s] = head[_X1 * LANES + lane]
+                        trace[first + lane, period * steps + s] = head[X1 * LANES + lane]
             _forget(w)
             for lane in range(rows):
                 row = first + lane
                 work[row, period, 0] = head[_WORK_R * LANES + lane]
                 work[row, period, 1] = head[_WORK_L * LANES + lane]
-                x = head[_X1 * LANES + lane]
+                x = head[X1 * LANES + lane]
                 strobe[row, period, 0] = x
                 strobe[row, period, 1] = (
-                    (3 * x - 4 * head[_X2 * LANES + lane] + last_but_two[lane])
-                    * steps
-                    / (4 * np.pi)
+                    (3 * x - 4 * head[X2 * LANES + lane] + last_but_two[lane]) * steps / (4 * np.pi)
                 )
                 head[_RIGHT * LANES + lane] += growth[row, 0] * work[row, period, 0]
                 head[_LEFT * LANES + lane] += growth[row, 1] * work[row, period, 1]
         _store(w, head, first, state, gaps, peak)
-    state[:, state.shape[1] - 1] += periods
+    state[:, CLOCK] += periods

@@ -6,9 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.beam.lanes.layout import padded
 from models.beam.lanes.recurrence import is_static, mode_step
 from models.beam.parameters import Settings
-from models.beam.structure.modal import Array, Beams, reach, steady_response
+from models.beam.structure.modal import Array, Beams, free_reach, steady_response
 from models.beam.structure.propagation import LONGEST
 from models.numerics.jit import kernel
 
@@ -35,7 +36,7 @@ class System(NamedTuple):
         Steady amplitude of each mode.
     oscillators : ndarray, shape (n, 3, all modes)
         w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode, for the response to a random load.
-    reach, beams, steps
+    free_reach, beams, steps
         As there.
     """
 
@@ -44,7 +45,7 @@ class System(NamedTuple):
     sigma: Array
     modal: NDArray[np.complex128]
     oscillators: Array
-    reach: Array
+    free_reach: Array
     beams: Beams
     steps: int
 
@@ -149,7 +150,7 @@ def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
         sigma + residual,
         steady_response(b),
         np.stack([b.frequency, b.decay, b.mobility], axis=1),
-        reach(b),
+        free_reach(b),
         b,
         steps,
     )
@@ -175,5 +176,4 @@ def _least_steps(b: Beams) -> Array:
 
 def _widths(moving: Array) -> NDArray[np.int64]:
     """Return the number of modes kept per row: up to the last moving one, in multiples of four."""
-    last = np.where(moving > 0, 1 + np.arange(moving.shape[1]), 1).max(axis=1)
-    return -(-last // 4) * 4
+    return padded(np.where(moving > 0, 1 + np.arange(moving.shape[1]), 1).max(axis=1))

@@ -11,14 +11,14 @@ time.
 
 import numpy as np
 
+from models.beam.lanes.layout import SHARED, UNROLL, X1, X2, P, padded
 from models.beam.lanes.systems import System
 from models.beam.structure.modal import Array
 from models.numerics.blocks import LANES, aligned
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
-_UNROLL = 4  # modes in the straight-line body of the inner loop
-_P, _X1, _X2, _SUM, _HEAD = range(5)  # slots of a block besides its modes
+_SUM, _HEAD = 3, 4  # slots of a block besides its modes, after those of a state
 
 
 @kernel
@@ -44,20 +44,20 @@ def _linearise(x, x1, x2, right, left, sigma):
 def _step(modes, w, head, coefficients):
     """Take all columns through one step: the hot loop."""
     reply, now, then_1, then_2 = coefficients
-    groups = modes.shape[0] // (4 * _UNROLL)
+    groups = modes.shape[0] // (4 * UNROLL)
     for block in range(w.shape[0]):
         column, top = w[block], head[block]
         for lane in range(LANES):
             top[_SUM * LANES + lane] = 0.0
         for g in range(groups):
-            c = 4 * _UNROLL * g
+            c = 4 * UNROLL * g
             t0, d0, a0, b0 = modes[c], modes[c + 1], modes[c + 2], modes[c + 3]
             t1, d1, a1, b1 = modes[c + 4], modes[c + 5], modes[c + 6], modes[c + 7]
             t2, d2, a2, b2 = modes[c + 8], modes[c + 9], modes[c + 10], modes[c + 11]
             t3, d3, a3, b3 = modes[c + 12], modes[c + 13], modes[c + 14], modes[c + 15]
             for lane in range(LANES):
-                p = top[_P * LANES + lane]
-                k = g * (2 * _UNROLL * LANES) + lane
+                p = top[P * LANES + lane]
+                k = g * (2 * UNROLL * LANES) + lane
                 y = column[k]
                 y0 = fma(a0, p, fma(t0, y, column[k + LANES]))
                 column[k + LANES] = fma(b0, p, -d0 * y)
@@ -76,17 +76,17 @@ def _step(modes, w, head, coefficients):
                 column[k + 6 * LANES] = y3
                 top[_SUM * LANES + lane] += (y0 + y1) + (y2 + y3)
         for lane in range(LANES):
-            free, x1 = top[_SUM * LANES + lane], top[_X1 * LANES + lane]
-            p = fma(then_2, top[_X2 * LANES + lane], fma(now, free, then_1 * x1))
-            top[_P * LANES + lane] = p
-            top[_X2 * LANES + lane] = x1
-            top[_X1 * LANES + lane] = reply * free
+            free, x1 = top[_SUM * LANES + lane], top[X1 * LANES + lane]
+            p = fma(then_2, top[X2 * LANES + lane], fma(now, free, then_1 * x1))
+            top[P * LANES + lane] = p
+            top[X2 * LANES + lane] = x1
+            top[X1 * LANES + lane] = reply * free
 
 
 @kernel
 def _load(tangents, w, head):
     """Load the columns (k, c) of one row into lanes; spare lanes and modes are zero."""
-    m = (tangents.shape[0] - 3) // 2
+    m = (tangents.shape[0] + 1 - SHARED) // 2
     w[:] = 0.0
     head[:] = 0.0
     for c in range(tangents.shape[1]):
@@ -94,20 +94,20 @@ def _load(tangents, w, head):
         for i in range(m):
             w[block, 2 * i * LANES + lane] = tangents[i, c]
             w[block, (2 * i + 1) * LANES + lane] = tangents[m + i, c]
-        for slot in range(3):  # _P, _X1, _X2, as in the state
+        for slot in (P, X1, X2):
             head[block, slot * LANES + lane] = tangents[2 * m + slot, c]
 
 
 @kernel
 def _store(w, head, tangents):
     """Store lanes back into their columns."""
-    m = (tangents.shape[0] - 3) // 2
+    m = (tangents.shape[0] + 1 - SHARED) // 2
     for c in range(tangents.shape[1]):
         block, lane = c // LANES, c % LANES
         for i in range(m):
             tangents[i, c] = w[block, 2 * i * LANES + lane]
             tangents[m + i, c] = w[block, (2 * i + 1) * LANES + lane]
-        for slot in range(3):
+        for slot in (P, X1, X2):
             tangents[2 * m + slot, c] = head[block, slot * LANES + lane]
 
 
@@ -119,7 +119,7 @@ def _carry(modes, sigma, state, gaps, trace, tangents, packed, w, head):
             for j in range(4):
                 packed[4 * i + j] = modes[row, j, i]
         _load(tangents[row], w, head)
-        x1, x2 = state[row, 2 * m + 1], state[row, 2 * m + 2]
+        x1, x2 = state[row, 2 * m + X1], state[row, 2 * m + X2]
         for s in range(trace.shape[1]):
             x = trace[row, s]
             _step(packed, w, head, _linearise(x, x1, x2, gaps[row, 0], gaps[row, 1], sigma[row]))
@@ -144,7 +144,7 @@ def carry(system: System, state: Array, gaps: Array, trace: Array, tangents: Arr
     """
     m = system.modes.shape[2]
     blocks = -(-tangents.shape[2] // LANES)
-    modes = -(-m // _UNROLL) * _UNROLL
+    modes = padded(m)
     _carry(
         system.modes,
         system.sigma,

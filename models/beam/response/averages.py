@@ -63,7 +63,7 @@ def time_mean(
     """
     n = len(state)
     wanted = np.maximum(least, MEMORIES * system.beams.memory)
-    touches = system.reach >= gaps.min(axis=1)
+    touches = system.free_reach >= gaps.min(axis=1)
     out = Mean(*np.zeros((3, n, 2)))
     pieces = np.zeros((n, LONGEST // _PIECE, 2))
     longest = system.longest

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from models.beam.response.response import APERIODIC, Response
 from models.beam.response.settling import MEMORIES, SEGMENT, look
 from models.beam.structure.modal import Array
-from models.beam.structure.propagation import Propagator, System
+from models.beam.structure.propagation import FIRST_MODE, Propagator, System
 
 _SHORTEST = 16  # segments of a further run
 _AWAY = (-1e-3, 1e-3, 2e-3)  # offsets of their starts, in the first mode and in initial gaps
@@ -42,7 +42,7 @@ def add_neighbour_error(
         return
     again = np.repeat(rows, len(_AWAY))
     state = begin[again]
-    state[:, 0] += np.tile(_AWAY, len(rows))
+    state[:, FIRST_MODE] += np.tile(_AWAY, len(rows))
     found = Response.settling(len(again))
     segments = np.repeat(_segments(system.beams.memory[rows]), len(_AWAY))
     for some in np.unique(segments):

@@ -64,7 +64,7 @@ def settle(propagator: Propagator, system: System, state: Array, gaps: Array) ->
         orbit nor forgotten its start within the longest look.
     """
     out = Response.settling(len(state))
-    never_touches = system.reach < gaps.min(axis=1)
+    never_touches = system.free_reach < gaps.min(axis=1)
     random = np.flatnonzero(system.beams.is_random)
     if len(random):
         _settle_random(propagator, system, state, gaps, never_touches, random, out)
@@ -99,7 +99,7 @@ def look(
         Segments.
     """
     n = len(state)
-    never_touches = system.reach < gaps.min(axis=1)
+    never_touches = system.free_reach < gaps.min(axis=1)
     batches = np.zeros((n, longest, 2))
     quiet = np.zeros(n)
     distance = np.full((n, LONGEST_PERIOD), np.inf)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from models.beam.parameters import Rows, Settings
 from models.beam.structure.finite_element import modes
 from models.beam.structure.random_load import random_load
-from models.beam.structure.random_response import sure_reach, tip_deviation
+from models.beam.structure.random_response import SURE, tip_deviation
 
 Array = NDArray[np.float64]
 
@@ -64,6 +64,18 @@ class Beams(NamedTuple):
     def turn(self) -> Array:
         """Forcing periods in a free oscillation of the first mode, shape (n,)."""
         return self.forcing / self.frequency[:, 0]
+
+    def in_phase_time(self, row: int, forcing: float) -> tuple[Array, Array, Array]:
+        """Return w_i, d_i [1] and b_i [m N-1] of one beam in the time Omega t, each shape (m,).
+
+        Parameters
+        ----------
+        row : int
+        forcing : float
+            Omega [rad s-1].
+        """
+        w, d, b = self.frequency[row], self.decay[row], self.mobility[row]
+        return w / forcing, d / forcing, b / forcing**2
 
     def take(self, rows: NDArray[np.intp]) -> "Beams":
         """Return some of the beams."""
@@ -130,7 +142,7 @@ def steady_response(b: Beams) -> NDArray[np.complex128]:
     return b.mobility * b.force[:, None] / stiffness
 
 
-def reach(b: Beams) -> Array:
+def free_reach(b: Beams) -> Array:
     """Return a bound of the tip's displacement without contact.
 
     Parameters
@@ -147,4 +159,4 @@ def reach(b: Beams) -> Array:
     if not b.load["power"].any():
         return harmonic
     random = tip_deviation(b.load, b.forcing, b.frequency, b.decay, b.mobility)
-    return harmonic + sure_reach(random)
+    return harmonic + SURE * random

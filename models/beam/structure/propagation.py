@@ -12,6 +12,8 @@ from models.numerics import propagator
 
 LONGEST = 16_384
 """Forcing periods in a time mean, at most."""
+FIRST_MODE = 0
+"""Column of a state that displaces the tip in the first mode, in initial gaps."""
 
 
 class Record(NamedTuple):
@@ -53,7 +55,7 @@ class System(Protocol):
         """The same beams."""
 
     @property
-    def reach(self) -> Array:
+    def free_reach(self) -> Array:
         """Bound of the tip's displacement without contact, in initial gaps, shape (n,)."""
 
     @property
@@ -109,7 +111,7 @@ class Propagator(propagator.Propagator, Protocol):
         Returns
         -------
         ndarray, shape (n, k)
-            In a form of the propagator's own, except for its clock.
+            In a form of the propagator's own, except for its first mode and its clock.
         """
 
     def advance(

@@ -12,10 +12,17 @@ from models.beam.structure.random_lines import (
     turn_at,
 )
 from models.numerics.fma import fma
-from models.numerics.jit import kernel
+from models.numerics.jit import inlined, kernel
 
-_SURE = 9.0  # standard deviations not exceeded in a life: once in about 10^17 oscillations
+SURE = 9.0  # standard deviations not exceeded in a life: once in about 10^17 oscillations
 _NODES = 4  # of the quadrature of each sub-band
+
+
+@inlined
+def _mode(w, frequency, decay, mobility):
+    """Return stiffness and damping of a mode at w, and its mobility over their squared modulus."""
+    stiff, damp = fma(-w, w, frequency**2), 2 * decay * w
+    return stiff, damp, mobility / fma(stiff, stiff, damp * damp)
 
 
 @kernel
@@ -25,8 +32,7 @@ def respond(lines, forcing, frequency, decay, mobility):
         w = lines[j, SPEED] * forcing
         re = im = 0.0
         for i in range(frequency.size):
-            stiff, damp = fma(-w, w, frequency[i] ** 2), 2 * decay[i] * w
-            per = mobility[i] / fma(stiff, stiff, damp * damp)
+            stiff, damp, per = _mode(w, frequency[i], decay[i], mobility[i])
             re = fma(stiff, per, re)
             im = fma(-damp, per, im)
         lines[j, AMPLITUDE] *= np.sqrt(re * re + im * im)
@@ -46,8 +52,7 @@ def add_modes(lines, period, sign, forcing, frequency, decay, mobility, modes):
         c = sign * lines[j, AMPLITUDE] * np.cos(angle)
         s = sign * lines[j, AMPLITUDE] * np.sin(angle)
         for i in range(frequency.size):
-            stiff, damp = fma(-w, w, frequency[i] ** 2), 2 * decay[i] * w
-            per = mobility[i] / fma(stiff, stiff, damp * damp)
+            stiff, damp, per = _mode(w, frequency[i], decay[i], mobility[i])
             modes[0, i] = fma(per, fma(stiff, c, damp * s), modes[0, i])
             modes[1, i] = fma(per * w, fma(damp, c, -stiff * s), modes[1, i])
 
@@ -90,8 +95,3 @@ def tip_deviation(
     variance = np.empty(len(load))
     _spread(load, forcing, frequency, decay, mobility, (1 + node) / 2, weight / 2, variance)
     return np.sqrt(variance)
-
-
-def sure_reach(deviation: Array) -> Array:
-    """Return a bound not exceeded in a life by the random part of the tip's displacement."""
-    return _SURE * deviation

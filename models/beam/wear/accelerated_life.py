@@ -99,10 +99,12 @@ def run_life(
         History.nothing(n, looks * OVERTIME),
     )
     rate = work * share
-    reach = system.reach
+    free_reach = system.free_reach
     clock, grown, silence = np.zeros(n), np.zeros((n, 2)), np.zeros(n, np.int64)
     silent = np.maximum(_SILENCE, TURNS * system.beams.turn)
-    life = Life(gaps, share, growths, reach, rate.max(axis=1), rate, grown, clock, silence, silent)
+    life = Life(
+        gaps, share, growths, free_reach, rate.max(axis=1), rate, grown, clock, silence, silent
+    )
     left, state, here, unstable = np.arange(n), state.copy(), gaps.copy(), np.zeros(n, bool)
     every = 8 if looks < LOOKS else 4  # looks between two checks of stability
     for look in range(looks * OVERTIME):

@@ -21,7 +21,7 @@ class Life(NamedTuple):
     ----------
     gaps, share, growths : ndarray
         As in `models.beam.wear.accelerated_life.run_life`.
-    reach : ndarray, shape (n,)
+    free_reach : ndarray, shape (n,)
         Amplitude of the tip without contact [X0].
     first, rate : ndarray, shape (n,), (n, 2)
         Wear per period at the beginning, and its running value at each site.
@@ -36,7 +36,7 @@ class Life(NamedTuple):
     gaps: Array
     share: Array
     growths: Array
-    reach: Array
+    free_reach: Array
     first: Array
     rate: Array
     grown: Array
@@ -156,5 +156,5 @@ def _has_ended(i, life):
     """
     narrow = min(life.gaps[i, 0] + life.grown[i, 0], life.gaps[i, 1] + life.grown[i, 1])
     rate = max(life.rate[i, 0], life.rate[i, 1])
-    silent = life.silence[i] >= life.silent[i] and life.reach[i] < narrow
-    return silent or (rate <= _EXTINCT * life.first[i] and life.reach[i] < 1.01 * narrow)
+    silent = life.silence[i] >= life.silent[i] and life.free_reach[i] < narrow
+    return silent or (rate <= _EXTINCT * life.first[i] and life.free_reach[i] < 1.01 * narrow)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from models.beam.response.response import ASYMMETRIC, SYMMETRIC
 from models.beam.structure.modal import Array
-from models.beam.structure.propagation import Propagator, System
+from models.beam.structure.propagation import FIRST_MODE, Propagator, System
 from models.numerics.multipliers import largest_multiplier
 
 _PUSH = 3e-3  # of the first mode [X0]
@@ -47,5 +47,5 @@ def push_off_unstable_orbits(
     if len(rows):
         flow = propagator.monodromy(system.take(rows), state[rows], gaps[rows], 1)
         now[rows] = largest_multiplier(flow) > 1
-    state[now & ~unstable, 0] += _PUSH
+    state[now & ~unstable, FIRST_MODE] += _PUSH
     unstable[:] = now

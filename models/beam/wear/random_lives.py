@@ -74,7 +74,7 @@ def find_random_lives(
     for i in range(n):
         some = slice(0, last[i] + 1)
         narrow = (gaps[i] + grown[last[i], i]).min()
-        silent = not rate[last[i], i].any() and system.reach[i] < narrow
+        silent = not rate[last[i], i].any() and system.free_reach[i] < narrow
         _note(i, out, gaps[i], grown[some, i], rate[some, i], doubt[some, i], growths[i], silent)
         # Under a random load there is one regime until contact ends.
         out.changes[i] = float(silent and bool(rate[0, i].any()))

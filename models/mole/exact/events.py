@@ -56,7 +56,7 @@ def _guards(t, y, mode, guard):
 
 @kernel
 def _longest(t, y, mode):
-    return equations.reach(y[0], y[1], 1 / math.sqrt(2 * mode.q.sharpness))
+    return equations.coil_step(y[0], y[1], 1 / math.sqrt(2 * mode.q.sharpness))
 
 
 _integrate = integrator(equations.rates, _guards, 3, _LOOKS, _longest)

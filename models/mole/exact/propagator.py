@@ -1,4 +1,4 @@
-"""One mole over any time: a `models.numerics.propagator.Yardstick`."""
+"""One mole over any time: a `models.numerics.propagator.ReferencePropagator`."""
 
 import math
 
@@ -26,10 +26,24 @@ def start(params: Params, q: Mole) -> State:
 
 
 def propagate(q: Mole, state: State, end: float, tolerance: float, times: ArrayLike = ()) -> Motion:
-    """Follow one mole.
+    """Follow one mole, as `models.numerics.propagator.ReferencePropagator` states.
 
-    The tolerance is relative to each component of the state, or to its `scales` if these are
-    larger.
+    Parameters
+    ----------
+    q : Mole
+    state : State
+        Not changed.
+    end : float
+        When to stop [s], since the relay first closed.
+    tolerance : float
+        Allowed error of a step, relative to each component of the state, or to its `scales` if
+        these are larger.
+    times : array_like, shape (k,)
+        When to sample the state [s], ascending.
+
+    Returns
+    -------
+    Motion
     """
     q = Mole._make([*(float(field) for field in q[:-1]), int(q.formulation)])
     times = np.ascontiguousarray(times, float)

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from models.numerics import dop8
-from models.numerics.blocks import LANES, aligned
+from models.numerics.blocks import LANES, aligned, layout
 
 # Quantities of a lane, followed by its tangents, which have the first five each.
 U, V, X, CURRENT, P, ADDED, SINE, COSINE = range(8)
@@ -54,7 +54,7 @@ ROW, BAR_MODE, MOLE_MODE, TOUCHING, HALF, TARGET, CONTACTS, ENTRIES = range(51, 
 WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(59, 67)
 
 # The coil: inductance added by the bar in its middle, its width, and the longest step near it.
-ADDED_MOST, WIDTH, REACH = range(67, 70)
+ADDED_MOST, WIDTH, COIL_STEP = range(67, 70)
 
 GROWTH = 70  # logarithm of the factor by which tangents were divided
 ROWS = 71
@@ -69,7 +69,7 @@ class Block(NamedTuple):
     Attributes
     ----------
     whole : ndarray
-        States, arguments and slopes; see `models.numerics.dop8.layout`.
+        States, arguments and slopes; see `models.numerics.blocks.Layout`.
     state, new : ndarray
         Views of states and arguments; after the last stage `new` is the new state.
     end : ndarray
@@ -95,7 +95,7 @@ class Block(NamedTuple):
     def made(columns: int) -> "Block":
         """Return memory for lanes with this many columns of tangents."""
         size = quantities(columns)
-        where = dop8.layout(size)
+        where = layout(size, dop8.STAGES)
         whole = aligned(where.size)
         n = size * LANES
         return Block(

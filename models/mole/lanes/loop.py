@@ -13,9 +13,10 @@ from models.mole.lanes.block import INTEGRALS, LANES, MEASURED, Block, quantitie
 from models.mole.lanes.modes import judge
 from models.mole.lanes.rates import renew, slopes
 from models.mole.lanes.rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, unload
-from models.mole.lanes.steps import conclude, look
+from models.mole.lanes.steps import accept, conclude
 from models.mole.lanes.strobe import strobe
 from models.numerics import dop8
+from models.numerics.blocks import layout
 from models.numerics.jit import kernel, lean
 
 _SHORTEST = 1e-15  # s
@@ -38,7 +39,7 @@ def propagator(columns: int) -> Callable[..., None]:
     rates = slopes(columns)
     combine = dop8.combiner(size)
     estimate = dop8.estimator(size, MEASURED)
-    first = dop8.layout(size).slopes
+    first = layout(size, dop8.STAGES).slopes
     whole = size * LANES
 
     @lean
@@ -78,7 +79,7 @@ def propagator(columns: int) -> Callable[..., None]:
             estimate(w, share, error)
             rates(m, new, end, 0.0)
             judge(m, new, end)
-            look(m, error)
+            accept(m, error)
             keep(m, y, new)
             for lane in range(LANES):
                 if m[at.LOOK * LANES + lane] == 0.0 or m[at.ROW * LANES + lane] < 0:

@@ -8,7 +8,7 @@ import math
 
 from models.mole.lanes import block as at
 from models.mole.lanes.block import BAR, LANES, MOLE, TOUCH
-from models.mole.theory.equations import reach
+from models.mole.theory.equations import coil_step
 from models.mole.theory.friction import bar_hold, mole_hold, response
 from models.mole.theory.system import Mole
 from models.numerics.fma import fma
@@ -93,7 +93,7 @@ def enter(q, lane, m, y):
     current = (p - (q.resistance + rise * v) * i) / (q.coil_inductance + added)
     rate_v, rate_x = mode.a * force + mode.b, mode.d * force + mode.e
     change = i * current * rise + (0.5 * i * i * bend - stiffness) * v - q.damping * rate_v
-    m[at.REACH * LANES + lane] = reach(u, v, m[at.WIDTH * LANES + lane])
+    m[at.COIL_STEP * LANES + lane] = coil_step(u, v, m[at.WIDTH * LANES + lane])
     open_ = m[at.OPEN * LANES + lane]
     m[(at.START + TOUCH) * LANES + lane] = open_ * (q.stop_gap - u)
     m[(at.START_RATE + TOUCH) * LANES + lane] = -open_ * v
@@ -127,7 +127,7 @@ def judge(m, y, k):
         force = fma(-damping, v, fma(-stiffness, u, force))
         change = fma(i * k[at.CURRENT * LANES + lane], rise, -damping * kv)
         change = fma(fma(0.5 * i * i, bend, -stiffness) * v, m[at.STEP * LANES + lane], change)
-        m[at.REACH * LANES + lane] = reach(u, v, m[at.WIDTH * LANES + lane])
+        m[at.COIL_STEP * LANES + lane] = coil_step(u, v, m[at.WIDTH * LANES + lane])
         open_ = m[at.OPEN * LANES + lane]
         m[(at.END + TOUCH) * LANES + lane] = open_ * (m[at.GAP * LANES + lane] - u)
         m[(at.END_RATE + TOUCH) * LANES + lane] = -open_ * v * m[at.STEP * LANES + lane]

@@ -22,13 +22,13 @@ _LOW = 0.75  # of a guard: a smaller extrapolated fall needs no check for a mini
 @lean
 def next_step(lane, m, wish):
     """Choose the next step of a lane: as wished, within bounds, up to the switching if near."""
-    h = min(wish, m[at.LONGEST * LANES + lane], m[at.REACH * LANES + lane])
+    h = min(wish, m[at.LONGEST * LANES + lane], m[at.COIL_STEP * LANES + lane])
     rest = m[at.HALF_PERIOD * LANES + lane] - m[at.TIME * LANES + lane]
     m[at.STEP * LANES + lane] = rest if rest <= h * 1.000001 else h
 
 
 @lean
-def look(m, error):
+def accept(m, error):
     """Accept the steps of all lanes that met no event; mark the others."""
     for lane in range(LANES):
         h, time = m[at.STEP * LANES + lane], m[at.TIME * LANES + lane]
@@ -55,8 +55,8 @@ def look(m, error):
         m[at.WISH * LANES + lane] = wish
         longest = m[at.LONGEST * LANES + lane]
         wish = wish if wish < longest else longest
-        reach = m[at.REACH * LANES + lane]
-        wish = wish if wish < reach else reach
+        most = m[at.COIL_STEP * LANES + lane]
+        wish = wish if wish < most else most
         rest = half - (time + step)
         wish = rest if rest <= wish * 1.000001 else wish
         m[at.STEP * LANES + lane] = wish if taken else h

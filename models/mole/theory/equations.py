@@ -95,7 +95,7 @@ def coil(q, u):
 
 
 @inlined
-def reach(u, v, width):
+def coil_step(u, v, width):
     """Return the longest step [s] in which a bar cannot cross the coil unnoticed.
 
     Parameters

@@ -7,7 +7,7 @@ Reading order; a module imports only those above it:
     measures      measures of a sampled motion
     orbit         the synchronous motion as a periodic orbit, by shooting
 
-It is a `models.numerics.propagator.Yardstick`.
+It is a `models.numerics.propagator.ReferencePropagator`.
 """
 
 from models.vibrator.exact.propagator import Motion, propagate, start

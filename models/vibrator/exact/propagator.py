@@ -1,4 +1,4 @@
-"""Error-controlled propagation of one machine: the yardstick of the vibrator.
+"""Error-controlled propagation of one machine: the reference for the vibrator.
 
 The equations are integrated by `models.numerics.dop853`; a flight of the feed begins where its
 contact force vanishes and ends where its height does.
@@ -154,6 +154,13 @@ def runner(system: System, degrees: int) -> Callable[..., Outcome]:
 def start(params: Params, system: System) -> NDArray[np.float64]:
     """Return the state of one machine at rest, at its initial phases.
 
+    Parameters
+    ----------
+    params : Params
+        Each field a float.
+    system : System
+        The same machine, prepared.
+
     Returns
     -------
     ndarray, shape (10,) or (16,)
@@ -172,7 +179,7 @@ def propagate(
     turns: float = math.inf,
     times: ArrayLike = (),
 ) -> Motion:
-    """Follow one machine, as `models.numerics.propagator.Yardstick` states.
+    """Follow one machine, as `models.numerics.propagator.ReferencePropagator` states.
 
     Parameters
     ----------
@@ -187,6 +194,7 @@ def propagate(
     turns : float
         Stop after this many turns of vibrator 1, if they come before `duration`.
     times : array_like, shape (k,)
+        When to sample the state [s], ascending.
 
     Returns
     -------

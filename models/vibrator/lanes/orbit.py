@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.numerics.blocks import LANES, aligned
+from models.numerics.blocks import LANES, aligned, layout
 from models.numerics.jit import kernel
 from models.numerics.linear import product, solve
-from models.numerics.tsit5 import combiner, layout
+from models.numerics.tsit5 import STAGES, combiner
 from models.vibrator.lanes.multiplier import largest_multiplier
 from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, slopes, store
 from models.vibrator.lanes.tangents import FREE, revolve
@@ -32,7 +32,7 @@ _CLOSE_ENOUGH = 1e-7  # for one step with accurate derivatives to leave only rou
 
 _TURN = np.where(np.isin(np.arange(STATE), (3, 4)), 2 * np.pi, 0.0)
 _combine = combiner(STATE)
-_Y, _NEW, _K, _SIZE = layout(STATE)
+_Y, _NEW, _K, _SIZE = layout(STATE, STAGES)
 _WHOLE = STATE * LANES
 _K_2, _K_3, _K_4, _K_5, _K_6 = (_K + i * _WHOLE for i in range(1, 6))
 
@@ -103,6 +103,7 @@ def follow(constants: Array, state: Array, period: Array, steps: int) -> Array:
     constants : ndarray, shape (n, CONSTANTS)
     state : ndarray, shape (n, 10)
     period : ndarray, shape (n,)
+        [s]
     steps : int
 
     Returns

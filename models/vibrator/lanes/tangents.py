@@ -7,22 +7,20 @@ that a column needs stays in the fastest cache; stage by stage it would not.
 
 import numpy as np
 
-from models.numerics.blocks import LANES, aligned
+from models.numerics.blocks import LANES, aligned, layout
 from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel
-from models.numerics.sincos import cosine_sine
 from models.numerics.tableaux import TSITOURAS_5
-from models.numerics.tsit5 import STAGES, combiner, layout
-from models.vibrator.equations.rigid import accelerations
+from models.numerics.tsit5 import STAGES, combiner
 from models.vibrator.equations.rigid_derivatives import derivatives
 from models.vibrator.lanes.machines import Machines
-from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, machine, slopes
+from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, set_slopes, slopes
 
 ANCHOR = 3  # psi_1
 FREE = [i for i in range(STATE) if i != ANCHOR]
 COLUMNS = len(FREE)
 _combine = combiner(STATE)
-_Y, _NEW, _K, _SIZE = layout(STATE)
+_Y, _NEW, _K, _SIZE = layout(STATE, STAGES)
 _WHOLE = STATE * LANES
 _K_2, _K_3, _K_4, _K_5, _K_6 = (_K + i * _WHOLE for i in range(1, STAGES))
 _HALF = LANES // 2
@@ -56,24 +54,8 @@ def _put(jacobian, o, h, column):
 def _linearise(c, h, y, k, jacobian):
     """Set k to the slopes of the states y, and their Jacobian."""
     for lane in range(LANES):
-        m, step = machine(c, lane), h[lane]
-        c_1, s_1 = cosine_sine(m.working_angle + y[3 * LANES + lane])
-        c_2, s_2 = cosine_sine(m.working_angle - y[4 * LANES + lane])
-        x, y_, alpha = y[lane], y[LANES + lane], y[2 * LANES + lane]
-        vx, vy, va = y[5 * LANES + lane], y[6 * LANES + lane], y[7 * LANES + lane]
-        w_1, w_2 = y[8 * LANES + lane], y[9 * LANES + lane]
-        motion = accelerations(m, c_1, s_1, c_2, s_2, x, y_, alpha, vx, vy, va, w_1, w_2)
+        m, step, motion, c_1, s_1, c_2, s_2, va, w_1, w_2 = set_slopes(c, h, y, k, lane)
         by = derivatives(m, motion, c_1, s_1, c_2, s_2, va, w_1, w_2)
-        k[lane] = step * vx
-        k[LANES + lane] = step * vy
-        k[2 * LANES + lane] = step * va
-        k[3 * LANES + lane] = step * w_1
-        k[4 * LANES + lane] = step * w_2
-        k[5 * LANES + lane] = step * motion.x
-        k[6 * LANES + lane] = step * motion.y
-        k[7 * LANES + lane] = step * motion.alpha
-        k[8 * LANES + lane] = step * motion.psi_1
-        k[9 * LANES + lane] = step * motion.psi_2
         _put(jacobian, lane, step, by[0])
         _put(jacobian, LANES + lane, step, by[1])
         _put(jacobian, 2 * LANES + lane, step, by[2])
@@ -229,6 +211,7 @@ def revolve(constants: Array, start: Array, period: Array, steps: int) -> Array:
     constants : ndarray, shape (n, CONSTANTS)
     start : ndarray, shape (n, 10)
     period : ndarray, shape (n,)
+        [s]
     steps : int
         In the period.
 

@@ -5,6 +5,4 @@ Reading order:
     table1          prints its Table 1
     centre          the centre of mass to which its formulas refer
     closed_forms    its formulas for one disturbance at a time
-    criterion       the integral criterion from which they derive
-    moments         the vibratory moments that both approximate
 """

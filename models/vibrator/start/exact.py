@@ -1,6 +1,6 @@
 """From standstill to the outcome with the exact propagator, one machine after the other.
 
-For machines on flexible mounts, with feed or with exact kinematics, and as the yardstick of rigid
+For machines on flexible mounts, with feed or with exact kinematics, and as the reference for rigid
 ones. A run-up is monitored in looks of eight turns. Once the vibrators keep step, their synchronous
 running is found as a periodic orbit. If the orbit is stable, the run stops as soon as it stays near
 it and free vibration of the body can no longer exceed the largest displacement; otherwise it

@@ -78,13 +78,13 @@ def respond(a, w):
     xa = x * (a.offset * c) + w2 * a.set_mass * a.across
     ya = x * (-a.offset * s) - w2 * a.set_mass * R
     aa = x * (a.offset * a.offset) + y * (a.spacing * a.spacing) - w2 * a.inertia
-    feed, reach = -w2 * complex(a.feed, a.feed_loss), a.feed_position
+    feed, lever = -w2 * complex(a.feed, a.feed_loss), a.feed_position
     xx += feed * (s * s)
     xy += feed * (s * c)
     yy += feed * (c * c)
-    xa += feed * (s * reach)
-    ya += feed * (c * reach)
-    aa += feed * (reach * reach)
+    xa += feed * (s * lever)
+    ya += feed * (c * lever)
+    aa += feed * (lever * lever)
 
     # exciting forces H_i, and their conjugates, which weight the displacements
     arm_1, arm_2 = -(a.across + a.half), -(a.across - a.half)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_exact import at_omega, set_up
+from exact_beams import at_omega, set_up
 
 from models.beam.explore.branches import continue_orbit, follow_wear
 from models.beam.parameters import Params

@@ -1,60 +1,12 @@
-"""The exact propagator against independent integrators, balances and published values."""
-
-from typing import Any, NamedTuple
+"""The exact propagator against independent integrators, and what its callers rely on."""
 
 import numpy as np
 import pytest
+from exact_beams import FAR, NOMINAL, at_omega, critically_damped, deflected, set_up
 from scipy.linalg import expm
 from twins import assemble, by_dop853, by_newmark, first_order, initial_state
 
-from models.beam import exact
-from models.beam.parameters import Params, Settings
-from models.beam.structure.modal import Beams, beams
-
-NOMINAL = Params()
-FAR = 1e6  # a gap never crossed [X0]
-
-
-class Setup(NamedTuple):
-    """One or more beams, ready to be advanced."""
-
-    modal: Beams
-    system: Any
-    state: np.ndarray
-    gaps: np.ndarray
-
-    def advance(self, periods, growth=0.0, trace=False):
-        growth = np.full_like(self.gaps, growth)
-        return exact.advance(self.system, self.state, self.gaps, growth, periods, trace)
-
-
-def set_up(*rows, gap=1.0, **settings):
-    settings = Settings(**settings)
-    p = Params(*np.array(rows, float).T)
-    modal = beams(p, settings)
-    ((_, system),) = exact.groups(modal, settings)
-    state = exact.start(
-        system, p.initial_displacement / p.initial_gap, p.initial_velocity / p.initial_gap
-    )
-    gaps = gap * np.stack([1 + p.gap_asymmetry / 2, 1 - p.gap_asymmetry / 2], axis=1)
-    return Setup(modal, system, state, gaps)
-
-
-def at_omega(omega, **settings):
-    """Return the nominal beam, forced at a multiple of its fundamental frequency."""
-    w0 = set_up(NOMINAL, **settings).modal.frequency[0, 0]
-    return NOMINAL._replace(forcing_frequency=omega * w0 / (2 * np.pi))
-
-
-def critically_damped(elements, mode):
-    w = set_up(NOMINAL, elements=elements).modal.frequency[0, mode]
-    c_k = (2 * w - NOMINAL.mass_damping) / w**2
-    return NOMINAL._replace(stiffness_damping=c_k)
-
-
-def deflected(p):
-    return p._replace(initial_displacement=4e-4, initial_velocity=-0.1)
-
+from models.beam.parameters import Params
 
 # Free flight
 
@@ -165,93 +117,6 @@ def test_the_briefest_contact_is_met(depth):
     tolerance = 10 * np.sqrt(depth) + 1e-13 / depth
     np.testing.assert_allclose(record.peak[0] / amplitude, depth, rtol=tolerance)
     np.testing.assert_allclose(record.work[0, 0], record.peak[0] ** 2, rtol=1e-12 + 1e-19 / depth)
-
-
-# Energy
-
-
-def energy(setup, contact=True):
-    """Return the mechanical energy of one beam [k_c X0^2], its springs at the tip included."""
-    m = setup.modal.frequency.shape[1]
-    z, v = setup.state[0, :m], setup.state[0, m : 2 * m] * setup.modal.forcing[0]
-    modal = 0.5 * ((v**2 + (setup.modal.frequency[0] * z) ** 2) / setup.modal.mobility[0]).sum()
-    over = np.maximum([z.sum() - setup.gaps[0, 0], -z.sum() - setup.gaps[0, 1]], 0)
-    return modal / setup.modal.stiffness[0] + 0.5 * (over**2).sum()
-
-
-def dissipation(setup):
-    """Return the power lost to damping, per unit of Omega t."""
-    m = setup.modal.frequency.shape[1]
-    v = setup.state[0, m : 2 * m] * setup.modal.forcing[0]
-    power = (2 * setup.modal.decay[0] * v**2 / setup.modal.mobility[0]).sum()
-    return power / setup.modal.stiffness[0] / setup.modal.forcing[0]
-
-
-def test_energy_lost_in_free_rattling_is_what_damping_takes():
-    """Without a force its frequency is arbitrary, so that a period can be a short step."""
-    p = NOMINAL._replace(force_amplitude=0.0, forcing_frequency=1e4, initial_displacement=2e-3)
-    setup = set_up(p, elements=2)
-    steps = 10_000
-    start, power, work = energy(setup), [dissipation(setup)], np.zeros(2)
-    for _ in range(steps):
-        work += setup.advance(1).work[0, 0]
-        power.append(dissipation(setup))
-    lost = 2 * np.pi * (np.sum(power) - 0.5 * (power[0] + power[-1]))
-    assert (work > 100).all()
-    assert lost > 0.1 * start
-    np.testing.assert_allclose(start - energy(setup), lost, rtol=1e-5)
-
-
-@pytest.mark.parametrize("omega", [5.61, 9.9])
-def test_in_a_settled_orbit_damping_takes_what_the_force_gives(omega):
-    """Modes driven by the harmonics of force and contact return the orbit's displacement."""
-    samples = 1 << 16
-    setup = set_up(at_omega(omega), steps_per_period=samples)
-    setup.advance(3000)
-    x = np.roll(setup.advance(1, trace=True).trace[0], 1)
-    b = Beams(*(a[0] for a in setup.modal))
-    contact = np.maximum(x - 1, 0) - np.maximum(-x - 1, 0)
-    phase = 2 * np.pi * np.arange(samples) / samples
-    total = np.fft.rfft(b.force * np.cos(phase) - b.stiffness * contact) / samples
-    n = np.arange(len(total))[:, None] * b.forcing
-    velocity = 1j * n * b.mobility / (b.frequency**2 - n**2 + 2j * n * b.decay) * total[:, None]
-    lost = (2 * 2 * b.decay / b.mobility * abs(velocity) ** 2).sum()
-    given = 2 * (0.5 * b.force * 1j * b.forcing * np.fft.rfft(x)[1] / samples).real
-    displacement = np.fft.irfft(
-        (b.mobility / (b.frequency**2 - n**2 + 2j * n * b.decay)).sum(axis=1) * total * samples
-    )
-    np.testing.assert_allclose(displacement, x, rtol=0, atol=1e-6)
-    np.testing.assert_allclose(lost, given, rtol=1e-6)
-
-
-# Values of the literature's nominal set
-
-
-@pytest.mark.parametrize(
-    ("omega", "rates"),
-    [(5.61, (3.919359, 3.394367)), (9.9, (82.55679, 29.56878)), (9.5, (32.36390, 32.36390))],
-)
-def test_work_rates_of_settled_orbits(omega, rates):
-    """In k_c X0^2 w0; which site is the heavy one depends on the start."""
-    setup = set_up(at_omega(omega))
-    work = setup.advance(4000).work[0, -1]
-    found = np.sort(work / (2 * np.pi / omega))[::-1]
-    np.testing.assert_allclose(found, rates, rtol=3e-7)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("omega", "gap", "mean", "error"),
-    [(5.61, 2.5, 7.78, 0.04), (9.9, 3.0, 191.2, 0.6), (7.5, 1.0, 14.597, 0.010)],
-)
-def test_means_of_aperiodic_motion(omega, gap, mean, error):
-    """The mean of both sites, within four standard errors of the difference."""
-    setup = set_up(at_omega(omega), gap=gap)
-    setup.advance(1000)
-    batches = setup.advance(40_000).work[0].reshape(40, 1000, 2).mean(axis=(1, 2))
-    batches /= 2 * np.pi / omega
-    own = batches.std(ddof=1) / np.sqrt(len(batches))
-    assert abs(batches.mean() - mean) < 4 * np.hypot(own, error)
 
 
 # What callers rely on

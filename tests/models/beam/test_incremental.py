@@ -1,4 +1,4 @@
-"""The yardstick of lifetimes: against a known law of wear, and against published lives."""
+"""The reference for lifetimes: against a known law of wear, and against published lives."""
 
 import types
 

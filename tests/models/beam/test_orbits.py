@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_exact import at_omega, set_up
+from exact_beams import at_omega, set_up
 
 from models.beam.branches.orbits import find_orbit, settled_orbit
 from models.beam.exact.passage import passage
@@ -72,8 +72,8 @@ def test_a_far_orbit_is_reported():
     orbit = find_orbit(beam, state, gaps)
     rng = np.random.default_rng(5)
     away = orbit.state * (1 + 0.02 * rng.normal(size=len(state)))
-    orbit = find_orbit(beam, away, gaps, farthest=1e-3)
-    assert orbit.outcome in ("far", "stalled")
+    rejected = find_orbit(beam, away, gaps, farthest=1e-3)
+    assert rejected.outcome in ("far", "stalled")
     near = find_orbit(beam, away, gaps, farthest=0.2)
     assert near.outcome == "converged"
     assert 1e-3 < near.distance < 0.2

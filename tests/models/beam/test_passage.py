@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_exact import at_omega, deflected, set_up
+from exact_beams import at_omega, deflected, set_up
 
 from models.beam import exact
 from models.beam.exact.passage import passage

@@ -9,7 +9,7 @@ from scipy.stats import kstest
 
 from models.beam import exact, lanes
 from models.beam.parameters import Settings
-from models.beam.structure.modal import beams, reach
+from models.beam.structure.modal import beams, free_reach
 from models.beam.structure.random_lines import COUNT, force
 from models.beam.structure.random_response import tip_deviation
 from models.numerics.blocks import LANES
@@ -88,7 +88,7 @@ def test_without_contact_the_tip_varies_as_the_integral_of_the_spectrum_says(low
     b, system = prepared(lanes, p)
     sure = tip_deviation(b.load, b.forcing, b.frequency, b.decay, b.mobility)
     assert sure == pytest.approx(np.full(n, known), rel=2e-3)
-    assert (reach(b) == 9 * sure).all()
+    assert (free_reach(b) == 9 * sure).all()
     state, gaps = started(lanes, system, p, 1e6)
     lanes.advance(system, state, gaps, np.zeros((n, 2)), 100)
     x = lanes.advance(system, state, gaps, np.zeros((n, 2)), 2000).strobe[:, :, 0]

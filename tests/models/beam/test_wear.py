@@ -5,9 +5,7 @@ import pytest
 from incremental import incremental_lives
 
 from models.beam import MODEL
-from models.beam.parameters import OUTPUTS, REGIMES, Params, Settings
-from models.beam.wear.extrapolation import extrapolate, extrapolate_smooth
-from models.beam.wear.regimes import changes_of, confirmed_regimes, regime_of
+from models.beam.parameters import OUTPUTS, Params, Settings
 from uq.contract import Status
 
 NOMINAL = np.array(list(MODEL.nominal.values()))
@@ -159,87 +157,6 @@ def test_a_life_in_one_row_does_not_depend_on_the_others():
     apart, _ = compute(x[some])
     for name in OUTPUTS:
         assert np.array_equal(apart[name], together[name][some], equal_nan=True), name
-
-
-PACES = np.array([1.0, 2.0, 4.0, 8.0, 16.0])
-
-
-@pytest.mark.parametrize("order", [1.0, 2 / 3])
-def test_lives_with_one_power_law_of_error_are_extrapolated_to_its_limit(order):
-    times = (1.0 + 0.2 * PACES**-order)[:, None]
-    time, error = extrapolate(times)
-    assert time == pytest.approx([1.0], abs=1e-9)
-    assert error == pytest.approx(times[-1] - 1.0)
-
-
-def test_four_lives_suffice_where_they_approach_their_limit_evenly():
-    times = np.stack([1.0 + 0.2 / PACES[:4], [1.0, 1.1, 1.0, 1.05], [1.0, 1.001, 1.0, 1.001]], 1)
-    time, error = extrapolate_smooth(times)
-    assert time == pytest.approx([1.0, 1.05, 1.001], abs=1e-9)
-    assert error == pytest.approx([0.2 / 8, 0.4, 0.004])
-
-
-def test_lives_scattered_about_the_true_one_are_averaged_and_keep_their_error():
-    rng = np.random.default_rng(11)
-    times = 1.0 + 0.05 * rng.standard_normal((5, 4000)) / np.sqrt(PACES[:, None])
-    time, error = extrapolate(times)
-    assert np.median(np.abs(time - 1.0)) < 1.2 * np.median(np.abs(times[-1] - 1.0))
-    assert 0.9 < np.mean(np.abs(time - 1.0) <= error) < 0.99
-
-
-def test_lives_that_change_ever_more_are_far_from_their_limit():
-    _, error = extrapolate(np.array([[1.00], [1.00], [1.00], [0.99], [0.96]]))
-    assert error[0] == pytest.approx(0.24)
-
-
-def test_a_life_far_from_all_faster_ones_is_left_as_it_is():
-    time, error = extrapolate(np.array([[9.0], [9.0], [9.0], [9.0], [1.0]]))
-    assert time[0] == 1.0
-    assert error[0] > 1.0
-
-
-def strobed(pattern, drift=5e-4, periods=48):
-    """Return strobe points and works of one beam whose pattern drifts as it wears."""
-    t = np.arange(periods)
-    x = np.resize(pattern, periods) * (1 + drift * t)
-    return np.stack([x, 0.3 - x], axis=1), np.ones((periods, 2)) * [1.0, 1.3]
-
-
-@pytest.mark.parametrize(
-    ("pattern", "regime"),
-    [
-        ([1.0], "period-1-asymmetric"),
-        ([1.0, 0.8], "period-k"),
-        (np.linspace(0.5, 1.0, 16), "period-k"),
-        (np.linspace(0.5, 1.0, 17), "aperiodic"),
-        (np.random.default_rng(2).uniform(-1, 1, 48), "aperiodic"),
-    ],
-)
-def test_the_drift_of_wear_does_not_hide_the_regime(pattern, regime):
-    assert REGIMES[regime_of(*strobed(pattern))] == regime
-
-
-def test_equal_works_are_symmetric_and_no_work_is_no_impact():
-    strobe, work = strobed([1.0])
-    assert REGIMES[regime_of(strobe, np.ones_like(work))] == "period-1-symmetric"
-    assert REGIMES[regime_of(strobe, np.zeros_like(work))] == "no-impact"
-
-
-def test_only_regimes_that_last_are_counted_and_from_where_they_began():
-    looks = [[4, 2, 2, 2, 4, 2, 3, 4, 3, 4, 4, 4, 4, 1, 1, -1], [1, 1, 2, 2, 1, 1, 2, 2] + 8 * [-1]]
-    regimes = confirmed_regimes(np.array(looks, np.int8))
-    assert regimes[0].tolist() == [-1] + 8 * [2] + 6 * [4] + [-1]
-    assert (regimes[1] == -1).all()
-    changes = changes_of(regimes)
-    assert np.flatnonzero(changes[0]).tolist() == [9]
-    assert not changes[1].any()
-
-
-def test_the_end_of_wear_is_a_change_at_once_and_a_short_silence_is_none():
-    looks = [[2, 2, 2, 2, 0, -1], [2, 2, 2, 0, 2, 2], [0, 0, -1, -1, -1, -1]]
-    regimes = confirmed_regimes(np.array(looks, np.int8))
-    assert regimes[0].tolist() == [2, 2, 2, 2, 0, -1]
-    assert changes_of(regimes).sum(axis=1).tolist() == [1, 0, 0]
 
 
 def test_regimes_lost_on_the_way_are_counted():

@@ -27,7 +27,7 @@ def outputs(params, settings):
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
-def test_a_history_is_that_of_the_yardstick(formulation):
+def test_a_history_is_that_of_the_exact_propagator(formulation):
     p, settings = Params(supply_phase=0.3), Settings(formulation=formulation, tolerance=1e-11)
     ds = history(p, settings, 0.4, 0.7, points=301)
     assert labelled(ds)
@@ -48,7 +48,7 @@ def test_a_stretch_that_ends_before_it_begins_is_refused():
 
 
 @pytest.mark.parametrize("formulation", FORMULATIONS)
-def test_a_section_holds_the_states_of_the_yardstick_as_the_relay_closes(formulation):
+def test_a_section_holds_the_states_of_the_exact_propagator_as_the_relay_closes(formulation):
     p, settings = Params(supply_phase=0.3), Settings(formulation=formulation, tolerance=1e-11)
     ds = poincare_section(p, settings, periods=3, dropped=2)
     assert labelled(ds)
@@ -61,7 +61,7 @@ def test_a_section_holds_the_states_of_the_yardstick_as_the_relay_closes(formula
         highest.append(motion.highest)
     found = [ds[name].values[-1] for name in STATES[:4]]
     np.testing.assert_allclose(found, state.y[:4], atol=1e-6)
-    # The yardstick stops just before the relay closes.
+    # The exact propagator stops just before the relay closes.
     jump = np.sin(tau * 50 * 5 / 8 + 0.3) if formulation == "physical" else 0.0
     assert ds["voltage"].values[-1] == pytest.approx(state.y[4] + 82.02 * jump, abs=1e-4)
     force = p.contact_stiffness * np.maximum(np.array(highest) - p.stop_gap, 0)

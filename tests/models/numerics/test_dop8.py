@@ -3,13 +3,13 @@
 import numpy as np
 from scipy.special import ellipj
 
-from models.numerics.blocks import LANES
-from models.numerics.dop8 import STAGES, combiner, estimator, layout
+from models.numerics.blocks import LANES, layout
+from models.numerics.dop8 import STAGES, combiner, estimator
 from models.numerics.jit import kernel
 
 _combine = combiner(3)
 _estimate = estimator(3, 2)
-_Y, _NEW, _K, _SIZE = layout(3)
+_Y, _NEW, _K, _SIZE = layout(3, STAGES)
 _WHOLE = 3 * LANES
 PARAMETERS = np.linspace(0.0, 0.95, LANES)
 DURATIONS = np.linspace(2.0, 5.0, LANES)

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from scipy.special import ellipj
 
+from models.numerics.blocks import LANES, layout
 from models.numerics.jit import kernel
-from models.numerics.tsit5 import LANES, STAGES, combiner, layout
+from models.numerics.tsit5 import STAGES, combiner
 
 ROTORS = 4  # in a lane
 QUANTITIES = 3 * ROTORS
 _combine = combiner(QUANTITIES)
-_Y, _NEW, _K, _SIZE = layout(QUANTITIES)
+_Y, _NEW, _K, _SIZE = layout(QUANTITIES, STAGES)
 _WHOLE = QUANTITIES * LANES
 _NEXT = ROTORS * LANES
 

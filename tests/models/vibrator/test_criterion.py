@@ -1,12 +1,12 @@
 """Blekhman's criterion picks the state that torques pick."""
 
 import numpy as np
+from criterion import integral, minimising_angle
 from machines import SYMMETRIC, UNDAMPED, plausible
+from moments import vibratory_moments
 
 from models.vibrator.paper import closed_forms as cf
 from models.vibrator.paper.centre import combined_centre, reduced_inertia, reduced_mass
-from models.vibrator.paper.criterion import integral, minimising_angle
-from models.vibrator.paper.moments import vibratory_moments
 from models.vibrator.theory.averaged import disphasing
 
 CONSERVATIVE = {"damping_ratio": 0.0, "mount_damping_ratio": 0.0, "feed_mass": 0.0}

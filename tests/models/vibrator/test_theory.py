@@ -5,8 +5,8 @@ import time
 import numpy as np
 import pytest
 from machines import SYMMETRIC, UNDAMPED, at, net_torques, over_the_bounds, plausible, twin
+from moments import vibratory_moments
 
-from models.vibrator.paper.moments import vibratory_moments
 from models.vibrator.parameters import Params
 from models.vibrator.theory.averaged import disphasing, feed_gravity, steady_motion
 

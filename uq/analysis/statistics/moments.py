@@ -30,7 +30,10 @@ SPREAD = replace(MOMENT, readers=~Reader.RUNNING)
 
 
 def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
-    """Yield mean, standard deviation and tail; unknown where rows never end or are censored."""
+    """Yield mean, standard deviation and tail; unknown where rows never end or are censored.
+
+    The shape k of the heavier tail (``tail_k``): there is no variance from 0.5 on, no mean from 1.
+    """
     values = element.at_least
     known = len(values) and not (element.never.any() or element.censored.any())
     nothing = Moments(NOTHING, NOTHING, None, None)
@@ -53,8 +56,7 @@ def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
 
 
 def _reasons(found: Moments) -> dict[str, str]:
-    reasons = {"sd_interval": found.sd.reason, "mean_interval": found.mean.reason}
-    for name, one in (("sd", found.sd), ("mean", found.mean)):
-        if isnan(one.value):
-            reasons[name] = one.reason
+    both = {"sd": found.sd, "mean": found.mean}
+    reasons = {f"{name}_interval": one.reason for name, one in both.items()}
+    reasons |= {name: one.reason for name, one in both.items() if isnan(one.value)}
     return {name: reason for name, reason in reasons.items() if reason}

@@ -22,9 +22,9 @@ STATISTICS: dict[str, Maker] = {
 }
 """Name -> maker, in the order in which they are shown."""
 
-JSON_ORDER = ("moments", "tolerance", "quantiles", "thresholds", "b_lives", "counts")
-COLUMN_ORDER = ("moments", "quantiles", "tolerance", "counts", "accuracy")
-"""The order in JSON and in pandas; those not named here follow in the order of the table."""
-
 EMPTY: dict[str, Any] = {"tolerance": None, "quantiles": {}, "thresholds": {}, "b_lives": {}}
-"""JSON of those that do not apply to an output."""
+"""Their JSON where they do not apply to an output; others are then left out."""
+
+JSON_ORDER = ("moments", *EMPTY, "counts")
+COLUMN_ORDER = ("moments", "quantiles", "tolerance", "counts", "accuracy")
+"""The promised order in JSON and in pandas; all others follow in the order of the table."""

@@ -1,10 +1,12 @@
 """The verbs about a run: its progress, more samples, failed rows again."""
 
+from functools import partial
 from typing import Annotated
 
 import typer
 
 from uq.cli import options as given
+from uq.errors import InputError
 from uq.running.options import RunOptions
 
 
@@ -26,10 +28,12 @@ def extend(
     quiet: given.Quiet = False,
 ) -> int:
     """Give a result more samples; nothing is computed again."""
-    from uq.cli import upkeep
+    from uq.cli.run import amended
+    from uq.upkeep import amending
 
     options = RunOptions(workers, scheduler, row_limit=row_limit, mixed=mixed)
-    return upkeep.extend(result, samples, model, quiet, options)
+    action = partial(amending.extend, result, samples, model)
+    return amended(result, model, quiet, options, action)
 
 
 def rerun(
@@ -44,10 +48,15 @@ def rerun(
     quiet: given.Quiet = False,
 ) -> int:
     """Recompute the failed rows of a result."""
-    from uq.cli import upkeep
+    from uq.cli.run import amended
+    from uq.cli.simulate import literal
+    from uq.upkeep.amending import rerun_failed
 
+    if not failed:
+        raise InputError("uq rerun: give --failed, the rows to compute again")
     options = RunOptions(workers, scheduler, row_limit=row_limit, mixed=mixed)
-    return upkeep.rerun(result, failed, setting or [], model, quiet, options)
+    action = partial(rerun_failed, result, dict(map(literal, setting or [])), model)
+    return amended(result, model, quiet, options, action)
 
 
 def verify(result: given.ResultFile, model: given.ModelReference = None) -> int:

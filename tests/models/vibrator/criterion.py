@@ -9,8 +9,8 @@ neglected, and the deck is empty.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from models.vibrator.parameters import Params, Rows
-from models.vibrator.theory.averaged import Motion, steady_motion
+from models.vibrator.parameters import Rows
+from models.vibrator.theory.averaged import Motion, broadcast, steady_motion
 
 _INSTANTS = 16  # per period; energies are quadratic in harmonic motion, so their mean is exact
 
@@ -71,8 +71,7 @@ def integral(p: Rows, speed: ArrayLike, angle: ArrayLike) -> NDArray[np.float64]
     ndarray, shape (n,)
         [J]; L_1 - L_2 = -2 dD/d dphi.
     """
-    columns = np.array(np.broadcast_arrays(*np.atleast_1d(*p, speed, angle)), float)
-    p, (w, dphi) = Params._make(columns[:-2]), columns[-2:]
+    p, (w, dphi) = broadcast(p, speed, angle)
     p = p._replace(damping_ratio=0 * w, mount_damping_ratio=0 * w, feed_mass=0 * w)
     motion = steady_motion(p, w, dphi)
     return _kinetic(p, w, motion) - _potential(p, motion)
