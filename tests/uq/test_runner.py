@@ -216,7 +216,7 @@ def test_a_complete_result_of_other_code_comes_with_a_warning(write_study, monke
     study = write_study(samples=8)
     uq.run(study, workers=0)
     uq.run(study, workers=0)
-    monkeypatch.setattr("uq.study.code.code_of", lambda reference: "0" * 16)
+    monkeypatch.setattr("uq.study.registry.code_of", lambda reference: "0" * 16)
     with pytest.warns(UserWarning, match="holds rows that other code of model 'ishigami' computed"):
         uq.run(study, workers=0)
     uq.run(study, workers=0, mixed=True)

@@ -25,7 +25,7 @@ from uq.interrupts import undone
 from uq.rows.evaluate import Chunk, Fault, joined, lost_rows
 from uq.running import child
 from uq.running.environment import command, inherited
-from uq.study.code import code_of
+from uq.study.registry import code_of
 
 if TYPE_CHECKING:
     from uq.rows.workload import Workload

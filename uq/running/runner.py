@@ -20,9 +20,9 @@ from uq.running.dispatch import Dispatcher
 from uq.running.executor import Executor
 from uq.running.options import Progress, Report, RunOptions, Say, ignore
 from uq.study.changes import refusal_to_extend, what_changed
-from uq.study.code import is_other_code
 from uq.study.definition import Study, load_study
 from uq.study.reading import read_study_text
+from uq.study.registry import is_other_code
 
 
 def run(

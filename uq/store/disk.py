@@ -22,8 +22,8 @@ from uq.store.journal import Journal
 from uq.store.merge import merge
 from uq.store.records import RowsRecord, RunRecord, missing
 from uq.store.tally import Failures, Tally, joined_failures
-from uq.study.code import made_here
 from uq.study.definition import Study
+from uq.study.registry import made_here
 
 _WRITING_SHARE = 1 / 20  # of the time, unless single chunks take longer
 _FIRST_COST = 0.01  # of writing [s], before it is known: a very short run writes once
