@@ -8,7 +8,7 @@ from pathlib import Path
 from uq.analysis.as_json import comparison_json
 from uq.analysis.comparison import Comparison, Side, comparison
 from uq.analysis.differences import Compared, ComparedOutput
-from uq.cli.printing import console, grid, heading, paragraph, print_json
+from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.wording import estimated, interval, known, number, unit_of
@@ -47,11 +47,9 @@ def _show(found: Comparison, first: Path, second: Path) -> None:
         unit, per = _unit(output)
         heading(f"\n{name}{f' [{unit}]' if unit != '1' else ''}")
         grid(chain.from_iterable(_lines(one, per) for one in output.statistics), _HEADER)
-    console.print()
-    paragraph("*: the interval excludes no difference. " + _POINTWISE, indent=0)
-    for note in [*bought(found), *found.notes]:
-        console.print()
-        paragraph(note, indent=0)
+    note("*: the interval excludes no difference. " + _POINTWISE)
+    for text in (*bought(found), *found.notes):
+        note(text)
 
 
 _HEADER = ("", "A", "B", "B - A", "95 % interval", "")

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from uq.analysis.widths import Widths, expected_widths
-from uq.cli.printing import console, grid, heading, number, paragraph, print_json
+from uq.cli.printing import grid, heading, note, number, print_json
 from uq.cli.progress import say_compiling
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
@@ -80,8 +80,7 @@ def _show_widths(widths: Mapping[str, Widths]) -> None:
         heading("\nand of")
         grid(others)
     if any(width.mean is None for width in widths.values()):
-        console.print()
-        paragraph("A dash: too few rows, not from this design, or too heavy a tail.", indent=0)
+        note("A dash: too few rows, not from this design, or too heavy a tail.")
 
 
 def _widths(widths: Mapping[str, Widths]) -> Iterator[tuple[str, ...]]:

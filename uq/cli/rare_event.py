@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq.cli.printing import console, grid, heading, number, paragraph, print_json
+from uq.cli.printing import grid, heading, note, number, print_json
 
 
 def show(ds: xr.Dataset, json: bool, max_failed: float) -> int:
@@ -85,9 +85,8 @@ def _show(ds: xr.Dataset) -> None:
         first = float(point["first_order"])
         heading("\nDesign point", f"{index}, first-order probability {first:.3g}")
         _show_inputs(point["location"])
-    for note in ds.attrs["notes"].splitlines():
-        console.print()
-        paragraph(note, indent=0)
+    for text in ds.attrs["notes"].splitlines():
+        note(text)
 
 
 def _show_inputs(values: xr.DataArray) -> None:
