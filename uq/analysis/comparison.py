@@ -30,7 +30,7 @@ class Side:
     summary: Summary
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Comparison:
     """The comparison of two results.
 
@@ -106,18 +106,18 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
     ]
     changed = changes(*results)
     return Comparison(
-        Side(str(first.attrs["title"]), found[0]),
-        Side(str(second.attrs["title"]), found[1]),
-        changed,
-        only_change(first, second, changed),
-        pair.kinship.name.lower().removesuffix("_imported"),
-        dict(compared_regimes(pair, found)),
-        {
+        first=Side(str(first.attrs["title"]), found[0]),
+        second=Side(str(second.attrs["title"]), found[1]),
+        changed=changed,
+        only=only_change(first, second, changed),
+        pairing=pair.kinship.name.lower().removesuffix("_imported"),
+        regimes=dict(compared_regimes(pair, found)),
+        outputs={
             name: compared_output(pair, [one[name] for one in elements], found)
             for name in elements[0]
             if name in elements[1]
         },
-        list(_notes(pair, found, elements)),
+        notes=list(_notes(pair, found, elements)),
     )
 
 
@@ -170,7 +170,6 @@ def _notes(pair: Pair, found: list[Summary], elements: list[dict[str, Element]])
         yield from (f"{which}: {note}" for note in one.notes)
     if any(one.most_failed for one in found):
         yield "Differences are between the rows that did not fail."
-    of_a, of_b = elements
-    for which, mine, other in (("A", of_a, of_b), ("B", of_b, of_a)):
+    for which, mine, other in zip("AB", elements, elements[::-1], strict=True):
         if alone := [name for name in mine if name not in other]:
             yield f"Only {which} has {', '.join(alone)}."

@@ -43,7 +43,7 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     Raises
     ------
     InputError
-        When there is no such output, or the first rows of the design are no design.
+        When there is no such output, or the first rows of the design are not a smaller one.
 
     Examples
     --------
@@ -53,7 +53,8 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     [16, 32, 63, 125, 250, 500, 1000]
     """
     names = None if output is None else {element.name for element in named_elements(ds, output)}
-    targets = _targets(ds)
+    # Those of all rows: of the first ones alone a life may have another target.
+    targets = list(sensitivities(ds, method).targets) if (method := _method(ds)) else []
     lines = [
         (name, label, samples, *numbers, *index)
         for samples in _sizes(ds)
@@ -131,12 +132,6 @@ def _sizes(ds: xr.Dataset) -> list[int]:
     while (size := -(-size // 2)) >= _FEWEST:
         sizes.append(size)
     return sizes[::-1]
-
-
-def _targets(ds: xr.Dataset) -> list[str]:
-    """Return the targets of all rows: of fewer rows a life may have a logarithm, of all none."""
-    method = _method(ds)
-    return list(sensitivities(ds, method).targets) if method else []
 
 
 def _method(ds: xr.Dataset) -> str | None:

@@ -1,4 +1,4 @@
-"""A result with what several tables and figures show of it, computed once."""
+"""A result and what several tables and figures show of it, each computed once."""
 
 from functools import cached_property
 
@@ -42,22 +42,15 @@ class Findings:
         """What `uq.analysis.summary.summarise` returns."""
         return summarise(self.ds)
 
-    @property
-    def running(self) -> pd.DataFrame:
-        """What `uq.running_estimates` returns; without lines where `not_running` says why."""
-        return self._running[0]
-
-    @property
-    def not_running(self) -> str:
-        """Why there are no running estimates, or ""."""
-        return self._running[1]
-
     @cached_property
-    def _running(self) -> tuple[pd.DataFrame, str]:
+    def running(self) -> pd.DataFrame:
+        """What `uq.running_estimates` returns; where it refuses, no lines, and why in ``attrs``."""
         try:
-            return running_estimates(self.ds), ""
+            return running_estimates(self.ds)
         except InputError as refused:
-            return pd.DataFrame(columns=COLUMNS), str(refused)
+            nothing = pd.DataFrame(columns=COLUMNS)
+            nothing.attrs["refused"] = str(refused)
+            return nothing
 
     def sensitivities(self, method: str) -> Sensitivities:
         """Return what `uq.indices.sensitivities.sensitivities` finds by a method.

@@ -114,7 +114,7 @@ def _stated(ds: xr.Dataset, study: StudyFile, name: str) -> tuple[str, Any]:
 
 
 def only_change(first: xr.Dataset, second: xr.Dataset, found: list[Change]) -> OnlyChange | None:
-    """Return the only input in which two studies differ, if nothing but their design does, too."""
+    """Return the only input that differs, if nothing else but the design does."""
     decisive = [change for change in found if change.kind != "design"]
     if [change.kind for change in decisive] != ["input"]:
         return None

@@ -16,16 +16,10 @@ from uq import intervals, two_samples
 from uq.analysis.estimators import MEAN, SD, Estimator, Sample
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
-from uq.rows.elements import (
-    Floats,
-    are_independent,
-    independent_rows,
-    replicates_of,
-    study_file_of,
-)
+from uq.rows.elements import Floats, are_independent, independent_rows, replicates_of, study_file_of
 from uq.study.file import Tied
 
-_ROUNDING = 1e-6  # the root of what an interval that is a difference of two may lose
+_ROUNDING = 1e-6  # an interval so much narrower than the plain ones is zero but for rounding
 
 WORST = -1.0
 """The correlation at which a difference is least certain."""

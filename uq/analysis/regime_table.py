@@ -1,6 +1,5 @@
 """The regimes of a result compared: inputs, outputs, and the variance between them."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -67,7 +66,11 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     }
     quantiles = [[_quantiles(x[hits]) for x in inputs.values()] for hits in members]
     distances = [_distances(inputs, target) for target in category_targets(rows, "regime")]
-    found = list(_numbers(rows))
+    found = [
+        target
+        for element in elements_of(rows, shown_outputs(rows, analysis_of(rows)))
+        if not (target := number_of(element)).refused
+    ]
     moments = [[_moments(target.values[hits]) for hits in members] for target in found]
     split = [between_share(t.values, rows["regime"].values, replicates_of(rows)) for t in found]
 
@@ -92,14 +95,6 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
         data[name] = ("regime", np.array([getattr(one, end) for one in estimates]))
     coords = {"regime": list(codes), "parameter": list(inputs), "probability": list(PROBABILITIES)}
     return xr.Dataset(data, {**coords, "output": [target.name for target in found]})
-
-
-def _numbers(rows: xr.Dataset) -> Iterator[Target]:
-    """Yield the outputs as they are; lifetimes as logarithms or ranks."""
-    for element in elements_of(rows, shown_outputs(rows, analysis_of(rows))):
-        target = number_of(element)
-        if not target.refused:
-            yield target
 
 
 def _distances(inputs: dict[str, Floats], target: Target) -> list[float]:

@@ -90,7 +90,7 @@ class Described:
         return next((one for one in self.statistics if one.key == key), None)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Summary:
     """The summary of a result.
 
@@ -125,6 +125,7 @@ class Summary:
 def summarise(
     ds: xr.Dataset,
     analysis: AnalysisTable | None = None,
+    *,
     regime: str | None = None,
     fits: bool = False,
 ) -> Summary:
@@ -156,13 +157,13 @@ def summarise(
     if most:
         notes.append(SOME_FAILED.format(most=most, rows=rows.sizes["sample"]))
     return Summary(
-        ds.sizes["sample"],
-        rows.sizes["sample"],
-        status_counts(ds),
-        regime_shares(rows) if "regime" in output_names(ds) else {},
-        {element.name: _described(element, context, fits) for element in elements},
-        most,
-        notes,
+        samples=ds.sizes["sample"],
+        rows_used=rows.sizes["sample"],
+        status=status_counts(ds),
+        regimes=regime_shares(rows) if "regime" in output_names(ds) else {},
+        outputs={element.name: _described(element, context, fits) for element in elements},
+        most_failed=most,
+        notes=notes,
     )
 
 

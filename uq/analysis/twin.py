@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 
 from uq.analysis.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.analysis.failed_rows import failed_share_bounds
-from uq.analysis.statistics.thresholds import event
+from uq.analysis.statistics.thresholds import event, share_of
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.exact_shares import FEW
 from uq.inputs.values import read_settings
-from uq.intervals import share_interval
 from uq.literals import toml
 from uq.moments import moments
 from uq.rows.elements import Element, elements_of, shown_outputs
@@ -162,10 +161,12 @@ def _estimates(
             continue
         for sign, hits in zip("><", sides, strict=True):
             found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
-            plain = Estimate(float(hits[kept].mean()), *share_interval(hits[kept]))
             failed = failed_share_bounds(hits, element.failed, None)
             note = _note_on_few(int(hits[kept].sum()), int(kept.sum()))
-            yield f"P({sign}{threshold!r})", Sharpened(*found, plain, failed, note)
+            yield (
+                f"P({sign}{threshold!r})",
+                Sharpened(*found, share_of(hits[kept], None), failed, note),
+            )
 
 
 def _note_on_few(hits: int, rows: int) -> str:

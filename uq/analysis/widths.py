@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from scipy import stats
 
 from uq.designs.registry import DESIGNS
@@ -76,7 +75,8 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
     labels = [label for _, label in flags(pilot["block"])]
     rows = samples * replicates * (2 if "A" in labels else 1)
     factor = _factor(are_independent(pilot), replicates)
-    groups = _groups(pilot, len(labels))
+    keys = [pilot[name].values for name in ("block", "group", "replicate")]
+    groups = np.lexsort(keys).reshape(-1, len(labels))
     method = piloted_by(DESIGNS[pilot.attrs["design"]])
     found = {}
     outputs = shown_outputs(pilot, analysis)
@@ -88,9 +88,11 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
         sample = Sample(lightened(number_of(whole)).values, {}, groups[None], tuple(labels))
         found[element.name] = Widths(
             units=element.units,
-            mean=_mean(element, rows, own),
-            quantiles={p: _quantile(element.at_least, p, rows, own) for p in analysis.quantiles},
-            thresholds={t: _share(element, t, rows, own) for t in limits},
+            mean=own and _mean(element, rows, own),
+            quantiles={
+                p: own and _quantile(element.at_least, p, rows, own) for p in analysis.quantiles
+            },
+            thresholds={t: own and _share(element, t, rows, own) for t in limits},
             indices=_indices(sample, METHODS[method], samples * replicates, factor)
             if method
             else {},
@@ -105,16 +107,16 @@ def _factor(independent: bool, replicates: int) -> float | None:
     return float(stats.t.ppf(_LEVEL, replicates - 1)) if replicates > 1 else None
 
 
-def _mean(element: Element, rows: int, factor: float | None) -> float | None:
+def _mean(element: Element, rows: int, factor: float) -> float | None:
     values = element.at_least
     unbounded = element.never.any() or element.censored.any()
-    if factor is None or unbounded or lacks_variance(values):
+    if unbounded or lacks_variance(values):
         return None
     return float(2 * factor * values.std(ddof=1) / np.sqrt(rows))
 
 
-def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> float | None:
-    if factor is None or not is_within(p, rows):
+def _quantile(values: Floats, p: float, rows: int, factor: float) -> float | None:
+    if not is_within(p, rows):
         return None
     m = len(values)
     spread = np.sqrt(p * (1 - p))
@@ -128,19 +130,11 @@ def _quantile(values: Floats, p: float, rows: int, factor: float | None) -> floa
     return float((high - low) * half / reach) if np.isfinite(high - low) else None
 
 
-def _share(element: Element, threshold: float, rows: int, factor: float | None) -> float | None:
-    if factor is None:
-        return None
+def _share(element: Element, threshold: float, rows: int, factor: float) -> float:
     values = element.for_thresholds[element.present]
     # Two more rows on each side: a pilot without a hit does not prove that there is none.
     p = (np.count_nonzero(values > threshold) + 2) / (len(values) + 4)
     return float(2 * factor * np.sqrt(p * (1 - p) / rows))
-
-
-def _groups(pilot: xr.Dataset, blocks: int) -> NDArray[np.intp]:
-    """Return the rows of each group of the pilot, shape (groups, blocks)."""
-    keys = [pilot[name].values for name in ("block", "group", "replicate")]
-    return np.lexsort(keys).reshape(-1, blocks)
 
 
 def _indices(

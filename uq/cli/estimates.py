@@ -9,7 +9,7 @@ import pandas as pd
 from uq import json_form
 from uq.analysis.convergence import enough, running_estimates
 from uq.analysis.twin import Sharpened, TwoFidelities, with_twin
-from uq.cli.printing import console, grid, heading, paragraph, print_json
+from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.wording import estimated, failed_interval, interval, known
@@ -40,12 +40,10 @@ def twin(result: Path, model: str | None, json: bool) -> None:
                 paragraph(f"{estimated(label)}: {one.note}", indent=2)
             if worst := failed_interval(one.failed):
                 paragraph(f"{estimated(label)}, with failed rows at best and worst: {worst}", 2)
-    console.print()
-    paragraph(
+    note(
         "worth: without twin, so many times the rows would be as accurate. The twin's own rows are"
         " not counted: it pays if one of them takes less than (worth - 1) /"
-        f" {1 + found.cheap_rows / found.rows:.3g} of the time of a row",
-        indent=0,
+        f" {1 + found.cheap_rows / found.rows:.3g} of the time of a row"
     )
 
 

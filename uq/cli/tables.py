@@ -9,16 +9,10 @@ from uq.analysis.life_fit import Fit
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import Described, Summary
-from uq.cli.printing import console, grid, heading, paragraph
+from uq.cli.printing import grid, heading, note, paragraph
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
-from uq.wording import (
-    duration,
-    estimated,
-    failed_interval,
-    interval,
-    number,
-)
+from uq.wording import duration, estimated, failed_interval, interval, number
 
 
 def show_summary(ds: xr.Dataset, summary: Summary) -> None:
@@ -31,35 +25,28 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
     grid([(label, str(count), _example(ds, label)) for label, count in summary.status.items()])
     if summary.regimes:
         heading("\nregime")
-        grid(
-            [
-                (
-                    one.label,
-                    one.words(),
-                    interval(one.estimate),
-                    str(one.facts["count"]),
-                    failed_interval(one.failed),
-                )
-                for one in summary.regimes.values()
-            ],
-            header=("", "share", "95 % interval", "rows", "with failed rows"),
-        )
+        shares = [_regime(one) for one in summary.regimes.values()]
+        grid(shares, header=("", "share", "95 % interval", "rows", "with failed rows"))
     for name, output in summary.outputs.items():
         meaning = ds[name.partition("[")[0]].attrs["long_name"]
         unit = "" if output.units == "1" else f" [{output.units}]"
         heading(f"\n{name}{unit}", meaning)
         grid(_lines(output), header=("", "value", "95 % interval", ""))
         for one in output.statistics:
-            for note in one.notes:
-                paragraph(note, indent=2)
+            for text in one.notes:
+                paragraph(text, indent=2)
         if output.fits:
             _show_fits(output.fits)
-    for note in summary.notes:
-        console.print()
-        paragraph(note, indent=0)
+    for text in summary.notes:
+        note(text)
 
 
 Line = tuple[str, str, str, str]
+
+
+def _regime(one: Statistic) -> tuple[str, ...]:
+    share = (one.label, one.words(), interval(one.estimate))
+    return *share, str(one.facts["count"]), failed_interval(one.failed)
 
 
 def _lines(output: Described) -> Iterator[Line]:

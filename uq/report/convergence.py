@@ -55,7 +55,7 @@ def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
     table = without_empty_columns(Table("Sampling error", header, rows)) if rows else None
     warnings = [f"{one.name}: {line['warning']}" for one, line in lines if line["warning"]]
     drawn = list(pictures(findings, "convergence"))
-    return Convergence(table, warnings, findings.not_running, drawn)
+    return Convergence(table, warnings, findings.running.attrs.get("refused", ""), drawn)
 
 
 def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:

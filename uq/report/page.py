@@ -17,12 +17,7 @@ from uq.report.convergence import convergence_of
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
-from uq.report.outcomes import (
-    outcomes,
-    regime_table,
-    result_tables,
-    status_table,
-)
+from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
 from uq.report.pictures import pictures
 from uq.rows.elements import study_file_of
 from uq.rows.results import failed, open_result

@@ -132,14 +132,14 @@ class Study:
         Raises
         ------
         InputError
-            The design cannot have this size; the line names ``--samples``.
+            The design cannot have this size.
         """
         problem = DESIGNS[self.design.method].size_problem(samples)
         for column in self.imported.values():
             if samples > (most := len(numbers(column))):
                 problem = f"the file has {most} rows"
         if problem:
-            raise InputError(f"--samples {samples}: {problem} for '{self.design.method}'")
+            raise InputError(f"samples = {samples}: {problem} for '{self.design.method}'")
         return replace(self, design=self.design.model_copy(update={"samples": samples}))
 
 

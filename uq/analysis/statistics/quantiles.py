@@ -10,8 +10,10 @@ from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Read
 from uq.estimate import NOTHING, Estimate
 from uq.rows.elements import Element
 
-_LIVES = Listing("B-lives: B10 is the time by which 10 % have ended", "lifetime", of_lives=True)
-LIFE = Kind("B-lives", listing=_LIVES, readers=~Reader.RUNNING)
+_LIVES = Listing(
+    "B-lives: B10 is the time by which 10 % have ended", first="lifetime", of_lives=True
+)
+LIFE = Kind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
 _ROWS = replace(COUNT, listing=_LIVES, readers=Reader.REPORT)
 
 

@@ -1,7 +1,7 @@
 """A statistic of an output: its name, its estimate, and how each reader shows it."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import Flag, auto
 from math import isfinite, isnan
 from typing import Any
@@ -69,6 +69,7 @@ class Listing:
     """
 
     caption: str = "Statistics, with 95 % intervals"
+    _: KW_ONLY
     first: str = "output"
     by: str = ""
     keeps_empty: bool = False
@@ -103,11 +104,11 @@ def facts(group: Sequence["Statistic"]) -> dict[str, Any]:
 
 
 def rows_in_words(value: float) -> str:
-    """Return a number of rows; nothing for none."""
+    """Return a number of rows, or "" for zero."""
     return f"{value:.0f}" if value else ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Kind:
     """How statistics of one kind are shown.
 
@@ -197,6 +198,7 @@ class Statistic:
     estimate: Estimate
     unit: str = "1"
     kind: Kind = ESTIMATE
+    _: KW_ONLY
     column: str | None = None
     heading: str | None = None
     failed: Estimate | None = None
