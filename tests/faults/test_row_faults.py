@@ -5,11 +5,8 @@ import time
 import numpy as np
 import pytest
 from faulty_studies import FAULTY, computed_here
-<<<<<<< HEAD
-from wordings import sentence
-=======
 from in_memory import compute
->>>>>>> main
+from wordings import sentence
 
 from uq.contract import Status
 from uq.errors import InputError
