@@ -69,7 +69,7 @@ class DiskStore(Tally):
         return missing(self._records, self.total)
 
     @property
-    def reach(self) -> int:
+    def end(self) -> int:
         """Number after the last row that is there."""
         return max((record.blocks[-1][1] for record in self._records), default=0)
 
