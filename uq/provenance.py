@@ -12,13 +12,9 @@ _LIBRARIES = ("vibrolife", "numpy", "numba", "scipy", "SALib")
 _COMPUTING = ("vibrolife", "numpy", "numba", "scipy", "distributed")
 
 
-def provenance() -> dict[str, str]:
-    """Return the processor and the versions that compute results here."""
-    return dict(_here())
-
-
 @cache
-def _here() -> dict[str, str]:
+def provenance() -> dict[str, str]:
+    """Return the processor and the versions that compute results here, not to be changed."""
     here = {"cpu": _cpu(), "python": platform.python_version()}
     return here | {name: importlib.metadata.version(name) for name in _LIBRARIES}
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from uq.contract import Mask
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError, nearest
 from uq.estimate import Estimate
@@ -132,8 +132,8 @@ def sensitivities(
     if sample.random and METHODS[method].noise:
         notes = (*notes, METHODS[method].noise)
     found: dict[str, TargetIndices] = {}
-    whole: list[NDArray[np.bool_]] = []
-    used: list[NDArray[np.bool_]] = []
+    whole: list[Mask] = []
+    used: list[Mask] = []
     for target in chosen(ds, method, output):
         quantiles = _quantiles(target, analysis_of(ds).quantiles)
         own = replace(sample, values=target.values, quantiles=quantiles)
@@ -198,7 +198,7 @@ def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
     return (f"{seen}: the indices are rough, and intervals may be too narrow; {remedy}",)
 
 
-def _counts(*whole: NDArray[np.bool_], rows: int) -> tuple[int, int]:
+def _counts(*whole: Mask, rows: int) -> tuple[int, int]:
     """Return the rows in groups that are whole for all of some targets, and the other groups."""
     every = np.logical_and.reduce(whole)
     return int(every.sum()) * (rows // every.size), int((~every).sum())

@@ -4,9 +4,8 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uq.contract import Parameter
+from uq.contract import Floats, Parameter
 from uq.inputs.distributions import Normal, TruncatedNormal
 from uq.inputs.faults import Fault
 from uq.inputs.law import Law
@@ -22,9 +21,7 @@ _LEAST_KEPT = 1e-290
 """A truncation that keeps less of its parent would need denormal numbers."""
 
 
-def ppf_within(
-    law: Law, u: NDArray[np.float64], bounds: tuple[float, float]
-) -> NDArray[np.float64]:
+def ppf_within(law: Law, u: Floats, bounds: tuple[float, float]) -> Floats:
     """Map the unit interval to a law conditioned on lying within bounds.
 
     The lower half goes through the distribution function, the upper half through the survival
@@ -46,9 +43,7 @@ def ppf_within(
     return _quantiles(_condition(law, bounds), u)
 
 
-def ppf_between(
-    law: Law, u: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def ppf_between(law: Law, u: Floats, low: Floats, high: Floats) -> Floats:
     """Map the unit interval to a law conditioned on ends that differ between rows.
 
     Parameters
@@ -64,9 +59,7 @@ def ppf_between(
     return _quantiles(_shares(law, *_tightened(law, low, high)), u)
 
 
-def cdf_within(
-    law: Law, x: NDArray[np.float64], bounds: tuple[float, float]
-) -> NDArray[np.float64]:
+def cdf_within(law: Law, x: Floats, bounds: tuple[float, float]) -> Floats:
     """Return the probability up to and including x of a law conditioned on lying within bounds.
 
     Parameters
@@ -93,7 +86,7 @@ def factor_ends(other: Any, bounds: tuple[float, float]) -> tuple[Any, Any]:
     return np.minimum(*ends), np.maximum(*ends)
 
 
-def factor_of(law: Law, product: NDArray[np.float64], other: Any) -> NDArray[np.float64]:
+def factor_of(law: Law, product: Floats, other: Any) -> Floats:
     """Return a factor from its product with another parameter, exactly where values are listed."""
     ratio = product / other
     return law.nearest(ratio) if isinstance(law, Listed) else ratio
@@ -120,7 +113,7 @@ class _Condition(NamedTuple):
     above: Any
 
 
-def _quantiles(to: _Condition, u: NDArray[np.float64]) -> NDArray[np.float64]:
+def _quantiles(to: _Condition, u: Floats) -> Floats:
     x = np.empty_like(u)
     with np.errstate(all="ignore"):
         p = to.below + u * (to.not_above - to.below)

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from uq.contract import Floats
 from uq.designs.registry import IMPORTED
 from uq.errors import nearest
 from uq.inputs.faults import Fault
@@ -86,7 +86,7 @@ def with_columns(text: str, columns: Columns, kept: Mapping[str, Any]) -> str:
 
 
 @lru_cache(maxsize=128)
-def numbers(text: str) -> NDArray[np.float64]:
+def numbers(text: str) -> Floats:
     """Return the numbers of a column, read-only."""
     found = np.array(text.split(), dtype=float)
     found.setflags(write=False)
@@ -115,11 +115,11 @@ def _kept(columns: Mapping[str, str], column: str) -> str:
     return columns[column]
 
 
-def _as_text(values: NDArray[np.float64]) -> str:
+def _as_text(values: Floats) -> str:
     return " ".join(map(repr, values.tolist()))
 
 
-def _read(folder: Path | None, file: str, column: str) -> NDArray[np.float64]:
+def _read(folder: Path | None, file: str, column: str) -> Floats:
     """Read a column; a `ValueError` says what is wrong."""
     if folder is None:
         raise ValueError("the text of this study does not contain the file's numbers")
@@ -136,7 +136,7 @@ def _read(folder: Path | None, file: str, column: str) -> NDArray[np.float64]:
         raise ValueError(f"cannot be read: {error.strerror or error}") from None
 
 
-def _checked(values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _checked(values: Floats) -> Floats:
     if not 1 <= len(values) <= MAX_NUMBERS:
         raise ValueError(f"has {len(values)} rows (allowed: 1 to {MAX_NUMBERS})")
     if not np.isfinite(values).all():
@@ -144,7 +144,7 @@ def _checked(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return values
 
 
-def _read_csv(path: Path, column: str) -> NDArray[np.float64]:
+def _read_csv(path: Path, column: str) -> Floats:
     with path.open(newline="", encoding="utf-8-sig") as lines:
         try:
             for mark, name in ((";", "semicolons"), ("\t", "tabs")):
@@ -194,7 +194,7 @@ def _number(row: list[str], names: list[str], place: int, line: int) -> float:
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 
 
-def _read_netcdf(path: Path, column: str) -> NDArray[np.float64]:
+def _read_netcdf(path: Path, column: str) -> Floats:
     import xarray as xr
 
     try:

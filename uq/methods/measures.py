@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 from scipy import stats
 from scipy.fft import rfft
 
+from uq.contract import Floats, Mask
 from uq.methods.indices import RefusedError
-from uq.methods.sample import Floats
 from uq.methods.slices import MOST_CATEGORIES, by_slices, even_cuts
 
 MIN_SIDE = 10
@@ -153,7 +153,7 @@ def ks_distances(x: Floats, event: Floats) -> Floats:
     return np.array([_distance(column, happens) for column in x.T])
 
 
-def _distance(column: Floats, happens: NDArray[np.bool_]) -> float:
+def _distance(column: Floats, happens: Mask) -> float:
     values, place = np.unique(column, return_inverse=True)
     if len(values) > MOST_CATEGORIES:
         found = stats.ks_2samp(column[happens], column[~happens], method="asymp")
