@@ -9,7 +9,8 @@ from drawn import words
 from matplotlib.figure import Figure
 
 from uq import plots
-from uq.drawing.figure import file_name, lay_out
+from uq.drawing.catalogue import file_name
+from uq.drawing.figure import lay_out
 from uq.drawing.ticks import roomy
 from uq.drawing.words import powers, sentence
 

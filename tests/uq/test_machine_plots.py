@@ -15,7 +15,7 @@ from models.mole.parameters import Params as Mole
 from models.mole.parameters import Settings as MoleSettings
 from uq import plots
 from uq.drawing.figure import lay_out
-from uq.drawing.marks import COLOURS
+from uq.drawing.style import COLOURS
 from uq.errors import InputError
 from uq.wording import percent
 

@@ -10,6 +10,7 @@ import xarray as xr
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from in_memory import compute
+from wordings import sentence
 
 import uq
 from uq.contract import Status
@@ -217,6 +218,6 @@ def test_a_complete_result_of_other_code_comes_with_a_warning(write_study, monke
     uq.run(study, workers=0)
     uq.run(study, workers=0)
     monkeypatch.setattr("uq.study.registry.code_of", lambda reference: "0" * 16)
-    with pytest.warns(UserWarning, match="holds rows that other code of model 'ishigami' computed"):
+    with pytest.warns(UserWarning, match=sentence("other code", model="ishigami")):
         uq.run(study, workers=0)
     uq.run(study, workers=0, mixed=True)

@@ -19,9 +19,9 @@ from uq.drawing.elements_plot import (
     occurring_regimes,
     rows_in_words,
 )
-from uq.drawing.figure import WIDTH, Drawing, styled
-from uq.drawing.marks import MARK, thinned
+from uq.drawing.figure import Drawing
 from uq.drawing.panel import column, figure_of, legend
+from uq.drawing.style import MARK, WIDTH, styled, thinned
 from uq.drawing.ticks import is_wide, logarithmic, roomy
 from uq.drawing.words import sentence
 from uq.intervals import Replicates

@@ -1,39 +1,18 @@
-"""A figure: its style, its layout and its files."""
+"""A figure: its layout and its files."""
 
-import re
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 
-import matplotlib as mpl
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
+from uq.drawing.style import styled
 from uq.places import file_behind
-
-WIDTH = 3.4
-"""One column of a journal [inch]."""
 
 DOTS_PER_INCH = 200
 _DOTS_PER_INCH_SHOWN = 144
-
-_STYLE: Any = {
-    "font.size": 8,
-    "axes.titlesize": 8,
-    "axes.formatter.limits": (-4, 5),
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "legend.fontsize": 7,
-    "legend.frameon": False,
-    "lines.linewidth": 1.2,
-    "text.parse_math": False,  # a dollar sign in a file is one
-    "svg.hashsalt": "vibrolife",
-    "pdf.fonttype": 42,  # text that can be searched and edited
-}
-styled = mpl.rc_context(_STYLE)
-"""The decorator of every function that draws or writes a figure."""
 
 
 class Drawing(Figure):
@@ -91,8 +70,3 @@ def write(figure: Figure, path: Path) -> list[Path]:
     no_metadata = dict.fromkeys(("CreationDate", "Creator", "Producer"))
     FigureCanvasPdf(figure).print_pdf(pdf, metadata=no_metadata)
     return files
-
-
-def file_name(*words: str) -> str:
-    """Join words to a file name without characters special to a shell."""
-    return re.sub(r"[^A-Za-z0-9.+-]+", "_", "-".join(words)).strip("_")

@@ -5,9 +5,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import styled
-from uq.drawing.marks import COLOURS
 from uq.drawing.panel import column, finish, heading
+from uq.drawing.style import COLOURS, styled
 from uq.drawing.ticks import roomy
 from uq.drawing.words import element_in_words, in_words, sentence
 from uq.errors import InputError

@@ -7,9 +7,8 @@ from matplotlib.figure import Figure
 
 from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values
 from uq.drawing.elements_plot import bins
-from uq.drawing.figure import styled
-from uq.drawing.marks import COLOURS
 from uq.drawing.panel import figure_of, grid
+from uq.drawing.style import COLOURS, styled
 from uq.drawing.ticks import logarithmic, roomy
 from uq.drawing.words import named_input, sentence
 from uq.errors import InputError

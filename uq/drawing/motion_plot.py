@@ -7,10 +7,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import styled
-from uq.drawing.marks import COLOURS, LINES, MARK, are_many, point_size
 from uq.drawing.panel import above, column, figure_of, finish
 from uq.drawing.quantities import families, find, label_axes, pair, scale_of, with_quantities
+from uq.drawing.style import COLOURS, LINES, MARK, are_many, point_size, styled
 from uq.drawing.words import in_words, powers, sentence
 from uq.errors import InputError
 from uq.rows.elements import Floats

@@ -9,7 +9,8 @@ from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
-from uq.drawing.figure import WIDTH, Drawing
+from uq.drawing.figure import Drawing
+from uq.drawing.style import WIDTH
 from uq.drawing.ticks import roomy
 from uq.errors import InputError
 

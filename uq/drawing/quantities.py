@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from uq.drawing.marks import COLOURS
+from uq.drawing.style import COLOURS
 from uq.drawing.words import in_words, sentence
 from uq.errors import InputError, nearest
 from uq.rows.elements import Floats

@@ -9,10 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import styled
-from uq.drawing.marks import COLOURS, LINES, are_many, point_size
 from uq.drawing.panel import column, finish
 from uq.drawing.quantities import families, find, label_axes, pair, scale_of
+from uq.drawing.style import COLOURS, LINES, are_many, point_size, styled
 from uq.drawing.words import powers, sentence
 from uq.errors import InputError
 from uq.wording import percent

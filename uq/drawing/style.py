@@ -1,12 +1,32 @@
-"""Marks in a panel: the colours and styles of lines, the number and size of points."""
+"""The style of figures: their width and fonts, colours, lines and points."""
 
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
+
+WIDTH = 3.4
+"""One column of a journal [inch]."""
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
 LINES = ("-", "--", "-.", ":")
+
+_STYLE: Any = {
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.formatter.limits": (-4, 5),
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "lines.linewidth": 1.2,
+    "text.parse_math": False,  # a dollar sign in a file is one
+    "svg.hashsalt": "vibrolife",
+    "pdf.fonttype": 42,  # text that can be searched and edited
+}
+styled = mpl.rc_context(_STYLE)
+"""The decorator of every function that draws or writes a figure."""
 
 _MANY = 4000
 
