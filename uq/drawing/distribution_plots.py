@@ -20,9 +20,8 @@ from uq.drawing.elements_plot import (
     rows_in_words,
 )
 from uq.drawing.figure import Drawing
-from uq.drawing.panel import column, figure_of, legend
+from uq.drawing.panel import column, figure_of, is_wide, legend, logarithmic, roomy
 from uq.drawing.style import MARK, WIDTH, styled, thinned
-from uq.drawing.ticks import is_wide, logarithmic, roomy
 from uq.drawing.words import sentence
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of

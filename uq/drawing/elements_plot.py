@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from uq.drawing.panel import is_wide
 from uq.drawing.style import COLOURS, LINES
-from uq.drawing.ticks import is_wide
 from uq.drawing.words import place_in_words
 from uq.rows.elements import Element, Floats, flags
 from uq.wording import percent, unit_of
