@@ -210,14 +210,13 @@ def _many(study: Study, start: int) -> list[Element]:
 
 def _twin_of(study: Study, x: Floats, seed: NDArray[np.uint64]) -> list[Element]:
     model, settings, twin = study.model, study.settings, study.analysis.twin
-    outputs: tuple[str, ...]
     if isinstance(twin, str):
-        model, outputs = model.alone(twin), (twin,)
+        model = model.alone(twin)
     else:  # the same outputs, from rows that cost less
         settings = read_settings(model, asdict(settings) | twin)[0]
-        outputs = tuple(dict.fromkeys((*study.analysis.outputs, *study.analysis.thresholds)))
     chunk = evaluate(model, settings, x, seed)
     ds = build_rows(model, settings, {}, chunk.columns, chunk.status, {})
+    outputs = (twin,) if isinstance(twin, str) else shown_outputs(ds, study.analysis)
     return list(elements_of(ds, outputs))
 
 
