@@ -14,16 +14,16 @@ from uq.drawing import subjects as of
 from uq.drawing.catalogue import Entry, drawables
 from uq.drawing.convergence_plot import convergence as convergence
 from uq.drawing.convergence_plot import index_convergence as index_convergence
+from uq.drawing.distribution_plots import histogram as histogram
+from uq.drawing.distribution_plots import histogram_by_regime as histogram_by_regime
+from uq.drawing.distribution_plots import lifetime as lifetime
+from uq.drawing.distribution_plots import quantile_table as quantile_table
 from uq.drawing.figure import write
-from uq.drawing.histogram_plot import histogram as histogram
-from uq.drawing.histogram_plot import histogram_by_regime as histogram_by_regime
 from uq.drawing.index_plot import index_bars as index_bars
 from uq.drawing.input_plot import inputs as inputs
-from uq.drawing.lifetime_plot import lifetime as lifetime
 from uq.drawing.motion_plot import history as history
 from uq.drawing.motion_plot import phase_portrait as phase_portrait
 from uq.drawing.motion_plot import section as section
-from uq.drawing.quantile_plot import quantile_table as quantile_table
 from uq.drawing.response_plot import basins as basins
 from uq.drawing.response_plot import bifurcation as bifurcation
 from uq.drawing.response_plot import curve as curve
@@ -33,13 +33,9 @@ from uq.errors import InputError
 from uq.places import refuse_standard_output
 
 FIGURES: dict[str, Entry] = {
-    "lifetime": Entry(lifetime, of.outputs, "{name}: {meaning}", applies=(of.is_lifetime,)),
+    "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,)),
     "histogram": Entry(
-        histogram,
-        of.outputs,
-        "{name}: {meaning}",
-        applies=(of.is_no_lifetime,),
-        in_report=(of.in_one_regime,),
+        histogram, of.outputs, applies=(of.is_no_lifetime,), in_report=(of.in_one_regime,)
     ),
     "regimes": Entry(histogram_by_regime, of.outputs, "{name} by regime", applies=(of.in_regimes,)),
     "quantiles": Entry(

@@ -160,3 +160,17 @@ _TIME_UNITS = (
 def time_unit(seconds: float) -> TimeUnit:
     """Return the usual unit of a time [s] that is not negative."""
     return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]
+
+
+def unit_of(units: str, typical: float) -> TimeUnit:
+    """Return the unit in which to show an output: a time in one that suits a typical value.
+
+    Parameters
+    ----------
+    units : str
+        CF unit string of the output.
+    typical : float
+        NaN if unknown.
+    """
+    is_time = units == "s" and isfinite(typical)
+    return time_unit(abs(typical)) if is_time else TimeUnit(units, 1.0, 0.0)

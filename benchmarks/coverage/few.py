@@ -11,8 +11,8 @@ from uq.analysis.as_json import summary_json
 from uq.analysis.summary import summarise
 from uq.analysis.twin import with_twin
 from uq.estimate import NOTHING
-from uq.indices.few_hits import few_hits
 from uq.indices.samples import sample_of
+from uq.indices.sensitivities import few_hits
 from uq.indices.targets import Target
 from uq.intervals import share_interval
 from uq.methods.indices import RefusedError

@@ -1,6 +1,6 @@
 """What tests of faulty rows and killed processes share."""
 
-from uq.running import runner
+from in_memory import compute
 
 PATIENCE = 60.0
 """How long a busy machine may take [s]."""
@@ -10,4 +10,4 @@ FAULTY = "faulty_models:FAULTY"
 
 def computed_here(study):
     """Return a study computed with nothing that could go wrong."""
-    return runner.compute(study, workers=0)
+    return compute(study, workers=0)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from conftest import MODEL, OUT, ROWS, until
+from wordings import sentence
 
 import uq
 
@@ -47,9 +48,7 @@ def test_a_damaged_chunk_file_is_computed_again(study, undisturbed, kept, call, 
     first, _, stop = kept[1].stem.partition("-")[2].partition("-")
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(
-        f"{ROWS}: {int(stop) - int(first)} rows are damaged and will be computed again\n"
-    )
+    assert said.startswith(sentence("damaged", rows=ROWS, count=int(stop) - int(first)))
     assert OUT.read_bytes() == undisturbed
 
 
@@ -86,7 +85,7 @@ def test_a_journal_that_was_cut_loses_its_last_record_only(
     rows = sum(stop - start for start, stop in blocks)
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(f"{OUT}: {rows} of 1500 rows were already done\n")
+    assert said.startswith(sentence("done", output=OUT, done=rows, rows=1500))
     assert OUT.read_bytes() == undisturbed
 
 
@@ -105,8 +104,8 @@ def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call,
     code, said = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE="9000")
     assert code == 1
     assert said.count("\n") == 1
-    assert said.startswith(f"{ROWS}: could not be written: File too large; ")
-    assert said.endswith(" of 1500 rows are kept, and the same command resumes the run\n")
+    assert said.startswith(sentence("unwritten", place=ROWS, why="File too large; "))
+    assert said.endswith(" of 1500 rows are kept, and " + sentence("resumes"))
     assert not OUT.exists()
     assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
     injected("file-size limit", 2)
@@ -114,13 +113,13 @@ def test_a_file_size_limit_stops_a_run_with_a_sentence(study, undisturbed, call,
     code, said = call("run", study, *MODEL, "--chunk-rows", "40", UQ_TEST_FILE_SIZE=almost)
     assert code == 1
     assert said.count("\n") == 1
-    assert said.startswith(f"{OUT}: could not be written: ")  # in the merge this time
-    assert said.endswith("; the rows are kept, and the same command resumes the run\n")
+    assert said.startswith(sentence("unwritten", place=OUT, why=""))  # in the merge this time
+    assert said.endswith("; the rows are kept, and " + sentence("resumes"))
     assert not OUT.exists()
     assert not list(ROWS.glob("*.part")) and not list(ROWS.glob(".*"))
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(f"{OUT}: 1500 of 1500 rows were already done\n")
+    assert said.startswith(sentence("done", output=OUT, done=1500, rows=1500))
     assert OUT.read_bytes() == undisturbed
 
 
@@ -153,8 +152,8 @@ def test_a_full_disk_stops_a_run_with_a_sentence(study, undisturbed, start, call
     injected("full disk", 2)  # with the refusal above
     assert code == 1
     assert said.count("\n") == 1
-    assert said.startswith(f"{rows}: could not be written: No space left on device; ")
-    assert said.endswith(" of 1500 rows are kept, and the same command resumes the run\n")
+    assert said.startswith(sentence("unwritten", place=rows, why="No space left on device; "))
+    assert said.endswith(" of 1500 rows are kept, and " + sentence("resumes"))
     assert not out.exists()
     assert {path.suffix for path in rows.iterdir()} == {"", ".rows"}
     filler.unlink()

@@ -2,12 +2,13 @@
 
 import pytest
 from conftest import MODEL, OUT, ROWS, kept, until
+from wordings import sentence
 
 import uq
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "sentence"),
+    ("old", "new", "change"),
     [
         ("seed = 5", "seed = 6", "[design] seed = 5, now 6"),
         pytest.param(
@@ -21,7 +22,7 @@ import uq
     ],
 )
 def test_another_study_is_refused_with_what_changed(
-    study, under_way, call, injected, old, new, sentence
+    study, under_way, call, injected, old, new, change
 ):
     under_way(study).kill()
     before = {path.name for path in ROWS.iterdir()} - {"lock"}
@@ -29,10 +30,7 @@ def test_another_study_is_refused_with_what_changed(
     injected("study edited between runs")
     code, said = call("run", study, *MODEL)
     assert code == 2
-    assert said == (
-        f"{ROWS}: holds rows of another study ({sentence}); choose another output, or start over "
-        "with --fresh\n"
-    )
+    assert said == sentence("another study", rows=ROWS, change=change)
     assert before == {path.name for path in ROWS.iterdir()}
     assert call("run", study, *MODEL, "--fresh")[0] == 0
 
@@ -43,7 +41,7 @@ def test_comments_and_analysis_may_change(study, undisturbed, under_way, call, i
     study.write_text(study.read_text() + "# a comment\nquantiles = [0.5]\n")
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert "rows were already done" in said
+    assert said.startswith(f"{OUT}: ") and " of 1500 rows " in said
     assert OUT.read_bytes() != undisturbed  # it holds the new text
     study.write_text(study.read_text().removesuffix("# a comment\nquantiles = [0.5]\n"))
     assert "already complete" in call("run", study, *MODEL[:-1])[1]
@@ -62,9 +60,7 @@ def test_more_samples_are_appended_and_fewer_refused(study, undisturbed, under_w
     study.write_text(few)
     code, said = call("run", study, *MODEL)
     assert code == 2
-    assert said.startswith(
-        f"{ROWS}: holds rows of this study with more (samples = 1500, now 900); "
-    )
+    assert said.startswith(sentence("fewer", rows=ROWS, change="samples = 1500, now 900"))
     study.write_text(many)
     assert call("run", study, *MODEL)[0] == 0
     assert OUT.read_bytes() == undisturbed
@@ -96,7 +92,7 @@ def test_a_design_that_cannot_be_extended_says_so(write_study, under_way, call, 
     injected("study edited between runs")
     code, said = call("run", study, *MODEL)
     assert code == 2
-    assert "a 'latin-hypercube' design cannot be extended: all its rows change" in said
+    assert sentence("cannot be extended", design="latin-hypercube") in said
 
 
 @pytest.mark.slow
@@ -109,10 +105,7 @@ def test_rows_of_an_edited_model_are_mixed_on_request_alone(
     under_way(study, *options).kill()
     model.write_text(model.read_text() + "# edited\n")
     injected("code of the model edited between runs", 2)
-    refused = (
-        f"{OUT}: holds rows that other code of model 'patient' computed, although its version is "
-        "the same; start over with uq run --fresh, or continue with --mixed\n"
-    )
+    refused = sentence("other code refused", output=OUT, model="patient")
     before = {path.name for path in ROWS.iterdir()} - {"lock"}
     assert call("run", study, *options) == (2, refused)
     assert before == {path.name for path in ROWS.iterdir()}
@@ -121,10 +114,7 @@ def test_rows_of_an_edited_model_are_mixed_on_request_alone(
     code, said = call("verify", OUT, *options[:2])
     assert code == 0
     assert f"code  {old}; {new} made it, " in said
-    printed = (
-        f"{OUT}: holds rows that other code of model 'patient' computed; 'uq verify' compares them "
-        "with the code here, 'uq run --fresh' computes all of them again\n"
-    )
+    printed = sentence("other code shown", output=OUT, model="patient")
     assert call("run", study, *options, "--quiet") == (0, printed)
     assert call("run", study, *options, "--quiet", "--mixed") == (0, "")
     for verb in (("extend", OUT, "--samples", "1600"), ("rerun", OUT, "--failed")):

@@ -5,11 +5,13 @@ import time
 import numpy as np
 import pytest
 from faulty_studies import FAULTY, computed_here
+from in_memory import compute
+from wordings import sentence
 
 from uq.contract import Status
 from uq.errors import InputError
 from uq.rows.evaluate import KernelError
-from uq.running import isolation, runner
+from uq.running import isolation
 
 FAULTS = {
     "raise": ("linear", {"fail_how": "raise"}, Status.RAISED, "x1 is above"),
@@ -42,9 +44,7 @@ def test_guilty_rows_get_their_status_and_the_others_their_values(
     model, settings, status, words = FAULTS[fault]
     key = "fail_above" if model == "linear" else "above"
     study = study_of(model, samples=100, **settings, **{key: 0.98})
-    ds = runner.compute(
-        study, workers=workers, row_limit=0.5 if fault == "hang" else None, chunk_rows=30
-    )
+    ds = compute(study, workers=workers, row_limit=0.5 if fault == "hang" else None, chunk_rows=30)
     guilty = ds["x1"].values > 0.98
     assert 0 < guilty.sum() < 5
     injected(f"row: {fault}", guilty.sum())
@@ -63,7 +63,7 @@ def test_a_wrong_dtype_refuses_the_model(study_of, injected):
     for workers in (0, 1):
         injected("row: dtype")
         with pytest.raises(KernelError, match="'y' is float32, expected float64"):
-            runner.compute(study, workers=workers, chunk_rows=10)
+            compute(study, workers=workers, chunk_rows=10)
 
 
 @pytest.mark.slow
@@ -79,7 +79,7 @@ def test_compiling_is_no_part_of_the_time_of_a_row(study_of, monkeypatch):
         return answer
 
     monkeypatch.setattr(isolation.Isolated, "_answer", timed)
-    ds = runner.compute(study_of("faulty_models:COMPILING", samples=1), row_limit=1.0)
+    ds = compute(study_of("faulty_models:COMPILING", samples=1), row_limit=1.0)
     assert ds["status"].values.tolist() == [Status.OK]
     assert max(seconds) > 1.0  # or this shows nothing
 
@@ -87,9 +87,9 @@ def test_compiling_is_no_part_of_the_time_of_a_row(study_of, monkeypatch):
 def test_a_time_limit_needs_a_process_to_stop(uq, study_of):
     study = study_of()
     with pytest.raises(InputError, match="needs another process"):
-        runner.compute(study, workers=0, row_limit=1.0)
+        compute(study, workers=0, row_limit=1.0)
     with pytest.raises(InputError, match="must be positive"):
-        runner.compute(study, row_limit=0.0)
+        compute(study, row_limit=0.0)
     ended = uq("run", study.path, "--model", FAULTY, "--workers", 0, "--row-limit", 1)
     assert (ended.code, ended.err.count("\n")) == (2, 1)
 
@@ -99,5 +99,5 @@ def test_too_many_failed_rows_are_an_exit_code_after_the_result(uq, study_of, fo
     ended = uq("run", study.path, "--workers", 1)
     assert ended.code == 1
     assert "crashed" in ended.out
-    assert "rows failed, more than max_failed = 0.1 allows (crashed: row " in ended.err
+    assert sentence("too many failed", share=0.1, status="crashed") in ended.err
     assert (folder / "results" / "small.nc").exists()

@@ -3,13 +3,13 @@
 import json
 import os
 import random
-import re
 import shutil
 import signal
 
 import psutil
 import pytest
 from conftest import MODEL, OUT, PATIENCE, ROWS, kept, until
+from wordings import sentence
 
 import uq
 
@@ -68,7 +68,7 @@ def test_kills_during_the_merge(write_study, start, call, injected, kills):
     shutil.copytree(ROWS, "copy")
     code, said = call("run", study, *options[:2])
     assert code == 0
-    assert f"{OUT}: 200000 of 200000 rows were already done" in said
+    assert sentence("done", output=OUT, done=200_000, rows=200_000) in said
     assert OUT.read_bytes() == (OUT.parents[1] / "undisturbed.nc").read_bytes()
     # Killed just before the rows are removed: they are of no use any more.
     shutil.copytree("copy", ROWS)
@@ -130,16 +130,11 @@ def test_a_request_to_stop_keeps_all_rows_and_says_how_to_go_on(
     injected("Ctrl-C" if number == signal.SIGINT else "SIGTERM")
     code, said = run.wait()
     assert code == 128 + number
-    stopped = re.fullmatch(
-        rf"interrupted after (\d+) of 1500 rows, kept in {ROWS}; the same command resumes "
-        r"the run\n",
-        said,
-    )
-    assert stopped
-    assert json.loads(call("status", OUT, "--json")[1])["done"] == int(stopped[1])
+    done = json.loads(call("status", OUT, "--json")[1])["done"]
+    assert said == sentence("interrupted", done=done, rows=1500, place=ROWS)
     code, said = call("run", study, *MODEL[:-1])
     assert code == 0
-    assert said.startswith(f"{OUT}: {stopped[1]} of 1500 rows were already done\n")
+    assert said.startswith(sentence("done", output=OUT, done=done, rows=1500))
     assert OUT.read_bytes() == undisturbed
 
 
@@ -156,7 +151,7 @@ def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_w
     assert code == 2
     injected("lock of a living process")
     host = run_status["process"]["host"]
-    assert said == f"{ROWS}: in use by process {run.process.pid} on {host}\n"
+    assert said == sentence("in use", rows=ROWS, pid=run.process.pid, host=host)
     run.kill()
     assert (ROWS / "lock").exists()  # stale, and recognised as such
     injected("lock of a dead process")
@@ -174,8 +169,8 @@ def test_a_running_run_can_be_watched_and_has_a_lock(study, undisturbed, under_w
 def test_a_lock_that_names_nobody_says_what_to_do(study, undisturbed, under_way, call):
     under_way(study).kill()
     (ROWS / "lock").write_text("")
-    remove = f"if there is none, remove {ROWS / 'lock'}"
-    assert call("run", study, *MODEL) == (2, f"{ROWS}: in use by another process; {remove}\n")
+    refused = sentence("in use by nobody", rows=ROWS, lock=ROWS / "lock")
+    assert call("run", study, *MODEL) == (2, refused)
     (ROWS / "lock").unlink()
     assert call("run", study, *MODEL) == (0, "")
     assert OUT.read_bytes() == undisturbed
@@ -188,9 +183,8 @@ def test_a_lock_of_another_host_is_respected(study, under_way, call, injected):
     injected("lock of another computer")
     code, said = call("run", study, *MODEL)
     assert code == 2
-    assert said == (
-        f"{ROWS}: in use by process 1 on elsewhere; if that has ended, remove {ROWS / 'lock'}\n"
-    )
+    where = {"pid": 1, "host": "elsewhere", "lock": ROWS / "lock"}
+    assert said == sentence("in use elsewhere", rows=ROWS, **where)
     (ROWS / "lock").unlink()
     assert call("run", study, *MODEL)[0] == 0
 

@@ -9,10 +9,11 @@ import numpy as np
 import psutil
 import pytest
 from faulty_studies import PATIENCE, computed_here
+from in_memory import compute
 
 from uq.contract import Status
 from uq.rows.workload import workload_of
-from uq.running import isolation, local_cluster, runner, sent_chunks
+from uq.running import isolation, local_cluster, sent_chunks
 
 
 def processes(module, of=None):
@@ -73,7 +74,7 @@ CHILD, WORKER = "uq.running.child", "uq.running.dask_worker"
 def test_killed_processes_leave_no_trace(study_of, injected, fault, module, times, all_of_them):
     study = study_of(seconds=0.02)
     killer = Killer(module, times, 120, all_of_them)
-    ds = runner.compute(study, workers=2, chunk_rows=5, progress=killer)
+    ds = compute(study, workers=2, chunk_rows=5, progress=killer)
     assert killer.marks == []
     injected(fault, times)
     assert ds.identical(computed_here(study))
@@ -103,7 +104,7 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, monkeypatch, injec
 
     thread = threading.Thread(target=kill_thrice)
     thread.start()
-    ds = runner.compute(study, workers=1, chunk_rows=20)
+    ds = compute(study, workers=1, chunk_rows=20)
     thread.join()
     assert "KilledWorker" in failed
     injected("worker killed three times on a chunk")
@@ -152,7 +153,7 @@ def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
     thread.start()
     try:
         with pytest.raises(local_cluster.RunError, match="worker process"):
-            runner.compute(study_of(seconds=0.5, samples=600), workers=1, chunk_rows=1)
+            compute(study_of(seconds=0.5, samples=600), workers=1, chunk_rows=1)
     finally:
         stop.set()
         thread.join()
@@ -164,7 +165,7 @@ def test_workers_that_can_start_no_process_end_the_run(study_of, monkeypatch, in
     said = "no worker could compute rows .*: a process for the rows could not start: exit code 3"
     injected("workers that can start no process")
     with pytest.raises(local_cluster.RunError, match=said):
-        runner.compute(study_of(seconds=0.01), workers=1, chunk_rows=20)
+        compute(study_of(seconds=0.01), workers=1, chunk_rows=20)
 
 
 @pytest.mark.slow
@@ -178,5 +179,5 @@ def test_everything_listens_on_this_computer_alone(study_of):
                 if connection.status == psutil.CONN_LISTEN:
                     listening.add(connection.laddr.ip)
 
-    runner.compute(study_of(seconds=0.02, samples=60), workers=2, chunk_rows=5, progress=look)
+    compute(study_of(seconds=0.02, samples=60), workers=2, chunk_rows=5, progress=look)
     assert listening == {"127.0.0.1"}

@@ -11,6 +11,7 @@ import dask
 import psutil
 import pytest
 from faulty_studies import PATIENCE, computed_here
+from in_memory import compute
 
 from uq.errors import InputError, RunError
 from uq.running import remote_cluster, runner
@@ -89,7 +90,7 @@ def study(study_of):
     return study_of(seconds=0.05, samples=100)
 
 
-def patiently(address, *arguments, call=runner.compute, **options):
+def patiently(address, *arguments, call=compute, **options):
     """Run on a cluster that may still be starting."""
     end = time.monotonic() + PATIENCE
     while True:
@@ -131,7 +132,7 @@ def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, i
         if progress.done > 20:
             there.end(there.scheduler)
 
-    with pytest.raises(RunError, match=rf"^--scheduler {there.address}: the scheduler is gone$"):
+    with pytest.raises(RunError, match=rf"^scheduler {there.address}: the scheduler is gone$"):
         patiently(there.address, study, "out.nc", call=runner.run, chunk_rows=2, progress=kill)
     injected("scheduler killed")
     reports = []
@@ -175,14 +176,14 @@ def test_certificates_are_used_and_demanded(start, study, folder):
     with dask.config.set(tls(certificate, certificate, key)):
         ds = patiently(there.address, study, chunk_rows=10)
     assert ds.identical(computed_here(study))
-    with pytest.raises(InputError, match=f"^--scheduler {there.address}: .* certificates: set"):
-        runner.compute(study, scheduler=there.address)
+    with pytest.raises(InputError, match=f"^scheduler {there.address}: .* certificates: set"):
+        compute(study, scheduler=there.address)
     # Somebody with another certificate is refused.
     with (
         dask.config.set(tls(certificate, *self_signed(folder / "theirs"))),
         pytest.raises(InputError),
     ):
-        runner.compute(study, scheduler=there.address)
+        compute(study, scheduler=there.address)
 
 
 def test_workers_left_alone_keep_no_process(start, study):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from command_line import everything, strict_json
+from wordings import sentence
 
 import uq as api
 from uq.cli.printing import print_json
@@ -87,7 +88,7 @@ def test_samples_can_be_set_for_one_run(uq, write_study):
     assert api.open_result("out.nc").sizes["sample"] == 32
     ended = uq("run", path, "--samples", "33", "-o", "out.nc")
     assert ended.code == 2
-    assert "must be a power of two; the next is 64" in ended.err
+    assert sentence("size", next=64) in ended.err
 
 
 def test_too_many_failed_rows_are_an_exit_code_and_a_sentence(uq, write_study, folder):
@@ -103,7 +104,7 @@ def test_too_many_failed_rows_are_an_exit_code_and_a_sentence(uq, write_study, f
     bad = ended("raise", 0.1)
     assert bad.code == 1
     assert bad.err.count("\n") == 1
-    assert "of 400 rows failed, more than max_failed = 0.1 allows (raised: row " in bad.err
+    assert "of 400 " + sentence("too many failed", share=0.1, status="raised") in bad.err
     assert Path("results/small.nc").exists()
     assert ended("nan", 0.9).code == 0
 

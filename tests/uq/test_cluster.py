@@ -13,11 +13,12 @@ import numpy as np
 import process_models
 import psutil
 import pytest
+from in_memory import compute
 
 import uq
 from uq import provenance
 from uq.errors import InputError
-from uq.running import dispatch, local_cluster, remote_cluster, runner
+from uq.running import dispatch, local_cluster, remote_cluster
 from uq.running.child import ModelSpec
 from uq.running.dask_task import evaluate_rows
 from uq.study.definition import load_study
@@ -55,14 +56,14 @@ def tidy(folder, monkeypatch):
 def test_workers_give_the_bits_of_this_process(write_study, tidy, model, parameters, workers):
     path = write_study(method="saltelli", samples=128, replicates=2, uncertain=parameters)
     study = load_study(path, model)
-    here = runner.compute(study, workers=0)
-    assert runner.compute(study, workers=workers, chunk_rows=100).identical(here)
+    here = compute(study, workers=0)
+    assert compute(study, workers=workers, chunk_rows=100).identical(here)
 
 
 @pytest.mark.slow
 def test_all_workers_work(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=400), "process_models:PROCESS")
-    ds = runner.compute(study, workers=2, chunk_rows=2)
+    ds = compute(study, workers=2, chunk_rows=2)
     # The first rows are computed by a process that is no worker.
     assert len(set(ds["y"].values)) == 3
     assert float(os.getpid()) not in ds["y"].values
@@ -77,10 +78,10 @@ def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeyp
     monkeypatch.setenv("NUMBA_CPU_FEATURES", "+sse2")
     monkeypatch.setattr(process_models.numba.config, "CACHE_DIR", "some folder")
     study = load_study(write_study(uncertain=("x1",)), "process_models:ENVIRONMENT")
-    ds = runner.compute(study, workers=1, chunk_rows=1)
+    ds = compute(study, workers=1, chunk_rows=1)
     assert len(set(ds["y"].values)) == 1
     monkeypatch.setenv("UQ_TEST", "2")
-    assert runner.compute(study, workers=0)["y"].values[0] != ds["y"].values[0]
+    assert compute(study, workers=0)["y"].values[0] != ds["y"].values[0]
 
 
 @pytest.mark.parametrize(
@@ -93,7 +94,7 @@ def test_workers_are_started_for_longer_studies_only(
     monkeypatch.setattr("uq.running.executor.SHORT_SECONDS", seconds)
     monkeypatch.setattr(local_cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
-    ds = runner.compute(load_study(path, "process_models:PROCESS"))
+    ds = compute(load_study(path, "process_models:PROCESS"))
     assert len(set(ds["y"].values)) == processes
 
 
@@ -115,7 +116,7 @@ def test_an_existing_cluster_is_used(write_study, tidy):
     with local_cluster.local_workers(1) as crew:
         crew.client.wait_for_workers(1)
         address = crew.client.scheduler.address
-        ds = runner.compute(study, scheduler=address, chunk_rows=5)
+        ds = compute(study, scheduler=address, chunk_rows=5)
         assert address.startswith("tcp://127.0.0.1:")
         assert crew.threads == 1
     assert len(set(ds["y"].values)) == 2
@@ -127,12 +128,12 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
     with monkeypatch.context() as hasty:
         hasty.setattr(remote_cluster, "_REMOTE_SECONDS", 1)
         for address in ("tcp://127.0.0.1:9", "nonsense://x"):
-            with pytest.raises(InputError, match=rf"^--scheduler {address}: cannot connect: .+$"):
-                runner.compute(study, scheduler=address)
+            with pytest.raises(InputError, match=rf"^scheduler {address}: cannot connect: .+$"):
+                compute(study, scheduler=address)
     with local_cluster.LocalCluster(n_workers=0, dashboard_address=None) as empty:
         address = empty.scheduler_address
-        with pytest.raises(InputError, match=rf"^--scheduler {address}: .* no workers; "):
-            runner.compute(study, scheduler=address)
+        with pytest.raises(InputError, match=rf"^scheduler {address}: .* no workers; "):
+            compute(study, scheduler=address)
 
 
 def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monkeypatch):
@@ -143,11 +144,11 @@ def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monk
         crew.client.wait_for_workers(1)
         address = crew.client.scheduler.address
         with pytest.raises(InputError) as refused:
-            runner.compute(study, scheduler=address)
+            compute(study, scheduler=address)
     (line,) = refused.value.lines
     here = provenance.versions()
     assert re.fullmatch(
-        rf"--scheduler {address}: worker tcp://\S+ has Python {here['Python']}, numpy "
+        rf"scheduler {address}: worker tcp://\S+ has Python {here['Python']}, numpy "
         rf"{here['numpy']}; this process has Python 2.7, numpy 1.0: install the same on both",
         line,
     )

@@ -6,8 +6,7 @@ import sys
 import pytest
 
 from uq.errors import InputError
-from uq.study.code import code_of
-from uq.study.registry import find_model
+from uq.study.registry import code_of, find_model
 from uq.study.sources import fingerprint
 
 

@@ -13,6 +13,7 @@ from computed import (
     linear,
     with_output,
 )
+from wordings import sentence
 
 from uq.errors import InputError
 from uq.store.files import write_result
@@ -25,7 +26,7 @@ def test_studies_that_cannot_be_compared_are_refused_in_a_line(uq, folder):
     for pair, line in (
         (("a.nc", "k.nc"), "model 'linear', the second of 'kinds': only studies of the same model"),
         (("a.nc", "m.nc"), "the second, a 'morris' design, do not follow the laws"),
-        (("a.nc", "none.nc"), "none.nc: no such file"),
+        (("a.nc", "none.nc"), sentence("no file", name="none.nc")),
     ):
         ended = uq("compare", *pair)
         assert (ended.code, ended.out, ended.err.count("\n")) == (2, "", 1)

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from wordings import sentence
 
 COMMAND = Path(sys.executable).with_name("uq")
 
@@ -64,7 +65,4 @@ def test_a_terminal_shows_that_a_model_compiles(folder):
     os.close(theirs)
     said = os.read(ours, 1000).decode()
     os.close(ours)
-    assert (ended.returncode, said) == (
-        0,
-        "compiling the model (once; it may take a minute)\r\n",
-    )
+    assert (ended.returncode, said) == (0, f"{sentence('compiling')}\r\n")

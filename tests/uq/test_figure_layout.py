@@ -9,7 +9,10 @@ from drawn import words
 from matplotlib.figure import Figure
 
 from uq import plots
-from uq.drawing.figure import file_name, lay_out, powers, roomy, sentence
+from uq.drawing.catalogue import file_name
+from uq.drawing.figure import lay_out
+from uq.drawing.ticks import roomy
+from uq.drawing.words import powers, sentence
 
 
 def test_numbers_on_logarithmic_axes_are_plain():

@@ -49,7 +49,7 @@ def test_imported_rows_are_those_of_the_file_to_the_bit(table, file):
     again = study_from_text(ds.attrs["study"])
     assert again.identity == study.identity
     np.testing.assert_array_equal(row_block(again, 0, 100).x, drawn)
-    with pytest.raises(InputError, match="--samples 101: the file has 100 rows for 'imported'"):
+    with pytest.raises(InputError, match="samples = 101: the file has 100 rows for 'imported'"):
         study.with_samples(101)
 
 

@@ -55,6 +55,7 @@ def test_a_share_that_depends_on_when_censored_rows_end_is_not_known():
     assert np.isnan(unknown.estimate.value) and not unknown.reached
 
 
-def test_it_is_said_at_which_look_a_run_knew_enough():
-    (note,) = summarised(runner.compute(study(10.0, samples=500), workers=0))["notes"]
+def test_it_is_said_at_which_look_a_run_knew_enough(tmp_path):
+    ds = runner.run(study(10.0, samples=500), tmp_path / "out.nc", workers=0)
+    (note,) = summarised(ds)["notes"]
     assert "was reached at interim estimate 1 of at most 5" in note

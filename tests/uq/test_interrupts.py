@@ -14,6 +14,7 @@ from pathlib import Path
 
 import psutil
 import pytest
+from wordings import sentence
 
 from uq.running.workers import quiet
 
@@ -21,7 +22,7 @@ PATIENCE = 30.0
 """How long a busy machine may take for what should take a moment [s]."""
 
 COMMAND = Path(sys.executable).with_name("uq")
-COMPILING = "compiling the model (once; it may take a minute)"
+COMPILING = sentence("compiling")
 
 
 @pytest.fixture
@@ -92,13 +93,13 @@ def to_group(process):
     os.killpg(process.pid, signal.SIGINT)
 
 
-def check_ended(process, sentence):
+def check_ended(process, beginning):
     out, err = process.communicate(timeout=PATIENCE)
     assert (process.returncode, out) == (130, "")
     *before, last = err.splitlines()
     assert before in ([], [COMPILING])
-    assert last.startswith(sentence)
-    assert Path("results").exists() == err.endswith("; the same command resumes the run\n")
+    assert last.startswith(beginning)
+    assert Path("results").exists() == err.endswith(sentence("resumes"))
 
 
 @pytest.mark.parametrize("send", [to_process, pytest.param(to_group, marks=pytest.mark.slow)])
@@ -107,7 +108,7 @@ def test_while_a_kernel_runs(started, send):
     wait_until(mark.exists)
     time.sleep(1.0)  # compiled and running
     send(process)
-    check_ended(process, "interrupted; nothing was written")
+    check_ended(process, sentence("nothing written"))
 
 
 @pytest.mark.slow
@@ -116,7 +117,7 @@ def test_while_a_kernel_compiles(started, options):
     process, _ = started("COMPILING", *options)
     assert process.stderr.readline() == f"{COMPILING}\n"  # before any row is there
     to_group(process)
-    check_ended(process, "interrupted; nothing was written")
+    check_ended(process, sentence("nothing written"))
 
 
 @pytest.mark.parametrize("send", [pytest.param(to_process, marks=pytest.mark.slow), to_group])

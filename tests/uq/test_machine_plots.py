@@ -14,7 +14,8 @@ from models.beam.parameters import Settings as BeamSettings
 from models.mole.parameters import Params as Mole
 from models.mole.parameters import Settings as MoleSettings
 from uq import plots
-from uq.drawing.figure import COLOURS, lay_out
+from uq.drawing.figure import lay_out
+from uq.drawing.style import COLOURS
 from uq.errors import InputError
 from uq.wording import percent
 

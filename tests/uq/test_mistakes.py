@@ -8,53 +8,7 @@ from pathlib import Path
 
 import pytest
 from command_line import everything
-
-MISTAKES = {
-    "sumary": "uq: No such command 'sumary'. Did you mean 'summary'? See 'uq --help'",
-    "run": "uq: Missing argument 'STUDY'; see 'uq run --help'",
-    "run a.toml --sampels 3": "uq: No such option: --sampels; did you mean '--samples'?",
-    "run a.toml --workers -1": "uq: Invalid value for '--workers': ",
-    "run a.toml --samples many": "uq: Invalid value for '--samples': ",
-    "run absent.toml": "absent.toml: no such file",
-    "run .": ".: is a directory",
-    "run broken.toml": "broken.toml: not valid TOML: ",
-    "run small.toml --model nowhere:M": "--model nowhere:M cannot be imported",
-    "run small.toml -o folder": "folder: is a folder; give the name of a file in it",
-    "run small.toml -o /proc/x.nc": "/proc/x.nc: cannot write in /proc: ",
-    "run small.toml -o broken.toml": "broken.toml: not a readable netCDF file; ",
-    "run small.toml --workers 1 --scheduler tcp://x:1": "workers and scheduler exclude each other",
-    "simulate ishigamy": "no such model 'ishigamy'; did you mean 'ishigami'?",
-    "simulate linear --set x1": "--set x1: write it as NAME=VALUE with a number",
-    "simulate linear --set x1=-1e400": (
-        "--set x1=-1e400: -1e400 is too large for a number; write it as inf if infinity is meant\n"
-    ),
-    "simulate beam --setting horizon=1e400": "--setting horizon=1e400: 1e400 is too large",
-    "simulate linear --set x1=much": "--set x1=much: write it as NAME=VALUE with a number",
-    "simulate linear --set x1=nan": "x1 = nan: ",
-    "simulate linear --set x1=inf": "x1 = inf: must lie within 0.0 to 1.0 [1]",
-    "simulate sample_models:MOUNTED --set mount_stiffness=1e3": (
-        "mount_stiffness = 1000.0: must lie within 10000.0 to inf [N m-1]"
-    ),
-    "simulate linear --set x5=1": "x5 = 1.0: no such parameter of model 'linear'",
-    "simulate linear --setting fail_how": "--setting fail_how: write it as NAME=VALUE",
-    "simulate linear --setting fail_how=3": "setting fail_how = 3: must be one of nan, inf",
-    "simulate vibrator --setting body_points=[[1.0,0.2,0.3]]": (
-        "setting body_points = [[1.0, 0.2, 0.3]]: must be a list, each a list of 2, each a number "
-        "within -30.0 to 30.0 [m]\n"
-    ),
-    "simulate linear --plot f.png": "model 'linear' gives no trajectory",
-    "simulate sample_models:KINDS -o folder": "folder: is a folder",
-    "simulate sample_models:KINDS --plot /proc/f.png": "/proc/f.png: cannot write in /proc: ",
-    "simulate sample_models:KINDS --plot f.xyz": "f.xyz: Format 'xyz' is not supported",
-    "models nothing": "no such model 'nothing'",
-    "init nothing": "no such model 'nothing'",
-    "check absent.toml": "absent.toml: no such file",
-    "summary absent.nc": "absent.nc: no such file",
-    "summary small.toml": "small.toml: not a readable netCDF file",
-    "sensitivity folder": "folder: is a folder, not a result",
-    "plot absent.nc": "absent.nc: no such file",
-}
-
+from wordings import MISTAKES
 
 NEXT_STEP = re.compile(
     r"[Dd]id you mean|[Ss]ee '|must |allowed: |installed: |choose |give |write it |leave out"

@@ -6,6 +6,7 @@ import os
 import numpy as np
 import pytest
 from computed import summarised
+from in_memory import compute
 
 from uq.analysis.widths import expected_widths
 from uq.running import planning, runner
@@ -36,7 +37,7 @@ def test_a_small_study_is_run_whole(write_study):
     study = load_study(write_study(method="saltelli", samples=16, replicates=2))
     cost, pilot = planning.pilot(study, workers=1)
     assert cost.pilot_rows == cost.rows == 160
-    assert pilot["y"].values.tolist() == runner.compute(study, workers=0)["y"].values.tolist()
+    assert pilot["y"].values.tolist() == compute(study, workers=0)["y"].values.tolist()
 
 
 @pytest.mark.slow
@@ -62,7 +63,7 @@ def test_widths_are_those_that_come_out(write_study, method, replicates):
             more=more,
         )
     )
-    whole = runner.compute(study, workers=0)
+    whole = compute(study, workers=0)
     pilot = whole.isel(sample=slice(0, 400))
     expected = expected_widths(pilot)["y"]
     found = summarised(whole)["outputs"]["y"]
@@ -113,7 +114,7 @@ def test_plan_shows_all_of_it(uq, write_study, monkeypatch):
 
 def test_a_quantile_at_a_life_that_never_ends_has_no_width(write_study):
     path = write_study(samples=200, uncertain=("x1",), law=NORMAL)
-    ds = runner.compute(load_study(path, "sample_models:KINDS"), workers=0)
+    ds = compute(load_study(path, "sample_models:KINDS"), workers=0)
     quantiles = expected_widths(ds)["life[side=left,depth=0.5]"].quantiles
     assert quantiles[0.95] is None
     assert quantiles[0.05] > 0

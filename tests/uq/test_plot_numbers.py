@@ -6,7 +6,7 @@ from asked_indices import sensitivities
 from computed import asking, kinds, linear, summarised, with_output
 
 from uq import plots
-from uq.drawing.figure import COLOURS, thinned
+from uq.drawing.style import COLOURS, thinned
 
 DAY = 86400.0
 

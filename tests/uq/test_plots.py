@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from computed import asking, kinds, linear, summarised, with_output
 from drawn import words
+from wordings import sentence
 
 from uq import plots
 from uq.errors import InputError
@@ -195,7 +196,7 @@ def test_convergence_ends_with_all_rows_and_narrows():
     (axes,) = plots.convergence(with_output(linear(), "life", lives, "lifetime"), "life").axes
     assert axes.get_ylabel().startswith("Median: ")
     assert axes.lines[0].get_xdata()[-1] == 64
-    with pytest.raises(InputError, match="no estimates from fewer samples"):
+    with pytest.raises(InputError, match=sentence("no fewer samples")):
         plots.convergence(linear("latin-hypercube", samples=64), "y")
 
 

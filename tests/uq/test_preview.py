@@ -31,7 +31,7 @@ def test_of_many_lives_an_even_part_is_kept(sizes):
         lives = {"life": np.arange(start, stop, dtype=float)}
         preview.add(chunk._replace(columns=chunk.columns | lives))
         start, i = stop, i + 1
-    kept = preview._sample._values
+    kept = preview._lives._values
     assert 2000 < len(kept) <= 4096 and len(np.unique(np.diff(kept))) == 1
     assert preview.median == ("life", pytest.approx(total / 2, rel=1e-3))
     assert preview.shares == {}

@@ -8,10 +8,11 @@ import time
 
 import numpy as np
 import pytest
+from wordings import sentence
 
 import uq as api
 from uq.cli import progress
-from uq.cli.progress import details, sentence
+from uq.cli.progress import details
 from uq.running.dispatch import Progress
 
 MUCH = Progress(
@@ -137,18 +138,18 @@ def test_a_model_that_compiles_is_reported_once(capsys):
     with progress.shown(quiet=False) as show:
         for _ in range(3):  # one kernel after the other
             show(Progress(0, 4, 0, compiling=True))
-    assert capsys.readouterr().err == "compiling the model (once; it may take a minute)\n"
+    assert capsys.readouterr().err == sentence("compiling") + "\n"
 
 
 def test_progress_is_a_sentence():
-    assert sentence(Progress(100, 400, 3), 50.0) == (
+    assert progress.sentence(Progress(100, 400, 3), 50.0) == (
         "100 of 400 rows, 50 rows/s, 0:06 left, 3 failed"
     )
-    assert sentence(Progress(1, 3601, 0), 1.0).endswith("1:00:00 left, 0 failed")
+    assert progress.sentence(Progress(1, 3601, 0), 1.0).endswith("1:00:00 left, 0 failed")
 
 
 def test_the_time_that_a_model_compiles_is_not_taken_for_that_of_its_rows():
     pace = progress.Pace()
     assert pace(Progress(10, 400, 0), 60.0) == 0.0
-    assert sentence(Progress(10, 400, 0), 0.0) == "10 of 400 rows, 0 failed"
+    assert progress.sentence(Progress(10, 400, 0), 0.0) == "10 of 400 rows, 0 failed"
     assert pace(Progress(110, 400, 0), 62.0) == pytest.approx(50.0)

@@ -13,6 +13,7 @@ from computed import (
     with_output,
     with_status,
 )
+from wordings import sentence
 
 from uq.analysis.findings import Findings
 from uq.analysis.statistics.statistic import Statistic
@@ -201,7 +202,7 @@ def test_rows_less_exact_than_their_number_are_warned_of():
     found = convergence_of(Findings(ds), outcomes(ds, summarise(ds)))
     (warning,) = found.warnings
     assert warning.startswith("y: the rows' own error (1 1)")
-    assert "no estimates from fewer samples" in found.refused and found.pictures == []
+    assert sentence("no fewer samples") in found.refused and found.pictures == []
 
 
 def test_what_never_ends_sorts_last_and_what_says_nothing_is_left_out():

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from computed import computed, linear, study_of
+from in_memory import compute
 
 from uq import store
 from uq.contract import Status
@@ -116,7 +117,7 @@ def test_an_example_stands_beside_each_failing_status(write_study):
         uncertain=("x1", "x2"),
         more='[settings]\nfail_above = 0.5\nfail_how = "raise"',
     )
-    ds = runner.compute(load_study(path), workers=0, chunk_rows=7)
+    ds = compute(load_study(path), workers=0, chunk_rows=7)
     first = int(np.flatnonzero(ds["x1"] > 0.5)[0])
     assert ds["status"].attrs["example_raised"] == (
         f"row {first}: ValueError: x1 is above fail_above = 0.5"
@@ -208,7 +209,7 @@ def test_new_text_of_the_same_study_replaces_the_old(kinds, write_study):
 
 def test_a_file_holds_what_memory_holds(kinds):
     study, path = kinds
-    ds = runner.compute(study, workers=0)
+    ds = compute(study, workers=0)
     assert results.open_result(path).identical(ds)
     # Merged from chunks or written at once: the layout may differ, nothing that is said does.
     store.write_result(ds, Path("again.nc"))

@@ -9,6 +9,8 @@ import sample_models
 import xarray as xr
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from in_memory import compute
+from wordings import sentence
 
 import uq
 from uq.contract import Status
@@ -35,14 +37,14 @@ from uq.study.definition import load_study
 )
 def test_every_design_gives_the_same_bits_for_any_chunk_size(write_study, design):
     study = load_study(write_study(**design))
-    whole = runner.compute(study, workers=0)
+    whole = compute(study, workers=0)
     for chunk_rows in (1, 7, 1000):
-        assert whole.identical(runner.compute(study, workers=0, chunk_rows=chunk_rows))
+        assert whole.identical(compute(study, workers=0, chunk_rows=chunk_rows))
 
 
 @pytest.mark.parametrize(("seconds", "rows"), [(1e-3, 1024), (0.004, 1024), (0.1, 50), (20.0, 1)])
 def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_study, seconds, rows):
-    assert dispatch.chunk_rows(workload_of(load_study(write_study())), seconds) == rows
+    assert dispatch.ChunkSizes(workload_of(load_study(write_study()))).good(seconds) == rows
 
 
 @settings(
@@ -56,8 +58,8 @@ def test_failures_do_not_depend_on_chunks(write_study, chunk_rows):
         more='[settings]\nfail_above = 0.7\nfail_how = "raise"',
     )
     study = load_study(path)
-    whole = runner.compute(study, workers=0)
-    assert runner.compute(study, workers=0, chunk_rows=chunk_rows).identical(whole)
+    whole = compute(study, workers=0)
+    assert compute(study, workers=0, chunk_rows=chunk_rows).identical(whole)
 
 
 def test_chunks_may_arrive_in_any_order(write_study):
@@ -73,13 +75,13 @@ def test_chunks_may_arrive_in_any_order(write_study):
         some = row_block(study, start, start + 20)
         chunk = evaluate(study.model, study.settings, some.x, some.seed, start)
         store.add(start, some, chunk)
-    assert store.dataset().identical(runner.compute(study, workers=0))
+    assert store.dataset().identical(compute(study, workers=0))
 
 
 def test_chunks_are_whole_groups_and_full_blocks(write_study):
     seen = []
     study = load_study(write_study(method="saltelli", samples=64, replicates=2))
-    runner.compute(study, workers=0, chunk_rows=11, progress=seen.append)
+    compute(study, workers=0, chunk_rows=11, progress=seen.append)
     done = np.array([progress.done for progress in seen])
     assert np.all(np.diff(done)[:-1] == 15)
     last = seen[-1]
@@ -91,20 +93,20 @@ def test_chunks_fill_the_blocks_of_a_kernel_unless_a_size_is_asked_for(write_stu
     study = load_study(path, "process_models:SLEEPING")
     blocked = replace(study, model=replace(study.model, block=96))
     seen = []
-    runner.compute(blocked, workers=0, progress=seen.append)
+    compute(blocked, workers=0, progress=seen.append)
     sizes = np.diff([0, *(progress.done for progress in seen)])
     full = sizes[-3:-1]  # long after the first, small ones that tell the cost of a row
     assert np.all(full >= 96)
     assert np.all(full % 96 == 0)
     seen.clear()
-    runner.compute(blocked, workers=0, chunk_rows=20, progress=seen.append)
+    compute(blocked, workers=0, chunk_rows=20, progress=seen.append)
     assert np.all(np.diff([progress.done for progress in seen]) == 20)
 
 
 def test_progress_counts_rows_and_failures(write_study):
     path = write_study(model="linear", more="[settings]\nfail_above = 0.5", samples=200)
     seen = []
-    ds = runner.compute(load_study(path), workers=0, chunk_rows=20, progress=seen.append)
+    ds = compute(load_study(path), workers=0, chunk_rows=20, progress=seen.append)
     assert [progress.done for progress in seen] == list(range(20, 201, 20))
     assert seen[-1].failed == int((ds["status"] != 0).sum()) > 0
 
@@ -120,7 +122,7 @@ def test_progress_counts_failures_as_the_tables_do(write_study):
     study = load_study(path, "sample_models:KINDS")
     study = replace(study, model=replace(study.model, batch=lacking_work))
     seen = []
-    ds = runner.compute(study, workers=0, chunk_rows=10, progress=seen.append)
+    ds = compute(study, workers=0, chunk_rows=10, progress=seen.append)
     failed = int(results.failed(ds).sum())
     assert seen[-1].failed == failed
     assert 0 < failed < (ds["status"] == Status.OUT_OF_BUDGET).sum()
@@ -170,7 +172,7 @@ def test_the_output_is_checked_before_anything_is_computed(write_study, folder):
 def test_a_model_wrong_for_every_row_is_refused(write_study):
     study = load_study(write_study(model="x", uncertain=("x1",)), "wrong_models:WRONG_SHAPE")
     with pytest.raises(KernelError) as refused:
-        runner.compute(study, workers=0)
+        compute(study, workers=0)
     assert refused.value.lines == (
         "model 'wrong-shape': every row is wrong: 'y' has shape (1, 2), expected (1,)",
     )
@@ -185,7 +187,7 @@ def test_a_first_row_of_a_wrong_shape_does_not_blame_the_model(write_study):
     )
     study = load_study(path)
     study = replace(study, model=replace(study.model, block=1))
-    ds = runner.compute(study, workers=0, chunk_rows=1)
+    ds = compute(study, workers=0, chunk_rows=1)
     assert ds["status"].values[0] == Status.BAD_SHAPE
     assert np.array_equal(ds["status"] == Status.BAD_SHAPE, ds["x1"] >= first)
     assert (ds["status"] == Status.OK).any()
@@ -201,7 +203,7 @@ def test_a_first_row_of_a_wrong_shape_does_not_blame_the_model(write_study):
 )
 def test_impossible_options_are_refused(write_study, options, words):
     with pytest.raises(InputError, match=words):
-        runner.compute(load_study(write_study()), **options)
+        compute(load_study(write_study()), **options)
 
 
 def test_a_result_keeps_no_file_open(write_study):
@@ -215,7 +217,7 @@ def test_a_complete_result_of_other_code_comes_with_a_warning(write_study, monke
     study = write_study(samples=8)
     uq.run(study, workers=0)
     uq.run(study, workers=0)
-    monkeypatch.setattr("uq.study.code.code_of", lambda reference: "0" * 16)
-    with pytest.warns(UserWarning, match="holds rows that other code of model 'ishigami' computed"):
+    monkeypatch.setattr("uq.study.registry.code_of", lambda reference: "0" * 16)
+    with pytest.warns(UserWarning, match=sentence("other code", model="ishigami")):
         uq.run(study, workers=0)
     uq.run(study, workers=0, mixed=True)

@@ -8,7 +8,8 @@ from study_text import UNIFORM, study_text
 
 from models.analytic import ISHIGAMI, LINEAR
 from uq.errors import InputError
-from uq.study.definition import load_study, read_study_text, study_from_text
+from uq.study.definition import load_study, study_from_text
+from uq.study.reading import read_study_text
 
 LINEAR_STUDY = """
 study = {name = "faults", model = "linear", description = "what happens when rows fail"}
@@ -174,9 +175,9 @@ def test_a_wrong_size_from_the_command_line_names_the_option(method):
     with pytest.raises(InputError) as caught:
         study.with_samples(1000)
     assert caught.value.lines == (
-        f"--samples 1000: must be a power of two; the next is 1024 for '{method}'",
+        f"samples = 1000: must be a power of two; the next is 1024 for '{method}'",
     )
-    with pytest.raises(InputError, match="^--samples 0: must be between 1 and"):
+    with pytest.raises(InputError, match="^samples = 0: must be between 1 and"):
         study.with_samples(0)
 
 

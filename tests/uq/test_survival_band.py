@@ -6,7 +6,7 @@ from computed import asking, linear, with_output
 from scipy import stats
 
 from uq.analysis.lifetime import survival
-from uq.drawing.lifetime_plot import lifetime
+from uq.drawing.distribution_plots import lifetime
 
 LAW = stats.weibull_min(2.0)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 import pytest
+from wordings import sentence
 
 import uq as api
 from uq.contract import Status
@@ -50,13 +51,12 @@ def test_what_cannot_be_extended_says_why(uq, write_study):
     before = Path("out.nc").read_bytes()
     ended = uq("extend", "out.nc", "--samples", 128)
     assert ended.code == 2
-    assert ended.err == (
-        "out.nc: a 'latin-hypercube' design cannot be extended: all its rows change with their "
-        "number; run it again, into another output or with --fresh\n"
-    )
+    assert ended.err == "out.nc: " + sentence("cannot be extended", design="latin-hypercube")
     fewer = uq("extend", "out.nc", "--samples", 32)
-    assert fewer.err == "--samples 32: out.nc has 64 already; ask for more\n"
-    assert uq("extend", "none.nc", "--samples", 32).err.startswith("none.nc: no such file; ")
+    assert fewer.code == 2 and fewer.err.startswith("samples = 32: out.nc has 64 ")
+    assert uq("extend", "none.nc", "--samples", 32).err.startswith(
+        sentence("no file", name="none.nc")
+    )
     assert Path("out.nc").read_bytes() == before
 
 
@@ -64,7 +64,7 @@ def test_a_grown_study_extends_its_result(uq, write_study):
     uq("run", write_study(samples=40), "-o", "out.nc", *QUIETLY)
     path = write_study(samples=100)
     ended = uq("run", path, "-o", "out.nc")
-    assert ended.err == "out.nc: 40 of 100 rows were already done\n"
+    assert ended.err == sentence("done", output="out.nc", done=40, rows=100)
     words = " ".join(ended.out.split())
     assert re.search(r"out.nc: 60 rows computed in [0-9.]+ s; 40 had been computed before", words)
     uq("run", path, "-o", "once.nc", *QUIETLY)
@@ -126,8 +126,8 @@ def test_failed_rows_run_again_as_they_were_change_no_bit(uq, result):
     ("arguments", "words"),
     [
         ((), "uq rerun: give --failed, the rows to compute again\n"),
-        (("--failed", "--setting", "fail_abov=1"), "--setting fail_abov = 1: no such setting of"),
-        (("--failed", "--setting", "fail_how=no"), "--setting fail_how = 'no': must be one of"),
+        (("--failed", "--setting", "fail_abov=1"), "setting fail_abov = 1: no such setting of"),
+        (("--failed", "--setting", "fail_how=no"), "setting fail_how = 'no': must be one of"),
     ],
 )
 def test_a_rerun_that_makes_no_sense_is_refused(uq, result, arguments, words):
@@ -160,7 +160,7 @@ def test_status_of_a_complete_result(uq, result):
     }
     none = uq("status", "none.nc")
     assert (none.code, none.out) == (2, "")
-    assert none.err.startswith("none.nc: no such file; ")
+    assert none.err.startswith(sentence("no file", name="none.nc"))
 
 
 def test_verify_finds_a_flipped_bit_wherever_it_is(uq, result):
@@ -212,10 +212,8 @@ def test_a_result_of_another_version_of_the_model_is_not_taken_for_this_one(uq, 
     for verb in (("verify", "out.nc"), ("extend", "out.nc", "--samples", 20)):
         ended = uq(*verb)
         assert ended.code == 2
-        assert ended.err == (
-            "out.nc: was computed with another model (version 0 of model 'ishigami', now 1); rerun "
-            "the study, into another output or with --fresh\n"
-        )
+        versions = {"model": "ishigami", "old": 0, "new": 1}
+        assert ended.err == sentence("another model", output="out.nc", **versions)
 
 
 def test_a_result_of_other_code_goes_further_on_request_alone(uq, write_study):
@@ -225,7 +223,7 @@ def test_a_result_of_other_code_goes_further_on_request_alone(uq, write_study):
     verb = ("extend", "out.nc", "--samples", 20)
     refused = uq(*verb)
     assert refused.code == 2
-    assert refused.err.startswith("out.nc: holds rows that other code of model 'ishigami' computed")
+    assert refused.err == sentence("other code refused", output="out.nc", model="ishigami")
     assert uq(*verb, "--mixed").code == 0
     assert api.open_result("out.nc").attrs["code"].startswith("0; ")
 
@@ -236,8 +234,8 @@ def test_rows_of_other_versions_are_named_in_the_result(uq, write_study):
         file.setncattr("numpy", "0.9")
     ended = uq("extend", "out.nc", "--samples", 20)
     assert ended.code == 0
-    assert ended.err == (
-        "out.nc: 12 of 20 rows were already done\n"
-        f"out.nc: some rows were computed with numpy 0.9 (here {np.__version__})\n"
+    versions = {"package": "numpy", "old": "0.9", "new": np.__version__}
+    assert ended.err == sentence("done", output="out.nc", done=12, rows=20) + sentence(
+        "other versions", output="out.nc", **versions
     )
     assert api.open_result("out.nc").attrs["numpy"] == f"0.9; {np.__version__}"

@@ -4,20 +4,20 @@ from typing import Annotated
 
 import typer
 
-from uq.cli.verbs import machines, results, runs, studies
+from uq.cli.verbs import results, studies
 
 VERBS = (
-    machines.models,
-    machines.simulate,
+    studies.models,
+    studies.simulate,
     studies.init,
     studies.check,
     studies.schema,
     studies.plan,
     studies.run,
-    runs.status,
-    runs.extend,
-    runs.rerun,
-    runs.verify,
+    results.status,
+    results.extend,
+    results.rerun,
+    results.verify,
     results.summary,
     results.sensitivity,
     results.convergence,

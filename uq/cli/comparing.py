@@ -8,10 +8,10 @@ from pathlib import Path
 from uq.analysis.as_json import comparison_json
 from uq.analysis.comparison import Comparison, Side, comparison
 from uq.analysis.differences import Compared, ComparedOutput
-from uq.cli.printing import console, grid, heading, paragraph, print_json
+from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
-from uq.wording import estimated, interval, known, number, time_unit
+from uq.wording import estimated, interval, known, number, unit_of
 
 _TOLD = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -47,11 +47,9 @@ def _show(found: Comparison, first: Path, second: Path) -> None:
         unit, per = _unit(output)
         heading(f"\n{name}{f' [{unit}]' if unit != '1' else ''}")
         grid(chain.from_iterable(_lines(one, per) for one in output.statistics), _HEADER)
-    console.print()
-    paragraph("*: the interval excludes no difference. " + _POINTWISE, indent=0)
-    for note in [*bought(found), *found.notes]:
-        console.print()
-        paragraph(note, indent=0)
+    note("*: the interval excludes no difference. " + _POINTWISE)
+    for text in (*bought(found), *found.notes):
+        note(text)
 
 
 _HEADER = ("", "A", "B", "B - A", "95 % interval", "")
@@ -71,10 +69,7 @@ def _unit(output: ComparedOutput) -> tuple[str, float]:
     """Return the unit in which an output is shown, and its length."""
     medians = [one.first.estimate.value for one in output.parts["quantiles"]]
     typical = medians[len(medians) // 2] if medians else nan
-    if output.units != "s" or not isfinite(typical):
-        return output.units, 1.0
-    unit = time_unit(abs(typical))
-    return unit.name, unit.seconds
+    return unit_of(output.units, typical)[:2]
 
 
 Line = tuple[str, ...]

@@ -4,28 +4,23 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from uq.analysis.widths import Widths, expected_widths
-from uq.cli.printing import console, grid, heading, number, paragraph, print_json
+from uq.cli.printing import grid, heading, note, number, print_json
 from uq.cli.progress import say_compiling
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
-from uq.study.definition import load_study
+from uq.study.definition import Study
 
 _SURE = 1.2  # a forecast with a wider margin is shown with its band
 
 
-def plan(
-    path: str, model: str | None, samples: int | None, workers: int | None, json: bool
-) -> None:
+def plan(study: Study, workers: int | None, json: bool) -> None:
     """Run a few rows of a study; show what the whole will cost, and how wide intervals will be."""
-    study = load_study(path, model)
-    if samples is not None:
-        study = study.with_samples(samples)
     cost, ds = pilot(study, workers, say_compiling)
     failures, widths = int(failed(ds).sum()), expected_widths(ds)
     if json:
         print_json(as_json(cost, failures, widths))
     else:
-        _show(path, study.description, cost, failures)
+        _show(study, cost, failures)
         _show_widths(widths)
 
 
@@ -53,8 +48,8 @@ def as_json(cost: Cost, failures: int, widths: Mapping[str, Widths]) -> dict[str
     }
 
 
-def _show(path: str, description: str, cost: Cost, failures: int) -> None:
-    heading(path, description)
+def _show(study: Study, cost: Cost, failures: int) -> None:
+    heading(study.path, study.description)
     processes = "one process" if cost.workers == 1 else f"{cost.workers} processes"
     pilot_rows = f"from {cost.pilot_rows} of them" + (f", {failures} failed" if failures else "")
     sure = cost.seconds_high < _SURE * cost.seconds
@@ -85,8 +80,7 @@ def _show_widths(widths: Mapping[str, Widths]) -> None:
         heading("\nand of")
         grid(others)
     if any(width.mean is None for width in widths.values()):
-        console.print()
-        paragraph("A dash: too few rows, not from this design, or too heavy a tail.", indent=0)
+        note("A dash: too few rows, not from this design, or too heavy a tail.")
 
 
 def _widths(widths: Mapping[str, Widths]) -> Iterator[tuple[str, ...]]:

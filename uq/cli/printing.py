@@ -57,6 +57,12 @@ def paragraph(text: str, indent: int = 4) -> None:
     console.print(Padding(plain(text), (0, 0, 0, indent), expand=False))
 
 
+def note(text: str) -> None:
+    """Print a sentence about all that was printed before, after a blank line."""
+    console.print()
+    paragraph(text, indent=0)
+
+
 def grid(rows: Iterable[Sequence[str]], header: Sequence[str] = (), indent: int = 2) -> None:
     """Print aligned columns without rules; an empty column is left out.
 

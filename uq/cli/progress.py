@@ -4,7 +4,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from math import isinf
 
 from uq.interrupts import undone
@@ -21,10 +21,8 @@ def shown(quiet: bool) -> Iterator[Report]:
     """Yield a function that shows a `Progress` on standard error."""
     if quiet:
         yield lambda _: None
-    elif sys.stderr.isatty():
-        yield from _moving()
     else:
-        yield _Plain()
+        yield from _moving() if sys.stderr.isatty() else _plain()
 
 
 @cache
@@ -48,31 +46,28 @@ class Pace:
         return (progress.done - done) / (now - began) if now > began else 0.0
 
 
-class _Plain:
-    def __init__(self) -> None:
-        self._last = time.monotonic()
-        self._pace = Pace()
-        self._dashboard = ""
-        self._compiling = False
+def _plain() -> Iterator[Report]:
+    pace, shown_at = Pace(), time.monotonic()
+    once = cache(_print)
 
-    def __call__(self, progress: Progress) -> None:
+    def show(progress: Progress) -> None:
+        nonlocal shown_at
         if progress.compiling:
-            if not self._compiling:
-                _print(_COMPILING)
-            self._compiling = True
+            once(_COMPILING)
             return
         now = time.monotonic()
-        pace = self._pace(progress, now)
-        if progress.dashboard not in ("", self._dashboard):
-            self._dashboard = progress.dashboard
-            _print(f"dask dashboard: {self._dashboard}")
-        if now - self._last >= _PLAIN_SECONDS:
-            self._last = now
-            line = sentence(progress, pace)
+        speed = pace(progress, now)
+        if progress.dashboard:
+            once(f"dask dashboard: {progress.dashboard}")
+        if now - shown_at >= _PLAIN_SECONDS:
+            shown_at = now
+            line = sentence(progress, speed)
             for more in details(progress):
                 if len(line) + len(more) + 2 <= _PLAIN_WIDTH:
                     line += f"; {more}"
             _print(line)
+
+    yield show
 
 
 def _print(line: str) -> None:
@@ -92,10 +87,9 @@ def _moving() -> Iterator[Report]:
     bar = Bar(*columns, console=console)
     task = bar.add_task("starting", total=None)
     with Live(bar, console=console, transient=True) as live, undone(live.stop):
-        dashboard = ""
+        once = cache(partial(live.console.print, markup=False))
 
         def show(progress: Progress) -> None:
-            nonlocal dashboard
             if progress.compiling:
                 bar.update(task, description=_COMPILING)
                 return
@@ -103,9 +97,8 @@ def _moving() -> Iterator[Report]:
             bar.update(task, completed=progress.done, total=progress.total, description=text)
             lines = [Text(line, no_wrap=True, overflow="ellipsis") for line in details(progress)]
             live.update(Group(bar, *lines))
-            if progress.dashboard not in ("", dashboard):
-                dashboard = progress.dashboard
-                live.console.print(f"dask dashboard: {dashboard}", markup=False)
+            if progress.dashboard:
+                once(f"dask dashboard: {progress.dashboard}")
 
         yield show
 

@@ -1,4 +1,4 @@
-"""What ``uq rare-event`` does."""
+"""What ``uq rare-event`` shows."""
 
 import sys
 from math import isfinite
@@ -7,50 +7,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq.cli import say_when_interrupted
-from uq.cli.printing import console, grid, heading, number, paragraph, print_json
-from uq.errors import InputError
-from uq.exploring import rare_events
-from uq.study.definition import load_study
+from uq.cli.printing import grid, heading, note, number, print_json
 
 
-def rare_event(
-    path: str,
-    model: str | None,
-    output: str,
-    above: float | None,
-    below: float | None,
-    json: bool,
-    options: dict[str, Any],
-) -> int:
-    """Estimate the probability of a rare event and show it; return the exit code.
-
-    Parameters
-    ----------
-    path, model, output, above, below, json
-        As given on the command line.
-    options : dict
-        What else `uq.rare_event` takes.
-    """
-    study = load_study(path, model)
-    if (above is None) == (below is None):
-        raise InputError("uq: give one of --above and --below")
-    say_when_interrupted("interrupted; nothing was written")
-    limits = [(above, False), (below, True)]
-    ds = next(
-        rare_events.rare_event(study, output, threshold, is_below, **options)
-        for threshold, is_below in limits
-        if threshold is not None
-    )
+def show(ds: xr.Dataset, json: bool, max_failed: float) -> int:
+    """Print the probability of a rare event; return the exit code."""
     print_json(as_json(ds)) if json else _show(ds)
     failed = int(ds["failed"]) / int(ds["rows"])
-    if failed <= study.analysis.max_failed:
+    if failed <= max_failed:
         return 0
-    print(
-        f"{failed:.0%} of the rows failed, more than max_failed = {study.analysis.max_failed:g}"
-        " allows",
-        file=sys.stderr,
-    )
+    allowed = f"more than max_failed = {max_failed:g} allows"
+    print(f"{failed:.0%} of the rows failed, {allowed}", file=sys.stderr)
     return 1
 
 
@@ -118,9 +85,8 @@ def _show(ds: xr.Dataset) -> None:
         first = float(point["first_order"])
         heading("\nDesign point", f"{index}, first-order probability {first:.3g}")
         _show_inputs(point["location"])
-    for note in ds.attrs["notes"].splitlines():
-        console.print()
-        paragraph(note, indent=0)
+    for text in ds.attrs["notes"].splitlines():
+        note(text)
 
 
 def _show_inputs(values: xr.DataArray) -> None:

@@ -1,11 +1,10 @@
-"""What ``uq run`` does, and what all verbs that compute rows show."""
+"""What the verbs that compute rows of a result show."""
 
 import shlex
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,26 +19,25 @@ from uq.running import runner
 from uq.running.options import Progress, RunOptions
 from uq.store import folder_of
 from uq.study.definition import Study, load_study
+from uq.upkeep.amending import study_of
 
 
-def run(
-    path: str,
-    output: Path | None,
+def loaded(path: str, model: str | None, samples: int | None) -> Study:
+    """Return a study, with another number of samples if one is given."""
+    study = load_study(path, model)
+    return study if samples is None else study.with_samples(samples)
+
+
+def amended(
+    path: Path,
     model: str | None,
-    samples: int | None,
     quiet: bool,
     options: RunOptions,
+    action: Callable[[RunOptions], xr.Dataset],
 ) -> int:
-    """Run a study and show its result; return the exit code."""
-    study = load_study(path, model)
-    if samples is not None:
-        study = study.with_samples(samples)
-    target = runner.output_path(study, output)
-    if not options.fresh and (ds := runner.finished(study, target)) is not None:
-        note = f"{target} is already complete; nothing was computed (--fresh recomputes it)"
-    else:
-        ds, note = carried_out(target, quiet, options, partial(runner.run_study, study, target))
-    return end(study, ds, target, quiet, note, options.mixed)
+    """Compute more rows of a result and show it; return the exit code."""
+    ds, note = carried_out(path, quiet, options, action)
+    return end(study_of(path, model), ds, path, quiet, note, options.mixed)
 
 
 def carried_out(

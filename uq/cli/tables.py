@@ -9,7 +9,7 @@ from uq.analysis.life_fit import Fit
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import Described, Summary
-from uq.cli.printing import console, grid, heading, paragraph
+from uq.cli.printing import grid, heading, note, paragraph
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
 from uq.wording import duration, estimated, failed_interval, interval, number
@@ -33,13 +33,12 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
         heading(f"\n{name}{unit}", meaning)
         grid(_lines(output), header=("", "value", "95 % interval", ""))
         for one in output.statistics:
-            for note in one.notes:
-                paragraph(note, indent=2)
+            for text in one.notes:
+                paragraph(text, indent=2)
         if output.fits:
             _show_fits(output.fits)
-    for note in summary.notes:
-        console.print()
-        paragraph(note, indent=0)
+    for text in summary.notes:
+        note(text)
 
 
 Line = tuple[str, str, str, str]

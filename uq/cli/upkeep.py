@@ -1,18 +1,13 @@
-"""What ``uq status``, ``uq extend``, ``uq rerun`` and ``uq verify`` do."""
+"""What ``uq status`` and ``uq verify`` do."""
 
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
 from uq.cli import progress
 from uq.cli.printing import console, duration, grid, heading, print_json
-from uq.cli.run import carried_out, end
-from uq.cli.simulate import literal
 from uq.compilation import compilation
-from uq.errors import InputError
 from uq.rows import results
-from uq.running.options import RunOptions
-from uq.upkeep import amending, verification
+from uq.upkeep import verification
 from uq.upkeep.status import RunStatus, run_status
 
 
@@ -40,32 +35,6 @@ def _show_status(found: RunStatus) -> None:
     )
     if found.state != "complete" and found.complete_rows is not None:
         console.print(f"\nUntil then the result with {found.complete_rows} rows is kept.")
-
-
-def extend(path: Path, samples: int, model: str | None, quiet: bool, options: RunOptions) -> int:
-    """Add samples to a result and show it; return the exit code."""
-    ds, note = carried_out(
-        path, quiet, options, lambda chosen: amending.extend(path, samples, model, chosen)
-    )
-    return end(amending.study_of(path, model), ds, path, quiet, note, options.mixed)
-
-
-def rerun(
-    path: Path,
-    failed: bool,
-    settings: Sequence[str],
-    model: str | None,
-    quiet: bool,
-    options: RunOptions,
-) -> int:
-    """Recompute failed rows and show the result; return the exit code."""
-    if not failed:
-        raise InputError("uq rerun: give --failed, the rows to compute again")
-    changes = dict(literal(text) for text in settings)
-    ds, note = carried_out(
-        path, quiet, options, lambda chosen: amending.rerun_failed(path, changes, model, chosen)
-    )
-    return end(amending.study_of(path, model), ds, path, quiet, note, options.mixed)
 
 
 def verify(path: Path, model: str | None) -> int:

@@ -1,5 +1,6 @@
 """A figure of a result as an entry of a table: its subjects, its caption, where it appears."""
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby
@@ -8,7 +9,6 @@ from typing import Any, Literal
 from matplotlib.figure import Figure
 
 from uq.analysis.findings import Findings
-from uq.drawing.figure import file_name
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Entry:
 
     draw: Callable[..., Figure]
     of: Callable[[Findings], Iterator[Subject]]
-    caption: str
+    caption: str = "{name}: {meaning}"
     section: Literal["inputs", "rows", "results", "sensitivities", "convergence", ""] = "results"
     applies: tuple[Applies, ...] = ()
     in_report: tuple[Applies, ...] = ()
@@ -114,3 +114,8 @@ def drawables(
                 conditions = entry.applies + (entry.in_report if section else ())
                 if all(applies(findings, subject.name) for applies in conditions):
                     yield Drawable(figure, entry, subject, findings)
+
+
+def file_name(*words: str) -> str:
+    """Join words to a file name without characters special to a shell."""
+    return re.sub(r"[^A-Za-z0-9.+-]+", "_", "-".join(words)).strip("_")

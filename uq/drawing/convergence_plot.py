@@ -9,9 +9,10 @@ from matplotlib.ticker import LogLocator
 
 from uq.analysis.convergence import running_estimates
 from uq.drawing.elements_plot import curve_style, display_unit, label
-from uq.drawing.figure import COLOURS, LINES, in_words, sentence, styled
 from uq.drawing.index_plot import range_of_indices, subject
-from uq.drawing.panel import column, figure_of, heading, legend
+from uq.drawing.panel import column, heading, legend
+from uq.drawing.style import COLOURS, LINES, styled
+from uq.drawing.words import in_words, sentence
 from uq.errors import InputError
 from uq.methods.indices import ST
 from uq.rows.elements import independent_rows, named_elements
@@ -19,11 +20,7 @@ from uq.rows.elements import independent_rows, named_elements
 
 @styled
 def convergence(
-    ds: xr.Dataset,
-    output: str,
-    *,
-    running: pd.DataFrame | None = None,
-    axes: Axes | None = None,
+    ds: xr.Dataset, output: str, *, running: pd.DataFrame | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw the convergence of the mean (or the median) of an output, with 95 % intervals.
 
@@ -60,8 +57,7 @@ def convergence(
         _curve(panel, own[own["output"] == element.name], per, colour, line, label(ds, element))
     what = "mean" if kind == "mean" else "median"
     panel.set_ylabel(sentence(f"{what}: {chosen[0].meaning}", unit, width=30))
-    _finish(panel, ds)
-    return figure_of(panel)
+    return _finish(panel, ds)
 
 
 def followed(ds: xr.Dataset, output: str, running: pd.DataFrame) -> tuple[str, pd.DataFrame]:
@@ -77,11 +73,7 @@ def followed(ds: xr.Dataset, output: str, running: pd.DataFrame) -> tuple[str, p
 
 @styled
 def index_convergence(
-    ds: xr.Dataset,
-    output: str,
-    *,
-    running: pd.DataFrame | None = None,
-    axes: Axes | None = None,
+    ds: xr.Dataset, output: str, *, running: pd.DataFrame | None = None, axes: Axes | None = None
 ) -> Figure:
     """Draw the convergence of the total indices of an output, with 95 % intervals.
 
@@ -117,9 +109,9 @@ def index_convergence(
         _curve(panel, own[own["input"] == name], 1.0, colour, line, words)
     panel.set_ylabel("Total index (ST) [1]")
     panel.set_ylim(range_of_indices(panel.get_ylim()))
-    _finish(panel, ds)
+    figure = _finish(panel, ds)
     heading(panel, subject(ds, output))
-    return figure_of(panel)
+    return figure
 
 
 def total_indices(running: pd.DataFrame) -> pd.DataFrame:
@@ -136,7 +128,7 @@ def _curve(
     axes.fill_between(samples, low, high, color=colour, alpha=0.2, lw=0)
 
 
-def _finish(axes: Axes, ds: xr.Dataset) -> None:
+def _finish(axes: Axes, ds: xr.Dataset) -> Figure:
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -145,4 +137,4 @@ def _finish(axes: Axes, ds: xr.Dataset) -> None:
     axes.set_xlabel("Samples" + (f" of each of {replicates} replicates" if replicates > 1 else ""))
     known = any(len(band.get_paths()) for band in axes.collections)
     axes.set_title("Convergence" + known * ", with 95 % intervals", loc="left")
-    legend(axes)
+    return legend(axes)

@@ -2,14 +2,17 @@
 
 import textwrap
 from collections.abc import Sequence
+from itertools import cycle
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from uq.drawing.figure import COLOURS, LINES, is_wide, place_in_words
+from uq.drawing.style import COLOURS, LINES
+from uq.drawing.ticks import is_wide
+from uq.drawing.words import place_in_words
 from uq.rows.elements import Element, Floats, flags
-from uq.wording import percent, time_unit
+from uq.wording import percent, unit_of
 
 
 def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[str, str]:
@@ -24,7 +27,7 @@ def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[st
 def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
     """Return the label of a curve: its place, and the share of rows that never end."""
     share = f"never: {percent(never)}" if never > 0 else ""
-    return ", ".join(filter(None, (place_in_words(element, ds[element.output]), share)))
+    return ", ".join(filter(None, (place_in_words(ds, element), share)))
 
 
 def rows_in_words(chosen: Sequence[Element]) -> str:
@@ -37,13 +40,14 @@ def rows_in_words(chosen: Sequence[Element]) -> str:
     return ", ".join(counts)
 
 
-def entitle(axes: Axes, *texts: str) -> None:
-    """Write a wrapped title."""
-    axes.set_title(textwrap.fill(", ".join(filter(None, texts)), 46), loc="left")
+def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> None:
+    """Write a wrapped title: the place of the element drawn, how many rows there are, and more."""
+    texts = filter(None, (of, rows_in_words(chosen), *more))
+    axes.set_title(textwrap.fill(", ".join(texts), 46), loc="left")
 
 
 def display_unit(units: str, values: Floats) -> tuple[str, float]:
-    """Return the unit of an axis and its length: times are in hours, days or years.
+    """Return the unit of an axis and its length, as in `uq.wording.unit_of`.
 
     Parameters
     ----------
@@ -53,10 +57,7 @@ def display_unit(units: str, values: Floats) -> tuple[str, float]:
         Those to be drawn; only finite ones count.
     """
     known = np.abs(values[np.isfinite(values)])
-    if units != "s" or not len(known):
-        return units, 1.0
-    unit = time_unit(float(np.median(known)))
-    return unit.name, unit.seconds
+    return unit_of(units, float(np.median(known)) if len(known) else np.nan)[:2]
 
 
 def bins(values: Floats) -> tuple[Floats, bool]:
@@ -70,21 +71,22 @@ def bins(values: Floats) -> tuple[Floats, bool]:
     return (10**edges if wide else edges), wide
 
 
-def occurring_regimes(rows: xr.Dataset) -> dict[str, int]:
-    """Return the label and code of each regime that occurs, in the order of the model.
+def occurring_regimes(rows: xr.Dataset) -> dict[str, tuple[int, str]]:
+    """Return code and colour of each regime that occurs, by its label, in the order of the model.
 
     Parameters
     ----------
     rows : xarray.Dataset
         Rows of a result, of a model with regimes or not.
+
+    Returns
+    -------
+    dict of str to tuple
+        A regime has the same colour in all figures, whichever others occur.
     """
     if "regime" not in rows:
         return {}
     there = set(np.unique(rows["regime"].values).tolist())
-    return {name: code for code, name in flags(rows["regime"]) if code >= 0 and code in there}
-
-
-def regime_colours(rows: xr.Dataset) -> dict[str, str]:
-    """Return the colour of each regime of a model: the same in all figures."""
-    names = [name for code, name in flags(rows["regime"]) if code >= 0]
-    return {name: COLOURS[i % len(COLOURS)] for i, name in enumerate(names)}
+    known = [(name, code) for code, name in flags(rows["regime"]) if code >= 0]
+    coloured = zip(known, cycle(COLOURS))
+    return {name: (code, colour) for (name, code), colour in coloured if code in there}

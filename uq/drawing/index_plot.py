@@ -5,15 +5,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import (
-    COLOURS,
-    in_words,
-    place_in_words,
-    roomy,
-    sentence,
-    styled,
-)
 from uq.drawing.panel import column, finish, heading
+from uq.drawing.style import COLOURS, styled
+from uq.drawing.ticks import roomy
+from uq.drawing.words import element_in_words, in_words, sentence
 from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
@@ -45,7 +40,7 @@ def index_bars(
     method : str, optional
         By default the first that the study asks for.
     found : TargetIndices, optional
-        The indices, if they are known already.
+        The indices, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -69,19 +64,15 @@ def index_bars(
     thickness = 0.8 * lines.min() / len(kinds)
     for i, (kind, values) in enumerate(kinds.items()):
         y = middle + thickness * (len(kinds) / 2 - i - 0.5)
-        drawn = [values[parameter] for parameter in parameters]
-        table = np.array([(one.value, one.low, one.high) for one in drawn])
-        value, ends = table[:, 0], table[:, 1:].T
+        value, *ends = np.array([values[parameter].numbers for parameter in parameters]).T
         panel.barh(y, value, thickness, color=COLOURS[i], label=kind.words)
-        panel.errorbar(value, y, xerr=abs(ends - value), fmt="none", ecolor="black", lw=0.8)
-    unnamed = set(_LIMITS)
+        panel.errorbar(value, y, xerr=np.abs(ends - value), fmt="none", ecolor="black", lw=0.8)
     for kind, null in found.indices.nulls.items():
         colour = COLOURS[list(kinds).index(kind)] if len(kinds) > 1 else "black"
         for line, limit, label in zip(("--", ":"), (null.one, null.largest), _LIMITS, strict=True):
             if np.isfinite(limit):
-                named = label if label in unnamed else "_"  # each once in the legend
-                unnamed.discard(label)
-                panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named)
+                named = "_" * (label in panel.get_legend_handles_labels()[1])  # each once
+                panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named + label)
     panel.axvline(0, color="black", lw=0.6)
     shares = all(kind.unit != "output" for kind in kinds)
     if shares:
@@ -122,12 +113,11 @@ def subject(ds: xr.Dataset, name: str) -> str:
         meaning = ds[category].attrs["long_name"].removeprefix("the ")
         return sentence(f"whether the {meaning} is {label}", width=56)
     (element,) = named_elements(ds, inside)
-    place = place_in_words(element, ds[element.output])
-    words = element.meaning + (f", {place}" if place else "")
+    words = element_in_words(ds, element)
     if threshold:
         unit = time_unit(float(threshold))
         at = f"{float(threshold) / unit.seconds:g} {unit.name}"
-        words = f"whether the {words.removeprefix('the ')}{',' * bool(place)} is below {at}"
+        words = f"whether the {words.removeprefix('the ')}{',' * bool(element.place)} is below {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
     return sentence(words, width=56)

@@ -1,15 +1,16 @@
 """Figures of a machine's motion: time histories, phase portraits and Poincaré sections."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import COLOURS, LINES, in_words, powers, sentence, styled
-from uq.drawing.panel import above, are_many, column, figure_of, finish
-from uq.drawing.quantities import find, label_axes, pair, place_in, scale_of, with_quantities
+from uq.drawing.panel import above, column, figure_of, finish
+from uq.drawing.quantities import families, find, label_axes, pair, scale_of, with_quantities
+from uq.drawing.style import COLOURS, LINES, MARK, are_many, point_size, styled
+from uq.drawing.words import in_words, powers, sentence
 from uq.errors import InputError
 from uq.rows.elements import Floats
 
@@ -104,14 +105,16 @@ def phase_portrait(
         When a quantity does not exist.
     """
     ds = with_quantities(ds)
+    across, up = pair(ds, against, output)
     (axes,) = column(axes, 2.6)
-    factors = _label(axes, ds, output, against)
-    for i, (name, xs, ys) in enumerate(_families(ds, output, against, factors)):
-        colour, thin = COLOURS[i % len(COLOURS)], 0.7 if len(xs) < 5000 else 0.4
-        axes.plot(xs, ys, color=colour, lw=thin, label=name, rasterized=are_many(len(xs) // 10))
+    scales = label_axes(axes, across, up, _BESIDE)
+    for xs, ys, style in families(across, up, scales):
+        thin = 0.7 if len(xs) < 5000 else 0.4
+        axes.plot(xs, ys, lw=thin, rasterized=are_many(len(xs) // 10), **style)
     if section is not None:
-        for name, xs, ys in _families(section, output, against, factors):
-            axes.plot(xs, ys, "ko", ms=2.5, mew=0, label=f"Poincaré section {name}".strip())
+        for xs, ys, style in families(*pair(section, against, output), scales):
+            name = f"Poincaré section {style['label']}".strip()
+            axes.plot(xs, ys, "ko", ms=MARK, mew=0, label=name)
     return finish(axes)
 
 
@@ -142,37 +145,19 @@ def section(
     InputError
         When a quantity does not exist.
     """
+    across, up = pair(ds, against, output)
     (axes,) = column(axes, 2.6)
-    factors = _label(axes, ds, output, against)
-    for i, (name, xs, ys) in enumerate(_families(ds, output, against, factors)):
-        size, many = _point_size(xs, ys), are_many(len(xs))
-        colour = COLOURS[i % len(COLOURS)]
-        axes.plot(xs, ys, "o", ms=size, mew=0, color=colour, label=name, rasterized=many)
+    scales = label_axes(axes, across, up, _BESIDE)
+    for xs, ys, style in families(across, up, scales):
+        size, many = point_size("section", _places(xs, ys)), are_many(len(xs))
+        axes.plot(xs, ys, "o", ms=size, mew=0, rasterized=many, **style)
     return finish(axes)
 
 
-def _point_size(xs: Floats, ys: Floats) -> float:
-    """Return the size of points: larger where few places are visited."""
+def _places(xs: Floats, ys: Floats) -> int:
+    """Return how many different places points visit, to a hundredth of the figure."""
     points = np.stack([xs, ys], axis=1)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:
-        return 1.0
-    places = np.unique(np.round(100 * points / np.ptp(points, axis=0).clip(1e-300)), axis=0)
-    return 3.0 if len(places) < 60 else 1.0
-
-
-def _label(axes: Axes, ds: xr.Dataset, y: str, x: str) -> list[float]:
-    scales = label_axes(axes, find(ds, x), find(ds, y), _BESIDE)
-    return [scale.factor for scale in scales]
-
-
-def _families(
-    ds: xr.Dataset, y: str, x: str, factors: Sequence[float]
-) -> Iterator[tuple[str, Floats, Floats]]:
-    """Yield name and coordinates of each curve along the first of two dimensions."""
-    across, up = pair(ds, x, y)
-    if across.ndim == 1:
-        across, up = (one.expand_dims("") for one in (across, up))
-    for i in range(len(across)):
-        name = place_in(across, i) if len(across) > 1 else ""
-        yield name, across[i].values * factors[0], up[i].values * factors[1]
+        return 0
+    return len(np.unique(np.round(100 * points / np.ptp(points, axis=0).clip(1e-300)), axis=0))

@@ -9,11 +9,12 @@ from matplotlib.lines import Line2D
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
-from uq.drawing.figure import WIDTH, Drawing, roomy
+from uq.drawing.figure import Drawing
+from uq.drawing.style import WIDTH
+from uq.drawing.ticks import roomy
 from uq.errors import InputError
 
 _ENTRY = 0.15  # height of a line of the legend [inch]
-_MANY = 4000
 _SHORT = 30  # characters of labels that fit side by side
 
 
@@ -78,13 +79,17 @@ def figure_of(axes: Axes) -> Figure:
     return figure
 
 
-def legend(axes: Axes) -> None:
-    """Draw the legend, if there is one: below a figure of ours, or below the given axes.
+def legend(axes: Axes) -> Figure:
+    """Draw the legend, if there is one: below a `Drawing`, or below the given axes.
 
     Parameters
     ----------
     axes : Axes
         One panel of the figure.
+
+    Returns
+    -------
+    Figure
     """
     handles, labels = axes.get_legend_handles_labels()
     figure = figure_of(axes)
@@ -98,20 +103,20 @@ def legend(axes: Axes) -> None:
         below_label = axes.transAxes + ScaledTranslation(0, -0.5, figure.dpi_scale_trans)
         place = {"bbox_to_anchor": (0, 0), "bbox_transform": below_label}
         axes.legend(loc="upper left", borderaxespad=0, ncols=columns, **place)
+    return figure
 
 
 def finish(axes: Axes) -> Figure:
-    """Add the legend of a panel, with room for it in a figure of ours; return the figure."""
+    """Draw the legend of a panel, make room for it in a `Drawing`, and return the figure."""
     figure = figure_of(axes)
     if isinstance(figure, Drawing):
         entries = len(axes.get_legend_handles_labels()[1])
         figure.set_figheight(figure.get_figheight() + _ENTRY * entries)
-    legend(axes)
-    return figure
+    return legend(axes)
 
 
 def heading(axes: Axes, text: str) -> None:
-    """Write the subject of a figure above it, or above its panel in a figure not of ours."""
+    """Write the subject of a figure above a `Drawing`, or else above the panel."""
     if isinstance(figure := figure_of(axes), Drawing):
         figure.suptitle(text, x=0.01, ha="left", fontsize=8)
     else:
@@ -124,8 +129,3 @@ def above(axes: Axes, text: str) -> None:
     axes.yaxis.set_label_coords(0.0, 1.03)
     # The layout ignores the height of this label; a title of as many empty lines reserves it.
     axes.set_title(" " + "\n " * text.count("\n"), loc="left")
-
-
-def are_many(points: int) -> bool:
-    """Whether so many points should be drawn as pixels to keep the file small."""
-    return points > _MANY

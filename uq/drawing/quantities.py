@@ -1,14 +1,16 @@
 """Quantities of a Dataset on axes: their labels, units and scales."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from uq.drawing.figure import in_words, sentence
+from uq.drawing.style import COLOURS
+from uq.drawing.words import in_words, sentence
 from uq.errors import InputError, nearest
+from uq.rows.elements import Floats
 from uq.wording import time_unit
 
 _PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "rad", "Hz"}
@@ -44,16 +46,12 @@ def with_quantities(ds: xr.Dataset) -> xr.Dataset:
     """
     if "trajectory" not in ds:
         return ds
-    series = {
-        str(one["quantity"].item()): (
-            "time",
-            one.values,
-            {"units": one["unit"].item(), "long_name": one["meaning"].item()},
-        )
-        for one in ds["trajectory"].transpose("quantity", "time")
-    }
-    time = ds["trajectory"]["time"]
-    return xr.Dataset(series, {"time": ("time", time.values, time.attrs)})
+    trajectory = ds["trajectory"]
+    series = trajectory.drop_vars(["unit", "meaning"]).to_dataset("quantity")
+    for one in trajectory.transpose("quantity", "time"):
+        words = {"units": one["unit"].item(), "long_name": one["meaning"].item()}
+        series[one["quantity"].item()].attrs = words
+    return series
 
 
 def find(ds: xr.Dataset, name: str) -> xr.DataArray:
@@ -111,8 +109,8 @@ def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
         raise InputError(f"quantities of different units cannot share an axis: {unlike}")
     (unit,) = units
     largest = max(_largest(one) for one in variables)
-    if unit == "s" and largest >= 3600.0:
-        time = time_unit(largest)
+    time = time_unit(largest)
+    if unit == "s" and time.name != "seconds":
         return Scale(1 / time.seconds, time.name)
     if unit.split(" ")[0] not in _PREFIXED or largest == 0 or 0.1 <= largest < 1e4:
         return Scale(1.0, unit)
@@ -137,6 +135,18 @@ def label_axes(
     axes.set_xlabel(sentence(in_words(across), scales[0].unit))
     axes.set_ylabel(sentence(in_words(up), scales[1].unit, width))
     return scales
+
+
+def families(
+    across: xr.DataArray, up: xr.DataArray, scales: Sequence[Scale]
+) -> Iterator[tuple[Floats, Floats, dict[str, Any]]]:
+    """Yield the scaled coordinates of each curve along the last dimension, its colour and label."""
+    if across.ndim == 1:
+        across, up = (one.expand_dims("") for one in (across, up))
+    for i, (x, y) in enumerate(zip(across.values, up.values, strict=True)):
+        name = place_in(across, i) if len(across) > 1 else ""
+        style = {"color": COLOURS[i % len(COLOURS)], "label": name}
+        yield x * scales[0].factor, y * scales[1].factor, style
 
 
 def place_in(variable: xr.DataArray, i: int) -> str:

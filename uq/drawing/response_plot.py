@@ -9,9 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 
-from uq.drawing.figure import COLOURS, LINES, powers, sentence, styled
-from uq.drawing.panel import are_many, column, finish
-from uq.drawing.quantities import find, label_axes, pair, place_in, scale_of
+from uq.drawing.panel import column, finish
+from uq.drawing.quantities import families, find, label_axes, pair, scale_of
+from uq.drawing.style import COLOURS, LINES, are_many, point_size, styled
+from uq.drawing.words import powers, sentence
 from uq.errors import InputError
 from uq.wording import percent
 
@@ -55,20 +56,12 @@ def curve(
     scales = label_axes(axes, across, up)
     along = across.dims[0]
     across, up = across.transpose(..., along), up.transpose(..., along)
-    family = up if up.ndim > 1 else up.expand_dims("")
-    places = across if across.ndim > 1 else across.expand_dims("")
-    for i in range(len(family)):
-        axes.plot(
-            places[i].values * scales[0].factor,
-            family[i].values * scales[1].factor,
-            color=COLOURS[i % len(COLOURS)],
-            ls=LINES[i % len(LINES)],
-            label=place_in(family, i) if len(family) > 1 else "",
-        )
+    for i, (xs, ys, style) in enumerate(families(across, up, scales)):
+        axes.plot(xs, ys, ls=LINES[i % len(LINES)], **style)
     if "regime" in ds and ds["regime"].dims == (along,):
         kinds = ds["regime"].values
         changed = np.flatnonzero(kinds[1:] != kinds[:-1]) + 1
-        changes = np.unique(places.values[:, changed]) * scales[0].factor
+        changes = np.unique(across.values[..., changed]) * scales[0].factor
         for i, where in enumerate(changes if len(changed) <= _MOST_CHANGES else ()):
             text = "" if i else "change of regime"
             axes.axvline(where, color="black", ls=":", lw=0.7, zorder=0, label=text)
@@ -119,7 +112,7 @@ def bifurcation(
     for word, colour in zip(words, cycle(COLOURS)):
         chosen = there & (kinds.values == word)
         points = places[chosen], values[chosen]
-        size = 1.2 if there.sum() > 2000 else 2.0
+        size = point_size("diagram", there.sum())
         many = are_many(int(chosen.sum()))
         axes.plot(*points, "o", ms=size, mew=0, color=colour, label=word, rasterized=many)
     return finish(axes)

@@ -10,26 +10,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from uq import intervals, order_statistics
-from uq.drawing.elements_plot import (
-    display_unit,
-    entitle,
-    label,
-    occurring_regimes,
-    regime_colours,
-    rows_in_words,
-)
-from uq.drawing.figure import (
-    COLOURS,
-    is_wide,
-    logarithmic,
-    named_input,
-    roomy,
-    sentence,
-    styled,
-    thinned,
-    whole_numbers,
-)
-from uq.drawing.panel import figure_of, grid, legend
+from uq.drawing.elements_plot import display_unit, entitle, label, occurring_regimes
+from uq.drawing.panel import grid, legend
+from uq.drawing.style import COLOURS, point_size, styled, thinned
+from uq.drawing.ticks import is_wide, logarithmic, roomy, whole_numbers
+from uq.drawing.words import named_input, sentence
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.methods.indices import RefusedError
@@ -78,16 +63,15 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
         panel.set_ylabel(sentence(element.meaning, unit, width=24))
         if wide:
             logarithmic(panel, vertical=True)
-    entitle(panels[0], label(ds, element), rows_in_words([element]))
-    legend(panels[0])
-    return figure_of(panels[0])
+    entitle(panels[0], [element], of=label(ds, element))
+    return legend(panels[0])
 
 
 def _points(axes: Axes, x: Floats, element: Element, per: float) -> None:
     y, shown = element.values / per, np.zeros(len(x), dtype=bool)
     shown[thinned(len(x), _MOST_POINTS)] = True
     ended = shown & np.isfinite(y) & ~element.censored
-    size = _marker(shown.sum())
+    size = point_size("cloud", shown.sum())
     style: Any = {"ls": "", "rasterized": True, "alpha": 0.6, "mew": 0}
     axes.plot(x[ended], y[ended], ".", ms=size, color=COLOURS[4], **style)
     if (going := shown & element.censored & np.isfinite(y)).any():
@@ -97,11 +81,6 @@ def _points(axes: Axes, x: Floats, element: Element, per: float) -> None:
         edge: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False, "rasterized": True}
         words, top = "never (at the top edge)", np.ones(never.sum())
         axes.plot(x[never], top, "|", ms=5, color=COLOURS[5], label=words, **edge)
-
-
-def _marker(rows: int) -> float:
-    """Return the size of points: smaller where there are many."""
-    return 3.0 if rows > 1000 else 4.5
 
 
 def _conditional(
@@ -185,18 +164,22 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     height = 0.5 + (2.1 if alone else 1.45 * size) + 0.15 * len(regimes)
     panels = grid(axes, height, size, size, sharex="col", sharey="row")
     shown = thinned(len(codes), _MOST_POINTS)
-    points: Any = {"ms": _marker(len(shown)), "mew": 0, "alpha": 0.7, "rasterized": True}
-    colours = regime_colours(rows)
+    points: Any = {
+        "ms": point_size("cloud", len(shown)),
+        "mew": 0,
+        "alpha": 0.7,
+        "rasterized": True,
+    }
     for i, down in enumerate(leading[1:]):
         for j, across in enumerate(leading[:-1]):
             panel = panels[i, j]
             if j > i:
                 panel.set_axis_off()
                 continue
-            for name, code in regimes.items():
+            for name, (code, colour) in regimes.items():
                 own = shown[codes[shown] == code]
                 place = inputs[across][own], inputs[down][own]
-                panel.plot(*place, ".", color=colours[name], label=name, **points)
+                panel.plot(*place, ".", color=colour, label=name, **points)
             panel.locator_params(axis="y", nbins=4)
             whole_numbers(panel.yaxis)
             if i == size - 1:
@@ -204,8 +187,7 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
             if j == 0:
                 panel.set_ylabel(named_input(rows[down], width=30 if alone else 20))
     panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
-    legend(panels[0, 0])
-    return figure_of(panels[0, 0])
+    return legend(panels[0, 0])
 
 
 def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
@@ -213,6 +195,6 @@ def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:
     columns = np.column_stack(list(inputs.values()))
     far = np.zeros(len(inputs))
     for code in np.unique(codes[codes >= 0]):
-        with suppress(RefusedError):  # with few rows, any distance is chance
+        with suppress(RefusedError):  # with few rows, a distance may be due to chance
             far = np.maximum(far, ks_distances(columns, (codes == code).astype(float)))
     return [list(inputs)[i] for i in np.argsort(-far, kind="stable")]

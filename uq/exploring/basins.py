@@ -118,7 +118,7 @@ def _compared_outputs(model: Model, by: Sequence[str] | None) -> tuple[str, ...]
 def _found(path: Path, identity: str) -> xr.Dataset:
     try:
         ds = xr.load_dataset(path, engine="netcdf4", decode_timedelta=False)
-    except (OSError, ValueError, RuntimeError):
+    except results.UNREADABLE:
         raise InputError(f"{path}: not a readable netCDF file; choose another output") from None
     if ds.attrs.get("basins_identity") != identity:
         raise InputError(f"{path}: holds something else; choose another output")

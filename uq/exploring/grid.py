@@ -68,8 +68,7 @@ class Grid:
         x = np.empty((len(number), len(self.model.parameter_names)))
         for i, name in enumerate(self.model.parameter_names):
             x[:, i] = self.values(name)[places[name]] if name in places else self.constants[name]
-        none = np.zeros(len(number), np.int64)
-        return Rows(x, row_seeds(0, number), none.astype(np.int32), number, none.astype(np.int16))
+        return Rows.without_design(x, row_seeds(0, number))
 
 
 def grid_of(

@@ -27,8 +27,6 @@ Evaluator = Callable[[Floats, NDArray[np.uint64]], Chunk]
 """``evaluator(x, seed)`` -> outputs of rows x (n, d), in declared order, with seeds (n,): the same
 bits wherever they are computed."""
 
-_NONE = Rows(np.empty((0, 0)), *(np.empty(0, kind) for kind in ("u8", "i4", "i8", "i2")))
-
 
 @contextmanager
 def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Evaluator]:
@@ -43,14 +41,15 @@ def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Eva
     """
     cheap = output in study.model.cheap
     model = study.model.alone(output) if cheap else study.model
-    work = Workload(model, study.model_reference, study.settings, 0, 1, _NONE.part)
-    work = work._replace(output=output if cheap else "")
+    none = Rows.without_design(np.empty((0, 0)), np.empty(0, np.uint64))
+    wanted = output if cheap else ""
+    work = Workload(
+        model, study.model_reference, study.settings, 0, 1, block=none.part, output=wanted
+    )
     with Executor(work, options) as executor:
 
         def evaluator(x: Floats, seed: NDArray[np.uint64]) -> Chunk:
-            zeros = np.zeros(len(x), np.int64)
-            rows = Rows(x, seed, zeros.astype(np.int32), zeros, zeros.astype(np.int16))
-            batch = work._replace(total=len(x), block=rows.part)
+            batch = work._replace(total=len(x), block=Rows.without_design(x, seed).part)
             store = MemoryStore(batch)
             executor.finish(Dispatcher(batch, options, store, executor.evaluate))
             return store.chunk()

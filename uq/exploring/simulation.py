@@ -81,7 +81,7 @@ def holds_trajectory(path: Path) -> bool:
         with xr.open_dataset(path, engine="netcdf4", decode_timedelta=False) as ds:
             roles = [variable.attrs.get("role") for variable in ds.data_vars.values()]
             return "trajectory" in roles and "schema_version" in ds.attrs
-    except (OSError, ValueError, RuntimeError):
+    except results.UNREADABLE:
         return False
 
 

@@ -6,6 +6,7 @@ may keep its value in its own step. Therefore the points of the design are drawn
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -95,14 +96,12 @@ def _unit(ds: xr.Dataset, order: NDArray[np.intp], d: int) -> Floats:
     """Draw the points of the unit cube that the rows come from, shape (*order.shape, d)."""
     first = order[..., 0]
     group, replicate = ds["group"].values[first], ds["replicate"].values[first]
-    start = int(group.min())
+    start, stop = int(group.min()), int(group.max()) + 1
+    sizes: dict[str, Any] = {
+        name: int(ds.attrs[name]) for name in ("seed", "replicates", "samples")
+    }
+    second_order = bool(ds.attrs["second_order"])
     points = DESIGNS[ds.attrs["design"]].unit_rows(
-        seed=int(ds.attrs["seed"]),
-        replicates=int(ds.attrs["replicates"]),
-        d=d,
-        samples=int(ds.attrs["samples"]),
-        second_order=bool(ds.attrs["second_order"]),
-        start=start,
-        stop=int(group.max()) + 1,
+        d=d, second_order=second_order, start=start, stop=stop, **sizes
     )
     return points[group - start, replicate]

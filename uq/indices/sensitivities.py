@@ -11,7 +11,6 @@ from uq.designs.registry import DESIGNS
 from uq.errors import InputError, nearest
 from uq.estimate import Estimate
 from uq.indices.chosen import chosen
-from uq.indices.few_hits import few_hits
 from uq.indices.independent_inputs import notes_on_inputs, why_dependent
 from uq.indices.samples import sample_of
 from uq.indices.targets import Target
@@ -19,9 +18,15 @@ from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.method import Method
 from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inputs
 from uq.methods.sample import Sample
-from uq.rows.elements import analysis_of
+from uq.rows.elements import analysis_of, independent_rows, why_no_statistics
 from uq.rows.in_regime import within_regime
 from uq.tails import lacks_variance
+
+FEWEST_HITS = 5
+"""With fewer in each replicate an event has no indices."""
+
+ENOUGH_HITS = 20
+"""With fewer in each replicate the indices come with a warning."""
 
 
 @dataclass(frozen=True)
@@ -153,6 +158,44 @@ def _indices(
         return TargetIndices(target, *counts, refused=str(refusal))
     said = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
     return TargetIndices(target, *counts, replace(found, notes=said))
+
+
+def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:
+    """Return the warning for an event with few hits or misses; any two values are an event.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        The result that the target is of.
+    target : Target
+
+    Returns
+    -------
+    tuple of str
+        One sentence or none.
+
+    Raises
+    ------
+    RefusedError
+        Fewer than `FEWEST_HITS` in each replicate.
+    """
+    values, replicates = target.values, int(ds.attrs.get("replicates", 1))
+    if not why_no_statistics(ds):
+        values = independent_rows(ds.assign(hit=("sample", values)))["hit"].values
+    known = values[np.isfinite(values)]
+    hits = known > known.min(initial=np.inf)
+    rarer = int(min(hits.sum(), (~hits).sum()))
+    two_values = target.event or bool((known[hits] == known.max(initial=-np.inf)).all())
+    if not two_values or not 0 < rarer < ENOUGH_HITS * replicates:
+        return ()  # without any the method refuses
+    side = "hits" if rarer == hits.sum() else "misses"
+    each = f", {rarer / replicates:.2g} in each replicate" if replicates > 1 else ""
+    more = ENOUGH_HITS * replicates / rarer
+    remedy = f"about {more:.2g} times the samples would give {ENOUGH_HITS}"
+    seen = f"only {rarer} {side} in {len(hits)} rows{each}"
+    if rarer < FEWEST_HITS * replicates:
+        raise RefusedError(f"{seen}: {FEWEST_HITS} are needed for an index; {remedy}")
+    return (f"{seen}: the indices are rough, and intervals may be too narrow; {remedy}",)
 
 
 def _counts(*whole: NDArray[np.bool_], rows: int) -> tuple[int, int]:

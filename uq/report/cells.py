@@ -73,11 +73,8 @@ def cell(one: Statistic, per: float = 1.0) -> Cell:
 
 
 def without_empty_columns(table: Table) -> Table:
-    """Return a table less the columns, after the first, in which nothing is said."""
-    kept = [
-        i
-        for i in range(len(table.header))
-        if i == 0 or any(row[i].text not in ("", "-") for row in table.rows)
-    ]
-    rows = [tuple(row[i] for i in kept) for row in table.rows]
-    return table._replace(header=tuple(table.header[i] for i in kept), rows=rows)
+    """Return a table without its empty columns; the first column stays."""
+    first, *others = zip(table.header, *table.rows, strict=True)
+    said = (one for one in others if any(cell.text not in ("", "-") for cell in one[1:]))
+    header, *rows = zip(first, *said, strict=True)
+    return table._replace(header=header, rows=rows)

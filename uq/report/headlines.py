@@ -43,7 +43,7 @@ def _regimes(summary: Summary) -> Iterator[str]:
 
 
 def _outputs(found: Sequence[Outcome]) -> Iterator[str]:
-    """Yield the results that the study asks for, output by output."""
+    """Yield the results that the study requests, output by output."""
     for outcome in found[:_MOST]:
         sentences = (
             _sentence(outcome, one)

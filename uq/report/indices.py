@@ -8,8 +8,8 @@ from typing import NamedTuple
 import xarray as xr
 
 from uq.analysis.findings import Findings
-from uq.drawing.figure import in_words, sentence
 from uq.drawing.index_plot import subject
+from uq.drawing.words import in_words, sentence
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.ranked import Values, lines, ranking, size

@@ -1,4 +1,4 @@
-"""What a report says of the inputs: laws, sources, and how well each number is known."""
+"""The inputs in a report: laws, sources, and how well each number is known."""
 
 import re
 from collections.abc import Iterator
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import xarray as xr
 
 from uq.analysis.sampled_inputs import compare, laws_and_values
-from uq.drawing.figure import powers
+from uq.drawing.words import unbroken
 from uq.inputs.law import Law
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of
@@ -19,7 +19,7 @@ _MARK = re.compile(
 
 
 def mark(source: str) -> str:
-    """Return how well the number is known, as the sentence on its source says, or "".
+    """Return how well a number is known according to its source, or "".
 
     Parameters
     ----------
@@ -29,8 +29,8 @@ def mark(source: str) -> str:
     Returns
     -------
     str
-        ``given``, ``inferred``, ``fitted`` or ``assumed``: the first that stands at the head of
-        the sentence or of a part of it, or ends it.
+        ``given``, ``inferred``, ``fitted`` or ``assumed``: the first that begins the sentence or
+        one of its parts, or ends it.
     """
     found = _MARK.search(source)
     return (found[1] or found[2]) if found else ""
@@ -62,13 +62,13 @@ def input_tables(ds: xr.Dataset) -> Iterator[Table]:
         yield Table(caption, ("pair", "stated"), rows)
     fixed = [name for name in ds.data_vars if ds[name].attrs["role"] == "fixed"]
     if fixed:
-        told = [_fixed(ds, str(name), name in study.fixed) for name in fixed]
-        yield Table("Fixed inputs", ("input", "value", "known", "source"), told)
+        lines = [_fixed(ds, str(name), name in study.fixed) for name in fixed]
+        yield Table("Fixed inputs", ("input", "value", "known", "source"), lines)
 
 
 def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
     value = ds[name].item()
-    # What the model says of its nominal value does not hold for another.
+    # The source in the model is that of the nominal value alone.
     source = (Cell(""), Cell("set in this study, under [fixed]")) if by_study else _source(ds, name)
     return (_name(ds, name), Cell(_with_unit(ds, name, value), key=value), *source)
 
@@ -95,7 +95,7 @@ def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
 
 
 def _with_unit(ds: xr.Dataset, name: str, value: float | str) -> str:
-    unit = powers(ds[name].attrs["units"]).replace(" ", "\u00a0")
+    unit = unbroken(ds[name].attrs["units"])
     text = value if isinstance(value, str) else f"{value:.6g}"
     return text if unit == "1" else f"{text}\u00a0{unit}"
 

@@ -1,4 +1,4 @@
-"""What a report says of the rows: how they ended, and the statistics of the outputs."""
+"""The rows in a report: how they ended, and the statistics of the outputs."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -10,15 +10,15 @@ from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary
 from uq.contract import Output, Status
-from uq.drawing.figure import place_in_words, powers
+from uq.drawing.words import element_in_words, unbroken
 from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
-from uq.wording import TimeUnit, number, percent, percent_interval, time_unit
+from uq.wording import number, percent, percent_interval, unit_of
 
 
 def status_table(ds: xr.Dataset, summary: Summary) -> Table:
-    """Return how many rows ended how, what that means, and what the first of them said."""
+    """Return the number and share of rows by status, its meaning, and the first message."""
     meaning = {status.label: status.meaning for status in Status}
     rows = []
     for label, found in summary.status.items():
@@ -65,9 +65,8 @@ class Outcome:
         quantiles = (one.estimate.value for one in described.parts["quantiles"])
         found = [value for value in quantiles if isfinite(value)]
         typical = abs(found[len(found) // 2]) if found else 0.0
-        unit = powers(described.units).replace(" ", "\u00a0")
-        is_time = described.units == "s"
-        self.unit = time_unit(typical) if is_time else TimeUnit(unit, 1.0, 0.0)
+        unit = unit_of(described.units, typical)
+        self.unit = unit._replace(name=unbroken(unit.name))
 
     @property
     def label(self) -> Cell:
@@ -76,7 +75,7 @@ class Outcome:
 
     @property
     def unit_cell(self) -> Cell:
-        """The unit of the other cells; nothing for a pure number."""
+        """The unit of the other cells; empty for a pure number."""
         return Cell("" if self.unit.name == "1" else self.unit.name)
 
     def in_its_unit(self, value: float) -> str:
@@ -93,15 +92,14 @@ def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     names = dict.fromkeys(name.partition("[")[0] for name in summary.outputs)
     found = []
     for element in elements_of(independent_rows(ds), list(names)):
-        place = place_in_words(element, ds[element.output])
-        words = f"{element.meaning}{', ' if place else ''}{place}"
+        words = element_in_words(ds, element)
         described = summary.outputs[element.name]
         found.append(Outcome(element.name, words, element.declared, described))
     return found
 
 
 def result_tables(found: list[Outcome], of_lives: bool = False) -> Iterator[Table]:
-    """Yield the tables of statistics, those of lifetimes or all others; no empty ones."""
+    """Yield the tables of statistics that are not empty: of lifetimes, or of all other outputs."""
     shown = [
         (outcome, one)
         for part in STATISTICS
@@ -116,7 +114,7 @@ def result_tables(found: list[Outcome], of_lives: bool = False) -> Iterator[Tabl
 
 
 def _table(listing: Listing, found: list[Outcome], shown: list[tuple[Outcome, Statistic]]) -> Table:
-    """Lay out statistics in columns, in the order in which all of them are read."""
+    """Lay out statistics in columns, in the order of `STATISTICS`."""
     columns = tuple(dict.fromkeys(_heading(one) for _, one in shown))
     rows: list[tuple[Cell, ...]] = []
     for outcome in found:
@@ -134,7 +132,7 @@ def _heading(one: Statistic) -> str:
 def _rows(
     listing: Listing, outcome: Outcome, own: list[Statistic], columns: tuple[str, ...]
 ) -> Iterator[tuple[Cell, ...]]:
-    """Yield the row of an output, or one for each value that its statistics are about."""
+    """Yield the row of an output, or one for each threshold of its statistics."""
     for at in dict.fromkeys(one.at for one in own):
         here = {_heading(one): one for one in own if one.at == at}
         cells = [_cell(outcome, here.get(column), listing) for column in columns]
@@ -149,7 +147,7 @@ def _rows(
 def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
     if one is None:
         return Cell("")
-    if listing.by:  # the small print stands in a column of its own
+    if listing.by:  # the small print has its own column
         return cell(replace(one.best, more=""))
     if one.estimate.reason and isnan(one.estimate.value) and one.rows_needed is None:
         return Cell("none", one.estimate.reason)

@@ -15,7 +15,8 @@ from matplotlib.figure import Figure
 
 from uq.analysis.findings import Findings
 from uq.drawing.catalogue import Subject, drawables
-from uq.drawing.figure import lay_out, styled
+from uq.drawing.figure import lay_out
+from uq.drawing.style import styled
 from uq.literals import plain
 from uq.plots import FIGURES
 

@@ -29,7 +29,7 @@ def within_regime(ds: xr.Dataset, regime: str) -> xr.Dataset:
         When the result has no regimes, this one does not exist, or no row is in it.
     """
     if "regime" not in ds:
-        raise InputError("this result has no regimes; leave out --regime")
+        raise InputError("this result has no regimes; leave the regime out")
     codes = {label: code for code, label in flags(ds["regime"]) if code >= 0}
     if regime not in codes:
         near, known = nearest(regime, list(codes)), ", ".join(codes)

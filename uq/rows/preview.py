@@ -27,7 +27,7 @@ class Preview:
     def __init__(self, workload: Workload) -> None:
         self._regimes: tuple[str, ...] = ()
         self._life, self._label = "", ""
-        self._sample = _Sample()
+        self._lives = _Thinned()
         outputs = workload.model.outputs
         if "regime" in outputs and outputs["regime"].is_category:
             self._regimes = outputs["regime"].categories
@@ -49,12 +49,12 @@ class Preview:
             values = chunk.columns[self._life][first]
             if (flag := censored_name(self._life)) in chunk.columns:
                 values = np.where(chunk.columns[flag][first], np.inf, values)
-            self._sample.add(values[~np.isnan(values)])
+            self._lives.add(values[~np.isnan(values)])
 
     @property
     def median(self) -> tuple[str, float] | None:
         """Name and median of a life [s], inf if most rows do not end; None without a life."""
-        median = self._sample.median
+        median = self._lives.median
         return None if median is None else (self._label, median)
 
     @property
@@ -66,7 +66,7 @@ class Preview:
         return dict(sorted(found.items(), key=lambda pair: -pair[1]))
 
 
-class _Sample:
+class _Thinned:
     """Evenly spaced values of a stream."""
 
     def __init__(self) -> None:

@@ -33,7 +33,7 @@ from uq.rows.variables import (
     places,
     study_attributes,
 )
-from uq.study.code import made_here
+from uq.study.registry import made_here
 
 if TYPE_CHECKING:
     from uq.rows.sampling import Rows

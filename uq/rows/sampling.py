@@ -41,6 +41,12 @@ class Rows(NamedTuple):
     group: NDArray[np.int64]
     block: NDArray[np.int16]
 
+    @classmethod
+    def without_design(cls, x: Floats, seed: NDArray[np.uint64]) -> "Rows":
+        """Return rows that have no place in a design."""
+        zeros = np.zeros(len(x), np.int64)
+        return cls(x, seed, zeros.astype(np.int32), zeros, zeros.astype(np.int16))
+
     def part(self, first: int, last: int) -> "Rows":
         """Return the rows from `first` to before `last` of these."""
         fields: list[NDArray[Any]] = [field[first:last] for field in self]

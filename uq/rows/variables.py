@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from uq.contract import Model, Output, Status
 from uq.rows.columns import censored_name
 from uq.rows.sampling import block_labels
-from uq.study.code import made_here
+from uq.study.registry import made_here
 
 if TYPE_CHECKING:
     from uq.rows.sampling import Rows

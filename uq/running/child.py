@@ -14,8 +14,7 @@ from uq.compilation import compilation
 from uq.contract import Model
 from uq.errors import InputError
 from uq.rows.evaluate import evaluate
-from uq.study.code import code_of
-from uq.study.registry import find_model
+from uq.study.registry import code_of, find_model
 
 
 class ModelSpec(NamedTuple):
@@ -32,7 +31,7 @@ class ModelSpec(NamedTuple):
     output : str
         The cheap output to be computed alone; "" for all outputs.
     code : str
-        `uq.study.code.code_of` the wanted model; "" for any.
+        `uq.study.registry.code_of` the wanted model; "" for any.
     """
 
     model: str

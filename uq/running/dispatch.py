@@ -7,13 +7,13 @@ computes them changes no bit of the result.
 import time
 from collections import deque
 from math import ceil
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from uq.rows.evaluate import Chunk, KernelError
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
 from uq.running.isolation import Evaluate
-from uq.running.options import Progress, RunOptions
+from uq.running.options import DEFAULTS, Progress, RunOptions
 from uq.running.sent_chunks import SentChunks
 from uq.store import DiskStore, MemoryStore, row_bytes
 
@@ -28,10 +28,49 @@ _BLOCK_SECONDS = 5.0
 _FIRST_ROWS = 16
 _SENT_CHUNKS = 4  # at least, also while workers start
 _LAST_SHARE = 1 / 8  # of a chunk: smaller chunks at the end would waste work
-_GROWTH = 4  # of the chunks of the pilot
+_GROWTH = 4  # of the first chunks
 _LIMIT_SHARE = 0.25  # of the time limit of a row, for a whole chunk
 _CHUNK_BYTES = 4_000_000  # dask warns of tasks that carry more than 10 MB
 _ENOUGH_ROWS = 32  # to blame the model rather than the rows
+
+
+class ChunkSizes(NamedTuple):
+    """How many rows of a workload are computed together: whole groups of its design.
+
+    Attributes
+    ----------
+    workload : Workload
+    options : RunOptions
+    """
+
+    workload: Workload
+    options: RunOptions = DEFAULTS
+
+    @property
+    def first(self) -> int:
+        """Rows of the first chunk, before the cost of a row is known."""
+        return self.whole_groups(self.options.chunk_rows or _FIRST_ROWS)
+
+    def following(self, size: int, row_seconds: float) -> int:
+        """Return the rows of the chunk after one of `size` rows, while chunks grow."""
+        return min(_GROWTH * size, self.good(row_seconds))
+
+    def good(self, row_seconds: float) -> int:
+        """Return the rows of a good chunk, given the cost of a row [s], 0 if unknown."""
+        limit, wish = self.options.row_limit, self.options.chunk_rows
+        most = _CHUNK_BYTES // row_bytes(self.workload)
+        if limit and row_seconds:  # chunks of sound rows must not be stopped
+            most = max(1, min(most, int(_LIMIT_SHARE * limit / row_seconds)))
+        if wish:
+            return self.whole_groups(min(wish, most) if limit else wish)
+        if row_seconds:
+            block = min(self.workload.model.block, ceil(_BLOCK_SECONDS / row_seconds))
+            most = min(most, block * max(1, round(CHUNK_SECONDS / (row_seconds * block))))
+        return self.whole_groups(most)
+
+    def whole_groups(self, rows: int) -> int:
+        """Round a number of rows up to whole groups of the design."""
+        return self.workload.group * ceil(rows / self.workload.group)
 
 
 class Dispatcher:
@@ -69,6 +108,7 @@ class Dispatcher:
         self.workload = workload
         self.store = store
         self._options = options
+        self._sizes = ChunkSizes(workload, options)
         self._evaluate = evaluate
         stop = store.total if stop is None else stop
         self._todo = deque((a, min(b, stop)) for a, b in store.missing if a < stop)
@@ -77,24 +117,24 @@ class Dispatcher:
         self.row_seconds = 0.0
         self._dashboard = ""
 
-    def pilot(self, share: float) -> None:
+    def begin_here(self, share: float) -> None:
         """Run the first rows here, in growing chunks, until a chunk takes long enough.
 
         The first call may compile, so only later ones show the cost of a row. At most about `share`
         of all rows to be computed run here.
         """
-        size = whole_groups(self.workload, self._options.chunk_rows or _FIRST_ROWS)
+        size = self._sizes.first
         least_left = (1 - share) * self._untaken
         self._here(size)
         spent = 0.0
         while spent < CHUNK_SECONDS and self._untaken > least_left:
-            size = min(_GROWTH * size, self._chunk_rows())
+            size = self._sizes.following(size, self.row_seconds)
             spent += self._here(size)
 
     def finish_here(self) -> None:
         """Run the remaining rows without workers."""
         while self.left:
-            self._here(self._chunk_rows())
+            self._here(self._sizes.good(self.row_seconds))
 
     def finish_on(self, crew: "Workers") -> None:
         """Run the remaining rows on workers, and here until a local worker is there."""
@@ -150,39 +190,8 @@ class Dispatcher:
         counts = store.done, store.total, store.failed, store.found, dict(store.status)
         self._options.progress(Progress(*counts, *seen, self._dashboard))
 
-    def _chunk_rows(self) -> int:
-        limit, wish = self._options.row_limit, self._options.chunk_rows
-        most = _CHUNK_BYTES // row_bytes(self.workload)
-        if limit and self.row_seconds:  # chunks of sound rows must not be stopped
-            most = max(1, min(most, int(_LIMIT_SHARE * limit / self.row_seconds)))
-        if wish:
-            return whole_groups(self.workload, min(wish, most) if limit else wish)
-        good = chunk_rows(self.workload, self.row_seconds)
-        return min(whole_groups(self.workload, most), good)
-
     def _shared(self, threads: int) -> int:
         """Return the rows of the next chunk, so that all threads finish together."""
-        size = self._chunk_rows()
+        size = self._sizes.good(self.row_seconds)
         share = max(ceil(self._untaken / threads), int(_LAST_SHARE * size))
-        return min(size, whole_groups(self.workload, share))
-
-
-def chunk_rows(workload: Workload, row_seconds: float) -> int:
-    """Return the number of rows of a good chunk, in whole groups of the design.
-
-    Parameters
-    ----------
-    workload : Workload
-    row_seconds : float
-        Cost of a row [s], 0 if unknown.
-    """
-    size: float = _CHUNK_BYTES // row_bytes(workload)
-    if row_seconds:
-        block = min(workload.model.block, ceil(_BLOCK_SECONDS / row_seconds))
-        size = min(size, block * max(1, round(CHUNK_SECONDS / (row_seconds * block))))
-    return whole_groups(workload, size)
-
-
-def whole_groups(workload: Workload, rows: float) -> int:
-    """Round a number of rows up to whole groups of the design."""
-    return workload.group * ceil(rows / workload.group)
+        return min(size, self._sizes.whole_groups(share))

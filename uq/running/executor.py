@@ -23,6 +23,18 @@ SHORT_SECONDS = 4.0
 """Shorter work is not worth starting workers."""
 
 
+def in_one_process(workers: int | None, seconds: float) -> bool:
+    """Return whether one process computes work that takes it so long [s], without workers."""
+    return workers == 0 or (workers is None and seconds < SHORT_SECONDS)
+
+
+def processes(workload: Workload, workers: int | None) -> int:
+    """Return how many processes compute at the same time, if the work is worth starting workers."""
+    from uq.running.local_cluster import CORES
+
+    return min(1 if workers == 0 else workers or CORES, workload.total // workload.group)
+
+
 class Executor:
     """Computes the rows of one dispatcher after another; a context manager.
 
@@ -76,34 +88,32 @@ class Executor:
         workers = self._options.workers
         if self._options.scheduler is not None:
             crew = self._started(dispatcher)  # before anything is computed
-            dispatcher.pilot(share=1 / 8)
+            dispatcher.begin_here(share=1 / 8)
             dispatcher.finish_on(crew)
             return
         if not workers and self._crew is None:
-            dispatcher.pilot(share=1)
+            dispatcher.begin_here(share=1)
         # Work that is not worth starting workers, with the rows before.
         seconds = self._seconds + dispatcher.row_seconds * dispatcher.left
-        short = self._crew is None and seconds < SHORT_SECONDS
-        if workers == 0 or (workers is None and short):
+        if self._crew is None and in_one_process(workers, seconds):
             dispatcher.finish_here()
         elif dispatcher.left:
             known = workers is None and self._crew is None
             crew = self._started(dispatcher)
             if not known:
-                dispatcher.pilot(share=1 / 8)  # while they start
+                dispatcher.begin_here(share=1 / 8)  # while they start
             dispatcher.finish_on(crew)
         self._seconds += dispatcher.row_seconds * dispatcher.rows
 
     def _started(self, dispatcher: Dispatcher) -> "Workers":
-        from uq.running.local_cluster import CORES, local_workers
+        from uq.running.local_cluster import local_workers
         from uq.running.remote_cluster import remote_workers
 
         if self._crew is None:
             if self._options.scheduler is not None:
                 crew = remote_workers(self._options.scheduler)
             else:
-                groups = dispatcher.store.total // dispatcher.workload.group
-                crew = local_workers(min(self._options.workers or CORES, groups))
+                crew = local_workers(processes(dispatcher.workload, self._options.workers))
             self._crew = self._stack.enter_context(crew)
         return self._crew
 

@@ -25,13 +25,14 @@ from uq.interrupts import undone
 from uq.rows.evaluate import Chunk, Fault, joined, lost_rows
 from uq.running import child
 from uq.running.environment import command, inherited
-from uq.study.code import code_of
+from uq.study.registry import code_of
 
 if TYPE_CHECKING:
     from uq.rows.workload import Workload
 
-# A process may be killed from outside: three kills, that of its chunk included, blame the row.
-_SINGLE_CRASHES = 2
+TRIES = 3
+"""How often rows kill their process before they are blamed: it may be killed from outside."""
+
 _PARTS = 8  # of rows that crashed: more are too small for kernels, fewer crash more often
 _STARTS = 3
 _FIRST_SECONDS = 5.0  # a first call loads compiled code: 1 s, more on a busy computer
@@ -117,7 +118,7 @@ class Isolated:
 
     def _single(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:
         """Run one row by itself, to find out whether it is guilty."""
-        for _ in range(_SINGLE_CRASHES):
+        for _ in range(TRIES - 1):  # that of its chunk was the first
             outcome = self._ask(x, seed, start)
             if isinstance(outcome, Chunk):
                 return outcome

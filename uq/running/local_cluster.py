@@ -20,6 +20,7 @@ from distributed import Client, LocalCluster
 from uq.errors import RunError
 from uq.interrupts import undone
 from uq.running.environment import command, inherited
+from uq.running.isolation import TRIES
 from uq.running.workers import Workers, quiet
 
 CORES = CPU_COUNT
@@ -52,7 +53,7 @@ def local_workers(count: int) -> Iterator[Workers]:
         settings = {
             "temporary-directory": str(folder),
             "distributed.scheduler.http.routes": [],
-            "distributed.scheduler.allowed-failures": 2,  # the third killed worker fails a task
+            "distributed.scheduler.allowed-failures": TRIES - 1,  # one more fails a task
         }
         stack.enter_context(dask.config.set(settings))
         stack.enter_context(quiet())

@@ -17,9 +17,9 @@ from uq.rows import results
 from uq.rows.evaluate import Chunk, joined
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload, workload_of
-from uq.running import executor
-from uq.running.dispatch import CHUNK_SECONDS, chunk_rows, whole_groups
+from uq.running.dispatch import CHUNK_SECONDS, ChunkSizes
 from uq.running.environment import command, inherited
+from uq.running.executor import in_one_process, processes
 from uq.running.isolation import Action, Evaluate, isolated
 from uq.running.options import RunOptions
 from uq.store import row_bytes
@@ -28,8 +28,6 @@ from uq.study.definition import Study
 PILOT_SECONDS = 8.0
 """Time for the pilot, once the model is compiled."""
 
-_FIRST_ROWS = 16
-_GROWTH = 4
 _FILE_BYTES = 30_000  # names, units, the study
 _CHUNKS_AT_LEAST = 2  # per process
 _GOLDEN = (5**0.5 - 1) / 2
@@ -91,16 +89,14 @@ def pilot(
         The rows of the pilot, with the schema of a result.
     """
     RunOptions(workers).check()
-    from uq.running.local_cluster import CORES
-
     workload = workload_of(study)
-    total = workload.total
-    processes = min(workers or (1 if workers == 0 else CORES), total // workload.group)
+    total, count = workload.total, processes(workload, workers)
     with ExitStack() as stack:
-        crew = [stack.enter_context(isolated(workload, None, compiling)) for _ in range(processes)]
+        crew = [stack.enter_context(isolated(workload, None, compiling)) for _ in range(count)]
         load_seconds = _load_seconds()
-        row_seconds, pilot_seconds = _warm_up(workload, crew)
-        done, chunks = _sample(workload, crew, chunk_rows(workload, row_seconds))
+        row_seconds, first_seconds = _warm_up(workload, crew)
+        size = ChunkSizes(workload).good(row_seconds)
+        done, chunks = _spread_chunks(workload, crew, size)
     some, found, seconds = zip(*done, strict=True)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
     row_seconds, error = _row_cost(seconds, [len(part.x) for part in some], chunks)
@@ -109,14 +105,14 @@ def pilot(
     constants = len(study.model.parameter_names) - len(study.uncertain)
     size = _FILE_BYTES + kept - 8 * constants * total  # a constant is one number in the result
     alone = row_seconds * total
-    if workers is None and alone < executor.SHORT_SECONDS:
-        processes = 1
+    if in_one_process(workers, alone):
+        count = 1
     beside = _RUN_LOADS * load_seconds
-    if workers or processes > 1:
-        beside += _WORKERS_LOADS * load_seconds + pilot_seconds
+    if workers or count > 1:
+        beside += _WORKERS_LOADS * load_seconds + first_seconds
     shares = 1.0, max(0.0, 1 - error), 1 + error
-    likely, low, high = (alone / processes * share + beside for share in shares)
-    cost = Cost(total, processes, len(rows.x), row_seconds, likely, low, high, size, kept + size)
+    likely, low, high = (alone / count * share + beside for share in shares)
+    cost = Cost(total, count, len(rows.x), row_seconds, likely, low, high, size, kept + size)
     chunk = joined(found)
     failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
     return cost, results.build(study, rows, chunk.columns, chunk.status, failures)
@@ -145,19 +141,20 @@ def _warm_up(workload: Workload, crew: Sequence[Evaluate]) -> tuple[float, float
     Then one process computes growing chunks, as a run does before it starts workers: return the
     time of a row, and of all those rows.
     """
-    size, seconds = min(workload.total, whole_groups(workload, _FIRST_ROWS)), 0.0
+    sizes = ChunkSizes(workload)
+    size, seconds = min(workload.total, sizes.first), 0.0
     for evaluate in crew:
         _timed(evaluate, workload, 0, size)
     while True:
         *_, last = _timed(crew[0], workload, 0, size)
         seconds += last
-        grown = min(_GROWTH * size, chunk_rows(workload, last / size), workload.total)
+        grown = min(sizes.following(size, last / size), workload.total)
         if seconds > CHUNK_SECONDS or grown <= size:
             return last / size, seconds
         size = grown
 
 
-def _sample(
+def _spread_chunks(
     workload: Workload, crew: Sequence[Evaluate], size: int
 ) -> tuple[list[tuple[Rows, Chunk, float]], int]:
     """Return chunks spread over the study, with the time of each, and how many it has in all.

@@ -34,7 +34,7 @@ def remote_workers(address: str) -> Iterator[Workers]:
     InputError
         When nothing answers there, or no worker can be used.
     """
-    where = f"--scheduler {address}"
+    where = f"scheduler {address}"
     with ExitStack() as stack:
         stack.enter_context(quiet())
         _check_certificates(where, encrypted=address.startswith("tls:"))

@@ -8,7 +8,6 @@ because a row may crash it, unless the user wants a single process.
 import os
 import warnings
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
@@ -21,9 +20,9 @@ from uq.running.dispatch import Dispatcher
 from uq.running.executor import Executor
 from uq.running.options import Progress, Report, RunOptions, Say, ignore
 from uq.study.changes import refusal_to_extend, what_changed
-from uq.study.code import is_other_code
 from uq.study.definition import Study, load_study
 from uq.study.reading import read_study_text
+from uq.study.registry import is_other_code
 
 
 def run(
@@ -158,12 +157,6 @@ def made_elsewhere(study: Study, path: Path, ds: xr.Dataset) -> str:
     )
 
 
-def compute(study: Study, **options: Any) -> xr.Dataset:
-    """Run a study without writing anything; options as those of `RunOptions`."""
-    _check_budget(study)
-    return carry_out(workload_of(study), RunOptions(**options), study=study)
-
-
 def carry_out(
     workload: Workload,
     options: RunOptions,
@@ -179,7 +172,7 @@ def carry_out(
     kept : DiskStore, optional
         Where to keep the rows; in memory by default.
     study : Study, optional
-        The study of the workload, which may have a [design] until.
+        The study of the rows kept on disk, which may have a [design] until.
 
     Returns
     -------
@@ -192,16 +185,16 @@ def carry_out(
         options.progress(Progress(*counts, compiling=True))
 
     with Executor(workload, options, compiling) as executor:
-        for part in (*_interim_studies(study, there.reach), None):
+        for part in (*_interim_studies(study, kept), None):
             stop = rows(part) if part else workload.total
             dispatcher = Dispatcher(workload, options, there, executor.evaluate, stop)
             if there.found:
                 dispatcher.report_progress()
             executor.finish(dispatcher)
-            if not (study and part):
+            if not (study and kept and part):
                 break
-            if stopping.interim_estimate(study.design, there.first(part)).reached:
-                there.cut(part)
+            if stopping.interim_estimate(study.design, kept.first(part)).reached:
+                kept.cut(part)
                 dispatcher.report_progress()
                 break
     return there.dataset()
@@ -213,14 +206,14 @@ def _check_budget(study: Study) -> None:
         budget = read_study_text(study.text, study.path).design.samples
         if study.design.samples != budget:
             raise InputError(
-                f"--samples {study.design.samples}: a study with [design] until uses at most the"
+                f"samples = {study.design.samples}: a study with [design] until uses at most the"
                 f" samples of its file, {budget}: change them there"
             )
 
 
-def _interim_studies(study: Study | None, reach: int) -> list[Study]:
+def _interim_studies(study: Study | None, kept: store.DiskStore | None) -> list[Study]:
     """Return the study at each interim size, from the one that a resumed run had reached."""
-    if study is None or study.design.until is None:
+    if study is None or kept is None or study.design.until is None:
         return []
     parts = [study.with_samples(samples) for samples in stopping.interim_sizes(study.design)]
-    return [part for part in parts[:-1] if rows(part) >= reach]
+    return [part for part in parts[:-1] if rows(part) >= kept.end]

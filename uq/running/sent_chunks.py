@@ -13,14 +13,13 @@ from uq.rows.evaluate import Chunk, Fault, lost_rows
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
 from uq.running.dask_task import evaluate_rows
-from uq.running.isolation import spec_of
+from uq.running.isolation import TRIES, spec_of
 
 if TYPE_CHECKING:
     from distributed import Future
 
     from uq.running.workers import Workers
 
-_TRIES = 3
 _WAIT_SECONDS = 0.2
 
 _Sent = tuple[int, Rows, int]
@@ -110,7 +109,7 @@ class SentChunks:
             half = count // 2
             self.send(start, rows.part(0, half))
             self.send(start + half, rows.part(half, count))
-        elif tries < _TRIES:
+        elif tries < TRIES:
             self.send(start, rows, tries + 1)
         else:
             reason = " ".join(str(error.__cause__ or error).split())

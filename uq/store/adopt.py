@@ -17,8 +17,8 @@ from uq.rows.sampling import Rows, row_block
 from uq.store.chunk_file import blocks_of
 from uq.store.disk import DiskStore
 from uq.store.tally import Failures
-from uq.study.code import made_here
 from uq.study.definition import Study
+from uq.study.registry import made_here
 
 _ROWS = 100_000  # at a time
 

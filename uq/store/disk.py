@@ -22,8 +22,8 @@ from uq.store.journal import Journal
 from uq.store.merge import merge
 from uq.store.records import RowsRecord, RunRecord, missing
 from uq.store.tally import Failures, Tally, joined_failures
-from uq.study.code import made_here
 from uq.study.definition import Study
+from uq.study.registry import made_here
 
 _WRITING_SHARE = 1 / 20  # of the time, unless single chunks take longer
 _FIRST_COST = 0.01  # of writing [s], before it is known: a very short run writes once
@@ -69,7 +69,7 @@ class DiskStore(Tally):
         return missing(self._records, self.total)
 
     @property
-    def reach(self) -> int:
+    def end(self) -> int:
         """Number after the last row that is there."""
         return max((record.blocks[-1][1] for record in self._records), default=0)
 

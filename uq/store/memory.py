@@ -3,13 +3,11 @@
 import numpy as np
 import xarray as xr
 
-from uq.rows import results
 from uq.rows.evaluate import Chunk
-from uq.rows.sampling import Rows, rows
-from uq.rows.workload import Workload, workload_of
+from uq.rows.sampling import Rows
+from uq.rows.workload import Workload
 from uq.store.chunk_file import pack, unpack
 from uq.store.tally import Tally
-from uq.study.definition import Study
 
 
 class MemoryStore(Tally):
@@ -23,11 +21,7 @@ class MemoryStore(Tally):
     ----------
     missing : list of (int, int)
         Blocks of rows that are missing at the start: all.
-    reach : int
-        Number after the last row that is there at the start: 0.
     """
-
-    reach = 0
 
     def __init__(self, workload: Workload) -> None:
         super().__init__(workload)
@@ -46,16 +40,6 @@ class MemoryStore(Tally):
         data = pack(self.row_type, rows, chunk.columns, chunk.status)
         self._data[start : start + len(data)] = data
         self.count(*self.counts(chunk.columns, chunk.status), chunk.failures)
-
-    def first(self, study: Study) -> xr.Dataset:
-        """Return the result of a study with fewer samples, whose rows have all arrived."""
-        return results.build(study, *unpack(self._data[: rows(study)]), self.examples)
-
-    def cut(self, study: Study) -> None:
-        """Drop all but the rows of a study with fewer samples, which have all arrived."""
-        self.workload = workload_of(study)
-        self.total = self.workload.total
-        self._data = self._data[: self.total]
 
     def keep_up(self) -> None:
         """Do nothing: these rows are written nowhere."""

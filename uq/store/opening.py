@@ -18,8 +18,8 @@ from uq.store.folder import clear, folder_of, history, locked
 from uq.store.records import History, RunRecord, without_overlap
 from uq.store.tally import row_bytes
 from uq.study.changes import refusal_to_extend, what_changed
-from uq.study.code import is_other_code, made_here
 from uq.study.definition import Study
+from uq.study.registry import is_other_code, made_here
 
 _REMEDY = "choose another output, or start over with --fresh"
 

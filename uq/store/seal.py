@@ -24,7 +24,7 @@ def is_intact(path: Path) -> bool | None:
 
     Raises
     ------
-    OSError, ValueError, RuntimeError, AttributeError, KeyError
+    Any of `uq.rows.results.UNREADABLE`
         When it cannot be read at all.
     """
     import netCDF4

@@ -1,12 +1,18 @@
-"""The models installed here, found through entry points."""
+"""The models installed here, found through entry points, and a hash of their code.
+
+Rows computed by different code do not form one result. The version of a model is its author's
+promise; the hash comes from the files.
+"""
 
 import importlib
 import os
 import sys
+from collections.abc import Mapping
 from importlib.metadata import EntryPoint, entry_points
 
 from uq.contract import Model
 from uq.errors import InputError, nearest
+from uq.provenance import provenance
 from uq.study.compiled import keep_apart, own_packages
 from uq.study.sources import fingerprint
 
@@ -36,8 +42,7 @@ def find_model(reference: str) -> Model:
         There is no such model, or its package cannot be imported. A broken model does not affect
         the others.
     """
-    label = f"--model {reference}" if ":" in reference else f"model '{reference}'"
-    return _load(_point(reference), label)
+    return _load(_point(reference), f"model '{reference}'")
 
 
 def module_of(reference: str) -> str:
@@ -101,3 +106,57 @@ def _check(model: Model, label: str) -> None:
         raise InputError(f"{label}: {error}") from None
     if missing:
         raise InputError(f"{label}: parameter '{min(missing)}' has no nominal value")
+
+
+def made_here(reference: str) -> dict[str, str]:
+    """Return what determines the rows of a model here: processor, versions and the model's code.
+
+    Parameters
+    ----------
+    reference : str
+        As for `find_model`.
+    """
+    return provenance() | {"code": code_of(reference)}
+
+
+def is_other_code(made: Mapping[str, object], reference: str) -> bool:
+    """Return whether rows were computed by code other than that installed here.
+
+    Parameters
+    ----------
+    made : dict
+        What determined them, as recorded by `made_here`; without ``code``, nothing is known.
+    reference : str
+        As above.
+    """
+    here = code_of(reference)
+    return made.get("code", here) != here
+
+
+def code_of(reference: str) -> str:
+    """Return a hash of the sources of a model: its module, and what that imports.
+
+    Only the sources of its package, and of its neighbours in the same folder, count.
+
+    Parameters
+    ----------
+    reference : str
+        As for `find_model`.
+
+    Returns
+    -------
+    str
+        Independent of where the package lies. It is computed once per process, like the import.
+
+    Raises
+    ------
+    InputError
+        No source was found.
+    """
+    module = module_of(reference)
+    if not (found := fingerprint(module)):
+        raise InputError(
+            f"model '{reference}': no source file of module '{module}' was found, so its code "
+            "cannot be identified; install it, or name its folder in PYTHONPATH"
+        )
+    return found

@@ -94,7 +94,7 @@ def extend(
     study = study_of(path, model)
     there = study.design.samples
     if samples < there:
-        raise InputError(f"--samples {samples}: {path} has {there} already; ask for more")
+        raise InputError(f"samples = {samples}: {path} has {there} already; ask for more")
     problem = refusal_to_extend(study)
     if samples > there and problem:
         raise InputError(f"{path}: {problem}")
@@ -161,7 +161,7 @@ def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
     if wrong:
         raise InputError(
             *(
-                f"--setting {name} = {settings[name]!r}: {problem}" if name in settings else problem
+                f"setting {name} = {settings[name]!r}: {problem}" if name in settings else problem
                 for name, problem in wrong.items()
             )
         )
@@ -171,5 +171,5 @@ def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
     )
     if axes != others:
         names = ", ".join(settings)
-        raise InputError(f"--setting {names}: would give these rows other outputs than the rest")
+        raise InputError(f"setting {names}: would give these rows other outputs than the rest")
     return changed

@@ -14,8 +14,8 @@ from uq.rows.evaluate import evaluate
 from uq.rows.sampling import row_block
 from uq.store.adopt import variants
 from uq.store.seal import is_intact
-from uq.study.code import made_here
 from uq.study.definition import Study
+from uq.study.registry import made_here
 from uq.upkeep.amending import changed_settings, study_of
 
 ROWS = 16

@@ -12,6 +12,7 @@ from models.numerics import elementary
 from models.vibrator.equations.rigid import Rigid
 from models.vibrator.parameters import Params, Rows
 from models.vibrator.theory.averaged import feed_gravity
+from models.vibrator.theory.motor_set import MotorSet, damping, motor_set
 
 _NEVER_THROWN = 1e30  # gravity that keeps a massless feed on the deck [m s-2]
 
@@ -72,30 +73,13 @@ class System(NamedTuple):
         return System(one, *(float(field[i]) for field in others))
 
 
-class _MotorSet(NamedTuple):
-    """The motor set of n machines, unbalanced masses included."""
-
-    x_1: Any  # levers of the shafts and of their midpoint from C
-    y_1: Any
-    x_2: Any
-    y_2: Any
-    x: Any
-    y: Any
-    mass: Any
-    inertia: Any  # about the midpoint
-
-
-def _motor_set(p: Rows) -> _MotorSet:
+def _shafts(p: Rows, motors: MotorSet) -> list[tuple[Any, Any]]:
+    """Return the levers (x, y) of both shafts and of their midpoint from C."""
     cos, sin = elementary.cos(p.working_angle), elementary.sin(p.working_angle)
-    along = p.shaft_distance * elementary.cos(p.shaft_half_angle)
-    half = p.shaft_distance * elementary.sin(p.shaft_half_angle)
-    (x_1, y_1), (x_2, y_2), (x, y) = [
-        (along * cos - across * sin, along * sin + across * cos)
-        for across in (p.axis_offset + half, p.axis_offset - half, p.axis_offset)
+    return [
+        (motors.along * cos - across * sin, motors.along * sin + across * cos)
+        for across in (p.axis_offset + motors.half, p.axis_offset - motors.half, p.axis_offset)
     ]
-    m = p.unbalanced_mass
-    mass, inertia = p.mount_mass + 2 * m, p.mount_inertia + 2 * m * half**2
-    return _MotorSet(x_1, y_1, x_2, y_2, x, y, mass, inertia)
 
 
 def rigid_machines(p: Rows) -> Rigid:
@@ -111,20 +95,21 @@ def rigid_machines(p: Rows) -> Rigid:
     Rigid
         Each field an ndarray of shape (n,).
     """
-    motors, m = _motor_set(p), p.unbalanced_mass
+    motors, m = motor_set(p), p.unbalanced_mass
+    (x_1, y_1), (x_2, y_2), (x, y) = _shafts(p, motors)
     sprung = p.body_mass + 2 * m
     slip_1 = p.synchronous_speed_1 - p.breakdown_speed_1
     slip_2 = p.synchronous_speed_2 - p.breakdown_speed_2
     return Rigid(
         mass=p.body_mass + motors.mass,
-        moment_x=motors.mass * motors.x,
-        moment_y=motors.mass * motors.y,
-        inertia=p.body_inertia + motors.inertia + motors.mass * (motors.x**2 + motors.y**2),
+        moment_x=motors.mass * x,
+        moment_y=motors.mass * y,
+        inertia=p.body_inertia + motors.inertia + motors.mass * (x**2 + y**2),
         working_angle=p.working_angle,
-        shaft_x_1=motors.x_1,
-        shaft_y_1=motors.y_1,
-        shaft_x_2=motors.x_2,
-        shaft_y_2=motors.y_2,
+        shaft_x_1=x_1,
+        shaft_y_1=y_1,
+        shaft_x_2=x_2,
+        shaft_y_2=y_2,
         unbalance_1=p.unbalance_1,
         unbalance_2=p.unbalance_2,
         mobility_1=1 / (p.rotor_inertia + p.unbalance_1**2 / m),
@@ -139,8 +124,8 @@ def rigid_machines(p: Rows) -> Rigid:
         bearing_loss_2=p.bearing_constant_2 * p.unbalance_2,
         stiffness_x=p.stiffness_x,
         stiffness_y=p.stiffness_y,
-        damping_x=2 * p.damping_ratio * np.sqrt(sprung * p.stiffness_x),
-        damping_y=2 * p.damping_ratio * np.sqrt(sprung * p.stiffness_y),
+        damping_x=damping(p.damping_ratio, sprung, p.stiffness_x),
+        damping_y=damping(p.damping_ratio, sprung, p.stiffness_y),
         support_offset=p.support_offset,
         half_spacing=p.support_half_spacing,
     )
@@ -160,7 +145,8 @@ def systems(p: Rows, kinematics: str = "small") -> System:
     System
         Each field an ndarray of shape (n,).
     """
-    motors = _motor_set(p)
+    motors = motor_set(p)
+    mount_x, mount_y = _shafts(p, motors)[2]
     slides, rocks = np.isfinite(p.mount_stiffness), np.isfinite(p.mount_rotational_stiffness)
     slide_stiffness = np.where(slides, p.mount_stiffness, 0.0)
     rock_stiffness = np.where(rocks, p.mount_rotational_stiffness, 0.0)
@@ -171,8 +157,8 @@ def systems(p: Rows, kinematics: str = "small") -> System:
         rotor_inertia=p.rotor_inertia,
         body_mass=p.body_mass,
         body_inertia=p.body_inertia,
-        mount_x=motors.x,
-        mount_y=motors.y,
+        mount_x=mount_x,
+        mount_y=mount_y,
         slides=slides.astype(float),
         rocks=rocks.astype(float),
         slide_x=slides * elementary.cos(direction),
@@ -180,9 +166,9 @@ def systems(p: Rows, kinematics: str = "small") -> System:
         mount_mass=p.mount_mass,
         mount_inertia=p.mount_inertia,
         slide_stiffness=slide_stiffness,
-        slide_damping=2 * p.mount_damping_ratio * np.sqrt(slide_stiffness * motors.mass),
+        slide_damping=damping(p.mount_damping_ratio, motors.mass, slide_stiffness),
         rock_stiffness=rock_stiffness,
-        rock_damping=2 * p.mount_damping_ratio * np.sqrt(rock_stiffness * motors.inertia),
+        rock_damping=damping(p.mount_damping_ratio, motors.inertia, rock_stiffness),
         feed_mass=p.feed_mass,
         feed_gravity=_gravity(p),
         feed_position=p.feed_position,

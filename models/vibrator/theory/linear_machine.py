@@ -3,11 +3,11 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from models.numerics.elementary import cos, sin
 from models.vibrator.parameters import Rows
 from models.vibrator.theory.feed import apparent_mass
+from models.vibrator.theory.motor_set import damping, motor_set
 
 
 class Machine(NamedTuple):
@@ -63,10 +63,6 @@ class Machine(NamedTuple):
     unbalance_2: Any
 
 
-def _damping(ratio: Any, mass: Any, stiffness: Any) -> NDArray[np.float64]:
-    return 2 * ratio * np.sqrt(mass * np.where(np.isinf(stiffness), 0.0, stiffness))
-
-
 def machines(p: Rows) -> np.recarray[Any, Any]:
     """Return the `Machine` of each of n rows.
 
@@ -80,13 +76,10 @@ def machines(p: Rows) -> np.recarray[Any, Any]:
     recarray, shape (n,)
         Each a record with the fields of `Machine`.
     """
-    m = p.unbalanced_mass
-    along = p.shaft_distance * cos(p.shaft_half_angle)
-    half = p.shaft_distance * sin(p.shaft_half_angle)
-    set_mass, set_inertia = p.mount_mass + 2 * m, p.mount_inertia + 2 * m * half**2
-    sprung = p.body_mass + 2 * m
+    along, half, set_mass, set_inertia = motor_set(p)
+    sprung = p.body_mass + 2 * p.unbalanced_mass
     loaded = p.feed_mass > 0
-    feed = np.zeros(len(m), complex)
+    feed = np.zeros(len(loaded), complex)
     feed[loaded] = p.feed_mass[loaded] * apparent_mass(p.throw_coefficient[loaded])
     return np.rec.fromarrays(
         Machine(
@@ -100,17 +93,17 @@ def machines(p: Rows) -> np.recarray[Any, Any]:
             set_mass=set_mass,
             set_inertia=set_inertia,
             stiffness_x=p.stiffness_x,
-            damping_x=_damping(p.damping_ratio, sprung, p.stiffness_x),
+            damping_x=damping(p.damping_ratio, sprung, p.stiffness_x),
             stiffness_y=p.stiffness_y,
-            damping_y=_damping(p.damping_ratio, sprung, p.stiffness_y),
+            damping_y=damping(p.damping_ratio, sprung, p.stiffness_y),
             offset=p.support_offset,
             spacing=p.support_half_spacing,
             slide_xi=cos(p.mount_angle),
             slide_eta=sin(p.mount_angle),
             slide_stiffness=p.mount_stiffness,
-            slide_damping=_damping(p.mount_damping_ratio, set_mass, p.mount_stiffness),
+            slide_damping=damping(p.mount_damping_ratio, set_mass, p.mount_stiffness),
             turn_stiffness=p.mount_rotational_stiffness,
-            turn_damping=_damping(p.mount_damping_ratio, set_inertia, p.mount_rotational_stiffness),
+            turn_damping=damping(p.mount_damping_ratio, set_inertia, p.mount_rotational_stiffness),
             feed=feed.real,
             feed_loss=feed.imag,
             feed_position=p.feed_position,

@@ -1,12 +1,57 @@
-"""The verbs that take a study file."""
+"""The verbs that take a model or a study file."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from uq.cli import options as given
+from uq.cli import say_when_interrupted
+from uq.errors import InputError
 from uq.running.options import RunOptions
+
+
+def models(
+    name: Annotated[
+        str | None,
+        typer.Argument(help="Show this model in full.", autocompletion=given.complete_model),
+    ] = None,
+    json: given.Json = False,
+) -> None:
+    """List the models, or show what one of them declares."""
+    from uq.cli import catalogue
+    from uq.cli.printing import print_json
+    from uq.study.registry import find_model
+
+    if name is None:
+        listed = catalogue.list_models()
+        print_json(listed) if json else catalogue.show_list(listed)
+    else:
+        model = find_model(name)
+        print_json(catalogue.as_json(model)) if json else catalogue.show(model)
+
+
+def simulate(
+    model: given.ModelName,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; may be repeated."),
+    ] = None,
+    setting: given.Settings = None,
+    json: given.Json = False,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="TRAJ.nc", help="Write the trajectory here."),
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="F.png", help="Draw the trajectory here.")
+    ] = None,
+) -> int:
+    """Run a model once, at its nominal values except where set."""
+    from uq.cli import simulate as single
+
+    return single.simulate(model, set_ or [], setting or [], json, output, plot)
 
 
 def init(model: given.ModelName) -> None:
@@ -41,8 +86,9 @@ def plan(
 ) -> None:
     """Estimate what a study will take, from a few of its rows."""
     from uq.cli.plan import plan as show_plan
+    from uq.cli.run import loaded
 
-    show_plan(study, model, samples, workers, json)
+    show_plan(loaded(study, model, samples), workers, json)
 
 
 def run(
@@ -66,10 +112,17 @@ def run(
     quiet: given.Quiet = False,
 ) -> int:
     """Run a study, or resume it where it stopped; show the summary."""
-    from uq.cli.run import run as run_and_show
+    from uq.cli.run import carried_out, end, loaded
+    from uq.running.runner import finished, output_path, run_study
 
-    options = RunOptions(workers, scheduler, chunk_rows, row_limit, fresh, mixed)
-    return run_and_show(study, output, model, samples, quiet, options)
+    asked = loaded(study, model, samples)
+    target = output_path(asked, output)
+    if not fresh and (ds := finished(asked, target)) is not None:
+        note = f"{target} is already complete; nothing was computed (--fresh recomputes it)"
+    else:
+        options = RunOptions(workers, scheduler, chunk_rows, row_limit, fresh, mixed)
+        ds, note = carried_out(target, quiet, options, partial(run_study, asked, target))
+    return end(asked, ds, target, quiet, note, mixed)
 
 
 def rare_event(
@@ -92,8 +145,16 @@ def rare_event(
     json: given.Json = False,
 ) -> int:
     """Estimate the probability of a rare event."""
-    from uq.cli.rare_event import rare_event as estimate_and_show
+    from uq.cli.rare_event import show
+    from uq.exploring import rare_events
+    from uq.study.definition import load_study
 
-    options = {"method": method, "samples": samples, "replicates": replicates}
-    options |= {"workers": workers, "scheduler": scheduler}
-    return estimate_and_show(study, model, output, above, below, json, options)
+    loaded = load_study(study, model)
+    limits = [(limit, side) for limit, side in ((above, False), (below, True)) if limit is not None]
+    if len(limits) != 1:
+        raise InputError("uq: give one of --above and --below")
+    say_when_interrupted("interrupted; nothing was written")
+    ds = rare_events.rare_event(
+        loaded, output, *limits[0], method, samples, replicates, workers, scheduler
+    )
+    return show(ds, json, loaded.analysis.max_failed)

@@ -1,0 +1,53 @@
+"""The style of figures: their width and fonts, colours, lines and points."""
+
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+
+WIDTH = 3.4
+"""One column of a journal [inch]."""
+
+# Okabe and Ito, "Color universal design" (2008), without yellow and black.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+LINES = ("-", "--", "-.", ":")
+
+_STYLE: Any = {
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.formatter.limits": (-4, 5),
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "lines.linewidth": 1.2,
+    "text.parse_math": False,  # a dollar sign in a file is one
+    "svg.hashsalt": "vibrolife",
+    "pdf.fonttype": 42,  # text that can be searched and edited
+}
+styled = mpl.rc_context(_STYLE)
+"""The decorator of every function that draws or writes a figure."""
+
+_MANY = 4000
+
+MARK = 2.5
+"""Size of single marks on curves [points]."""
+
+_SIZES = {"cloud": (1000, 4.5, 3.0), "diagram": (2000, 2.0, 1.2), "section": (59, 3.0, 1.0)}
+"""Of the points of a figure [points]: up to how many they are large; large; small."""
+
+
+def point_size(kind: str, count: int) -> float:
+    """Return the size of the points of a cloud, bifurcation diagram or section."""
+    most, large, small = _SIZES[kind]
+    return large if count <= most else small
+
+
+def are_many(points: int) -> bool:
+    """Whether so many points should be drawn as pixels to keep the file small."""
+    return points > _MANY
+
+
+def thinned(count: int, most: int = 1000) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Return the indices of the points of a curve to draw: both ends and enough in between."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.intp))
