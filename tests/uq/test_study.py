@@ -8,7 +8,8 @@ from study_text import UNIFORM, study_text
 
 from models.analytic import ISHIGAMI, LINEAR
 from uq.errors import InputError
-from uq.study.definition import load_study, read_study_text, study_from_text
+from uq.study.definition import load_study, study_from_text
+from uq.study.reading import read_study_text
 
 LINEAR_STUDY = """
 study = {name = "faults", model = "linear", description = "what happens when rows fail"}

@@ -1,5 +1,6 @@
 """What ``uq twin`` and ``uq convergence`` print."""
 
+from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -74,35 +75,42 @@ def convergence(result: Path, output: str | None, json: bool) -> None:
     """Show running estimates, and whether sampling is still the largest error."""
     ds = open_result(result)
     running, errors = running_estimates(ds, output), enough(ds, output).to_dict("index")
-    found = {str(name): lines for name, lines in running.groupby("output", sort=False)}
+    found = {
+        str(name): {str(label): _sizes(own) for label, own in lines.groupby("estimate", sort=False)}
+        for name, lines in running.groupby("output", sort=False)
+    }
     if json:
-        print_json({"outputs": {name: _json(found[name], errors.get(name)) for name in found}})
+        print_json({"outputs": {name: _json(one, errors.get(name)) for name, one in found.items()}})
         return
-    for name, lines in found.items():
+    for name, estimates in found.items():
         heading(f"\n{name}")
-        for label, some in lines.groupby("estimate", sort=False):
+        for label, sizes in estimates.items():
             grid(
-                [(str(line.samples), *_cells(_estimate(line))) for line in _lines(some)[-_SHOWN:]],
-                header=("samples", estimated(str(label)), "95 % interval"),
+                [(str(samples), *_cells(one)) for samples, one in sizes[-_SHOWN:]],
+                header=("samples", estimated(label), "95 % interval"),
             )
         if own := errors.get(name):
             if isfinite(own["own"]):
-                sizes = [known(Estimate(own[kind])) for kind in ("sampling", "own")]
-                paragraph(
-                    "sampling error {}, error of the rows themselves {}".format(*sizes), indent=2
-                )
+                sampling, rows = (known(Estimate(own[kind])) for kind in ("sampling", "own"))
+                paragraph(f"sampling error {sampling}, error of the rows themselves {rows}", 2)
             if own["warning"]:
                 paragraph(own["warning"], indent=2)
 
 
-def _json(lines: pd.DataFrame, errors: dict[Any, Any] | None) -> dict[str, Any]:
+Sizes = list[tuple[int, Estimate]]
+"""Number of samples, and the estimate from them."""
+
+
+def _sizes(lines: pd.DataFrame) -> Sizes:
+    columns = (lines[name].tolist() for name in ("samples", "value", "low", "high"))
+    return [(samples, Estimate(*numbers)) for samples, *numbers in zip(*columns, strict=True)]
+
+
+def _json(estimates: Mapping[str, Sizes], errors: dict[Any, Any] | None) -> dict[str, Any]:
     found: dict[str, Any] = {
         "estimates": {
-            label: [
-                {"samples": line.samples} | json_form.numbers(_estimate(line))
-                for line in _lines(own)
-            ]
-            for label, own in lines.groupby("estimate", sort=False)
+            label: [{"samples": samples} | json_form.numbers(one) for samples, one in sizes]
+            for label, sizes in estimates.items()
         }
     }
     if errors:
@@ -110,11 +118,3 @@ def _json(lines: pd.DataFrame, errors: dict[Any, Any] | None) -> dict[str, Any]:
         found["own_error"] = json_form.number(errors["own"])
         found["warning"] = errors["warning"]
     return found
-
-
-def _lines(own: pd.DataFrame) -> list[Any]:
-    return list(own.itertuples(index=False))
-
-
-def _estimate(line: Any) -> Estimate:
-    return Estimate(line.value, line.low, line.high)

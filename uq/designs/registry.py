@@ -4,11 +4,13 @@ To add one: a function that draws its points, and an entry here with its propert
 of its rows, which determines the sensitivity methods it feeds.
 """
 
+from functools import partial
+
 from uq.designs.curves import LEAST_POINTS, fast_curves, random_balance
 from uq.designs.design import Design
 from uq.designs.layouts import CROSSED, CURVES, PATHS, TRAJECTORIES
 from uq.designs.sequences import halton, latin_hypercube, monte_carlo, paths, sobol
-from uq.designs.trajectories import morris_trajectories, optimised_trajectories
+from uq.designs.trajectories import POOL, morris_trajectories
 
 DESIGNS = {
     "monte-carlo": Design("independent rows", monte_carlo, independent=True),
@@ -33,7 +35,7 @@ DESIGNS = {
     ),
     "morris-optimised": Design(
         "trajectories chosen far apart, which favours the corners of the inputs",
-        optimised_trajectories,
+        partial(morris_trajectories, pool=POOL),
         TRAJECTORIES,
         append_only=False,
         follows_laws=False,

@@ -1,12 +1,12 @@
 """Targets of sensitivity indices: one number per row."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
-from uq.indices.transforms import Transformed, heaviness, logarithm, rank, rate
+from uq.indices.transforms import heaviness, logarithm, rank, rate
 from uq.rows.elements import Element, Floats, flags
 from uq.rows.results import failed
 
@@ -85,11 +85,7 @@ def number_of(element: Element) -> Target:
     return _transformed(element, "rank") if found.refused else found
 
 
-_TRANSFORMS: dict[str, Callable[[Element], Transformed]] = {
-    "log": logarithm,
-    "rank": rank,
-    "rate": rate,
-}
+_TRANSFORMS = {"log": logarithm, "rank": rank, "rate": rate}
 """Name -> transformation of an element."""
 
 FORMS = {"log": "logarithm", "rank": "rank", "rate": "inverse"}

@@ -18,12 +18,10 @@ from uq.inputs.values import read_settings
 from uq.study.checks import design_faults, model_faults
 from uq.study.file import AnalysisTable, DependenceTable, DesignTable, StudyFile, Tied
 from uq.study.input_checks import dependence_faults, import_faults, input_faults, read_entries
-from uq.study.reading import parse, read_study_text, shape_faults, sound_entries
+from uq.study.reading import parse, shape_faults, sound_entries
 from uq.study.registry import find_model
 
 _LONGEST = 1_000_000  # bytes of a study file
-
-__all__ = ["Study", "load_study", "read_study_text", "study_from_text"]
 
 
 @dataclass(frozen=True)
