@@ -153,14 +153,18 @@ def _estimates(
     if present.any() and not (element.never | element.censored).any():
         alone = moments(element.values[present]).mean
         if not alone.reason:
-            found = controlled_mean(element.values, present, *map(_filled, (control, many)))
+            found = controlled_mean(
+                element.values, present, controls=_filled(control), many=_filled(many)
+            )
             yield "mean", Sharpened(*found, alone)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         sides = event(element, threshold)
         if sides is None or not kept.any():
             continue
         for sign, hits in zip(SIDES.values(), sides, strict=True):
-            found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
+            found = controlled_share(
+                hits, kept, control=control.for_thresholds, many=many.for_thresholds
+            )
             failed = failed_share_bounds(hits, element.failed, None)
             note = _note_on_few(int(hits[kept].sum()), int(kept.sum()))
             plain = share_of(hits[kept], None)
