@@ -83,3 +83,12 @@ def write_study(folder):
         return path
 
     return write
+
+
+@pytest.fixture
+def no_other_figures(monkeypatch):
+    """Draw no figure but those that the test adds: that would take most of its time."""
+    from uq import plots
+
+    for name in [*plots.FIGURES]:
+        monkeypatch.delitem(plots.FIGURES, name)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from uq.drawing.panel import roomy
 from uq.drawing.style import WIDTH, styled
-from uq.drawing.ticks import roomy
 
 DOCS = Path(__file__).parents[1]
 FOLDER = "papers"

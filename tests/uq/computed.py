@@ -1,6 +1,7 @@
 """Results computed in this process, without files or workers, for tests of what reads results."""
 
 from dataclasses import replace
+from functools import wraps
 
 import numpy as np
 
@@ -30,6 +31,21 @@ def asking(ds, **analysis):
     return ds.assign_attrs(study="\n".join([*lines, as_text({"analysis": analysis})]))
 
 
+def once(make):
+    """Make each result once in a session; every call returns a copy of its own."""
+    results = {}
+
+    @wraps(make)
+    def made(*arguments, **options):
+        key = repr((arguments, sorted(options.items())))
+        if key not in results:
+            results[key] = make(*arguments, **options)
+        return results[key].copy(deep=True)
+
+    return made
+
+
+@once
 def linear(
     method="monte-carlo", samples=64, replicates=1, analysis=None, settings=None, **more_design
 ):
@@ -48,6 +64,7 @@ def linear(
     )
 
 
+@once
 def kinds(method="monte-carlo", samples=64, replicates=1, analysis=None):
     """Return a result of a model with one output of every kind."""
     inside = {"distribution": "uniform", "lower": 0.01, "upper": 0.99}

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from uq import plots
 from uq.drawing.catalogue import file_name
 from uq.drawing.figure import lay_out
-from uq.drawing.ticks import roomy
+from uq.drawing.panel import roomy
 from uq.drawing.words import powers, sentence
 
 

@@ -112,6 +112,7 @@ def test_heads_of_tables_are_printed_on_every_page(browser, report):
     assert shown and set(shown) == {"contents"}  # Chromium repeats no box of a button
 
 
+@pytest.mark.slow
 def test_a_report_of_one_row_is_shown_too(browser, tmp_path):
     path = tmp_path / "one.html"
     path.write_text(page(linear(samples=1), "one.nc"), encoding="utf-8")

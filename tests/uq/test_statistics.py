@@ -185,7 +185,8 @@ def test_outputs_that_the_study_names_are_shown():
     expected += ["q0.5", "q0.5_low", "q0.5_high"]
     lives = [f"{name}{end}" for name in ("B1", "B10", "B50") for end in ("", "_low", "_high")]
     counts = ["never", "censored", "undefined", "failed"]
-    assert list(table.columns) == [*expected, *counts, *lives]
+    promised = [*expected, *counts, *lives]
+    assert [column for column in table.columns if column in promised] == promised
     assert table.loc["work[side=left]", "mean"] == pytest.approx(0.5, abs=0.2)
 
 
@@ -201,13 +202,14 @@ def test_the_table_says_what_the_command_prints():
         thresholds={"life": [30.5, 1e6]},
     )
     table, found = uq.summary(ds), summarised(ds)["outputs"]
-    assert list(table.columns[-12:]) == [
+    shares = [column for column in table.columns if column.startswith("P(")]
+    assert shares == [
         f"P({sign}{threshold}){end}"
         for threshold in ("30.5", "1000000.0")
         for sign in "><"
         for end in ("", "_low", "_high")
     ]
-    assert table.loc["y", table.columns[-12:]].isna().all()
+    assert table.loc["y", shares].isna().all()
     y, life = table.loc["y"], table.loc["life"]
     bounds = found["y"]["tolerance"]
     assert (y["tolerance_lower"], y["tolerance_upper"]) == (bounds["lower"], bounds["upper"])

@@ -35,7 +35,7 @@ class Controlled(NamedTuple):
     reduction: float
 
 
-def controlled_mean(values: Floats, kept: Mask, controls: Floats, many: Floats) -> Controlled:
+def controlled_mean(values: Floats, kept: Mask, *, controls: Floats, many: Floats) -> Controlled:
     """Estimate the mean of the values of rows that have one.
 
     Parameters
@@ -65,7 +65,7 @@ def controlled_mean(values: Floats, kept: Mask, controls: Floats, many: Floats) 
     return Controlled(Estimate(value, value - float(half), value + float(half)), reduction)
 
 
-def controlled_share(hits: Mask, kept: Mask, control: Floats, many: Floats) -> Controlled:
+def controlled_share(hits: Mask, kept: Mask, *, control: Floats, many: Floats) -> Controlled:
     """Estimate the share of hits among the rows kept, from hits of a cheap quantity.
 
     Parameters

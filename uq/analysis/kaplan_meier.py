@@ -19,7 +19,7 @@ class Outliving(NamedTuple):
     among: "Outliving | None" = None
 
 
-def outliving(values: Floats, censored: Mask, time: Floats, known_at_once: bool) -> Outliving:
+def outliving(values: Floats, censored: Mask, time: Floats, *, known_at_once: bool) -> Outliving:
     """Estimate the share that outlives each time.
 
     Parameters

@@ -134,12 +134,12 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
     if len(values) == 0:
         return Curve(*np.full((3, len(time)), np.nan))
     known_at_once = element.declared.never_known_at_once
-    found = outliving(values, censored, time, known_at_once)
+    found = outliving(values, censored, time, known_at_once=known_at_once)
     if replicate is None:
         return Curve(found.share, *_greenwood(found))
     of = replicate[element.present]
     estimates = [
-        outliving(values[of == r], censored[of == r], time, known_at_once).share
+        outliving(values[of == r], censored[of == r], time, known_at_once=known_at_once).share
         for r in np.unique(of)
     ]
     seen = len(values) - np.searchsorted(np.sort(values[censored]), time, side="right")
@@ -153,7 +153,7 @@ def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:
     values, censored = element.at_least, element.censored[element.present]
     if len(values) == 0 or replicate is not None:
         return np.full(len(time), np.nan), np.full(len(time), np.nan)
-    found = outliving(values, censored, time, element.declared.never_known_at_once)
+    found = outliving(values, censored, time, known_at_once=element.declared.never_known_at_once)
     among = found.among or found
     at_risk = found.ending * len(values) - np.searchsorted(np.sort(values), time)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -91,7 +91,7 @@ def shared_rows(first: xr.Dataset, second: xr.Dataset) -> Places:
     return here, there
 
 
-def correlation(first: Floats, second: Floats, shared: Places, is_share: bool) -> float:
+def correlation(first: Floats, second: Floats, shared: Places, *, is_share: bool) -> float:
     """Return the correlation of two estimates from the influence of each pair of rows.
 
     Parameters
@@ -190,7 +190,7 @@ class Pair:
         pulls = [_pull(estimator, sample) for sample in samples]
         if self._shared is not None:
             first, second = (pull.numbers for pull in pulls)
-            return correlation(first, second, self._shared, estimator.is_share)
+            return correlation(first, second, self._shared, is_share=estimator.is_share)
         means = [self._by_replicate(MEAN, i, pull) for i, pull in enumerate(pulls)]
         if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in means):
             return np.nan

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from uq.analysis.control_variate import FEWEST, controlled_mean, controlled_share
 from uq.analysis.failed_rows import failed_share_bounds
-from uq.analysis.statistics.thresholds import event, share_of
+from uq.analysis.statistics.thresholds import SIDES, event, share_of
 from uq.contract import Floats
 from uq.errors import InputError
 from uq.estimate import Estimate
@@ -153,20 +153,22 @@ def _estimates(
     if present.any() and not (element.never | element.censored).any():
         alone = moments(element.values[present]).mean
         if not alone.reason:
-            found = controlled_mean(element.values, present, *map(_filled, (control, many)))
+            found = controlled_mean(
+                element.values, present, controls=_filled(control), many=_filled(many)
+            )
             yield "mean", Sharpened(*found, alone)
     for threshold in study.analysis.thresholds.get(element.output, ()):
         sides = event(element, threshold)
         if sides is None or not kept.any():
             continue
-        for sign, hits in zip("><", sides, strict=True):
-            found = controlled_share(hits, kept, control.for_thresholds, many.for_thresholds)
+        for sign, hits in zip(SIDES.values(), sides, strict=True):
+            found = controlled_share(
+                hits, kept, control=control.for_thresholds, many=many.for_thresholds
+            )
             failed = failed_share_bounds(hits, element.failed, None)
             note = _note_on_few(int(hits[kept].sum()), int(kept.sum()))
-            yield (
-                f"P({sign}{threshold!r})",
-                Sharpened(*found, share_of(hits[kept], None), failed, note),
-            )
+            plain = share_of(hits[kept], None)
+            yield f"P({sign}{threshold!r})", Sharpened(*found, plain, failed, note)
 
 
 def _note_on_few(hits: int, rows: int) -> str:
@@ -212,14 +214,13 @@ def _many(study: Study, start: int) -> list[Element]:
 
 def _twin_of(study: Study, x: Floats, seed: NDArray[np.uint64]) -> list[Element]:
     model, settings, twin = study.model, study.settings, study.analysis.twin
-    outputs: tuple[str, ...]
     if isinstance(twin, str):
-        model, outputs = model.alone(twin), (twin,)
+        model = model.alone(twin)
     else:  # the same outputs, from rows that cost less
         settings = read_settings(model, asdict(settings) | twin)[0]
-        outputs = tuple(dict.fromkeys((*study.analysis.outputs, *study.analysis.thresholds)))
     chunk = evaluate(model, settings, x, seed)
     ds = build_rows(model, settings, {}, chunk.columns, chunk.status, {})
+    outputs = (twin,) if isinstance(twin, str) else shown_outputs(ds, study.analysis)
     return list(elements_of(ds, outputs))
 
 

@@ -8,11 +8,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator
 
 from uq.analysis.convergence import running_estimates
-from uq.drawing.elements_plot import curve_style, display_unit, label
+from uq.drawing.elements_plot import curve_style, display_unit
 from uq.drawing.index_plot import range_of_indices, subject
 from uq.drawing.panel import column, heading, legend
 from uq.drawing.style import COLOURS, LINES, styled
-from uq.drawing.words import in_words, sentence
+from uq.drawing.words import in_words, label, sentence
 from uq.errors import InputError
 from uq.methods.indices import ST
 from uq.rows.elements import independent_rows, named_elements

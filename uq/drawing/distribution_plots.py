@@ -10,20 +10,11 @@ from matplotlib.figure import Figure
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles
 from uq.analysis.lifetime import survival
 from uq.analysis.summary import Summary, summarise
-from uq.drawing.elements_plot import (
-    bins,
-    curve_style,
-    display_unit,
-    entitle,
-    label,
-    occurring_regimes,
-    rows_in_words,
-)
+from uq.drawing.elements_plot import bins, curve_style, display_unit, entitle, occurring_regimes
 from uq.drawing.figure import Drawing
-from uq.drawing.panel import column, figure_of, legend
+from uq.drawing.panel import column, figure_of, is_wide, legend, logarithmic, roomy
 from uq.drawing.style import MARK, WIDTH, styled, thinned
-from uq.drawing.ticks import is_wide, logarithmic, roomy
-from uq.drawing.words import sentence
+from uq.drawing.words import label, rows_in_words, sentence
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.wording import TimeUnit, interval, time_unit

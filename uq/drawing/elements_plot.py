@@ -1,4 +1,4 @@
-"""What figures of the elements of an output share: styles, labels, titles, units and bins."""
+"""What figures of the elements of an output share: styles, titles, units, bins and regimes."""
 
 import textwrap
 from collections.abc import Sequence
@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from uq.drawing.panel import is_wide
 from uq.drawing.style import COLOURS, LINES
-from uq.drawing.ticks import is_wide
-from uq.drawing.words import place_in_words
+from uq.drawing.words import rows_in_words
 from uq.rows.elements import Element, Floats, flags
-from uq.wording import percent, unit_of
+from uq.wording import unit_of
 
 
 def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[str, str]:
@@ -22,22 +22,6 @@ def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[st
     firsts = list(dict.fromkeys(next(iter(one.place.values())) for one in chosen))
     line = firsts.index(next(iter(element.place.values())))
     return COLOURS[i % (len(chosen) // len(firsts)) % len(COLOURS)], LINES[line % len(LINES)]
-
-
-def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
-    """Return the label of a curve: its place, and the share of rows that never end."""
-    share = f"never: {percent(never)}" if never > 0 else ""
-    return ", ".join(filter(None, (place_in_words(ds, element), share)))
-
-
-def rows_in_words(chosen: Sequence[Element]) -> str:
-    """Return how many rows there are, and how many failed or have no value."""
-    counts = [f"{len(chosen[0].values)} rows"]
-    for state in ("failed", "undefined", "censored"):
-        most = max(int(getattr(element, state).sum()) for element in chosen)
-        if most:
-            counts.append(f"{'up to ' if len(chosen) > 1 else ''}{most} {state}")
-    return ", ".join(counts)
 
 
 def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> None:

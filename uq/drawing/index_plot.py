@@ -5,9 +5,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.panel import column, finish, heading
+from uq.drawing.panel import column, finish, heading, roomy
 from uq.drawing.style import COLOURS, styled
-from uq.drawing.ticks import roomy
 from uq.drawing.words import element_in_words, in_words, sentence
 from uq.errors import InputError
 from uq.indices.ranked import size

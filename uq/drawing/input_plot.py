@@ -7,9 +7,8 @@ from matplotlib.figure import Figure
 
 from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values
 from uq.drawing.elements_plot import bins
-from uq.drawing.panel import figure_of, grid
+from uq.drawing.panel import figure_of, grid, logarithmic, roomy
 from uq.drawing.style import COLOURS, styled
-from uq.drawing.ticks import logarithmic, roomy
 from uq.drawing.words import named_input, sentence
 from uq.errors import InputError
 from uq.inputs.conditioning import cdf_within

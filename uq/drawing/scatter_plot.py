@@ -10,11 +10,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from uq import intervals, order_statistics
-from uq.drawing.elements_plot import display_unit, entitle, label, occurring_regimes
-from uq.drawing.panel import grid, legend
+from uq.drawing.elements_plot import display_unit, entitle, occurring_regimes
+from uq.drawing.panel import grid, is_wide, legend, logarithmic, roomy, whole_numbers
 from uq.drawing.style import COLOURS, point_size, styled, thinned
-from uq.drawing.ticks import is_wide, logarithmic, roomy, whole_numbers
-from uq.drawing.words import named_input, sentence
+from uq.drawing.words import label, named_input, sentence
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.methods.indices import RefusedError

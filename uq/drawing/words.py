@@ -2,7 +2,7 @@
 
 import re
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import xarray as xr
@@ -10,6 +10,7 @@ from matplotlib.ticker import EngFormatter
 
 from uq.literals import plain
 from uq.rows.elements import Element
+from uq.wording import percent
 
 
 def sentence(text: str, unit: str = "", width: int = 44) -> str:
@@ -43,6 +44,22 @@ def place_in_words(ds: xr.Dataset, element: Element) -> str:
         else:
             words.append(f"{dim} {value:g}")
     return ", ".join(words)
+
+
+def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
+    """Return the label of a curve: its place, and the share of rows that never end."""
+    share = f"never: {percent(never)}" if never > 0 else ""
+    return ", ".join(filter(None, (place_in_words(ds, element), share)))
+
+
+def rows_in_words(chosen: Sequence[Element]) -> str:
+    """Return how many rows there are, and how many failed or have no value."""
+    counts = [f"{len(chosen[0].values)} rows"]
+    for state in ("failed", "undefined", "censored"):
+        most = max(int(getattr(element, state).sum()) for element in chosen)
+        if most:
+            counts.append(f"{'up to ' if len(chosen) > 1 else ''}{most} {state}")
+    return ", ".join(counts)
 
 
 def element_in_words(ds: xr.Dataset, element: Element) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from uq.contract import Floats, Model
 from uq.errors import InputError
-from uq.inputs.values import parameter_problem, read_settings
+from uq.inputs.values import fault_lines, parameter_problem, read_settings
 from uq.rows.sampling import Rows, row_seeds
 from uq.study.registry import find_model, model_names
 
@@ -106,18 +106,15 @@ def grid_of(
         if not isinstance(given, Mapping):
             raise InputError(f"{what} must be a dictionary with names as keys: {given!r}")
     faults = [] if axes else ["axes: nothing varies; give at least one parameter its values"]
-    for name, axis in axes.items():
-        if problem := _axis_problem(found, name, axis):
-            faults.append(f"axes: {name} = {axis!r}: {problem}")
-    for name, value in fixed.items():
-        if name in axes:
-            faults.append(f"fixed: {name} = {value!r}: is among the axes too; keep one of the two")
-        elif problem := parameter_problem(found, name, value):
-            faults.append(f"fixed: {name} = {value!r}: {problem}")
+    wrong_axes = {name: _axis_problem(found, name, axis) for name, axis in axes.items()}
+    twice = dict.fromkeys(axes, "is among the axes too; keep one of the two")
+    wrong_fixed = {
+        name: twice.get(name) or parameter_problem(found, name, value)
+        for name, value in fixed.items()
+    }
     frozen, wrong = read_settings(found, settings)
-    for name, problem in wrong.items():
-        faults.append(f"settings: {name} = {settings[name]!r}: {problem}" if name else problem)
-    if faults:
+    faults += fault_lines("axes: ", axes, wrong_axes) + fault_lines("fixed: ", fixed, wrong_fixed)
+    if faults := faults + fault_lines("settings: ", settings, wrong):
         raise InputError(*faults)
     return Grid(
         found,

@@ -9,7 +9,7 @@ import xarray as xr
 
 from uq.contract import Model
 from uq.errors import InputError
-from uq.inputs.values import parameter_problem, read_settings
+from uq.inputs.values import fault_lines, parameter_problem, read_settings
 from uq.interrupts import in_background
 from uq.rows import results
 from uq.rows.evaluate import evaluate
@@ -58,11 +58,7 @@ def simulate(
     given, chosen = dict(parameters or {}), dict(settings or {})
     problems = {name: parameter_problem(model, name, value) for name, value in given.items()}
     frozen, wrong = read_settings(model, chosen)
-    faults = [f"{name} = {given[name]!r}: {why}" for name, why in problems.items() if why]
-    faults += [
-        f"setting {name} = {chosen[name]!r}: {why}" if name else why for name, why in wrong.items()
-    ]
-    if faults:
+    if faults := fault_lines("", given, problems) + fault_lines("setting ", chosen, wrong):
         raise InputError(*faults)
 
     values = model.nominal | {name: float(value) for name, value in given.items()}

@@ -96,6 +96,17 @@ def read_settings(model: Model, given: Mapping[str, Any]) -> tuple[Any, dict[str
         return None, {"": " ".join(str(error).split())}
 
 
+def fault_lines(
+    label: str, given: Mapping[str, Any], problems: Mapping[str, str | None]
+) -> list[str]:
+    """Return what is wrong with given values as error lines, each value named after the label."""
+    return [
+        f"{label}{name} = {given[name]!r}: {problem}" if name in given else problem
+        for name, problem in problems.items()
+        if problem
+    ]
+
+
 def _frozen(value: Any) -> Any:
     """Return lists, also within lists, as tuples."""
     return tuple(map(_frozen, value)) if isinstance(value, list | tuple) else value

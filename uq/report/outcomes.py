@@ -86,11 +86,6 @@ class Outcome:
         """Return the length of the unit in which a statistic is shown."""
         return self.unit.seconds if one.unit == "s" else 1.0
 
-    def of(self, part: str, listing: Listing) -> list[Statistic]:
-        """Return the statistics that one entry of `STATISTICS` contributes to a listing."""
-        found = [one for one in self.parts[part] if one.is_read_by(Reader.REPORT)]
-        return [one for one in found if one.kind.listing == listing]
-
 
 def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     """Return the elements that a summary describes, in its order."""
@@ -105,27 +100,26 @@ def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
 
 def result_tables(found: list[Outcome], of_lives: bool = False) -> Iterator[Table]:
     """Yield the tables of statistics that are not empty: of lifetimes, or of all other outputs."""
-    listings = dict.fromkeys(
-        one.kind.listing
+    shown = [
+        (outcome, one)
         for part in STATISTICS
         for outcome in found
         for one in outcome.parts[part]
         if one.is_read_by(Reader.REPORT)
-    )
-    for listing in listings:
+    ]
+    for listing in dict.fromkeys(one.kind.listing for _, one in shown):
         if listing.of_lives == of_lives:
-            yield _table(listing, found)
+            own = [(outcome, one) for outcome, one in shown if one.kind.listing == listing]
+            yield _table(listing, found, own)
 
 
-def _table(listing: Listing, found: list[Outcome]) -> Table:
+def _table(listing: Listing, found: list[Outcome], shown: list[tuple[Outcome, Statistic]]) -> Table:
     """Lay out statistics in columns, in the order of `STATISTICS`."""
-    columns = dict.fromkeys(
-        _heading(one)
-        for part in STATISTICS
-        for outcome in found
-        for one in outcome.of(part, listing)
-    )
-    rows = [row for outcome in found for row in _rows(listing, outcome, tuple(columns))]
+    columns = tuple(dict.fromkeys(_heading(one) for _, one in shown))
+    rows: list[tuple[Cell, ...]] = []
+    for outcome in found:
+        own = [one for of, one in shown if of is outcome]
+        rows += _rows(listing, outcome, own, columns)
     header = (listing.first, listing.by or "unit", *columns)
     table = Table(listing.caption, header + ("note",) * bool(listing.by), rows)
     return table if listing.keeps_empty else without_empty_columns(table)
@@ -136,10 +130,9 @@ def _heading(one: Statistic) -> str:
 
 
 def _rows(
-    listing: Listing, outcome: Outcome, columns: tuple[str, ...]
+    listing: Listing, outcome: Outcome, own: list[Statistic], columns: tuple[str, ...]
 ) -> Iterator[tuple[Cell, ...]]:
     """Yield the row of an output, or one for each threshold of its statistics."""
-    own = [one for part in STATISTICS for one in outcome.of(part, listing)]
     for at in dict.fromkeys(one.at for one in own):
         here = {_heading(one): one for one in own if one.at == at}
         cells = [_cell(outcome, here.get(column), listing) for column in columns]

@@ -18,7 +18,7 @@ from uq.store.files import check_target as check_target
 from uq.store.files import write as write
 from uq.store.files import write_result as write_result
 from uq.store.folder import folder_of as folder_of
-from uq.store.memory import MemoryStore as MemoryStore
 from uq.store.opening import drop_leftovers as drop_leftovers
 from uq.store.opening import keep as keep
+from uq.store.tally import MemoryStore as MemoryStore
 from uq.store.tally import row_bytes as row_bytes

@@ -1,6 +1,6 @@
 """From chunk files to one result, one file at a time: memory does not grow with the rows."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.literals import toml
+from uq.contract import Mask
+from uq.literals import read_toml, toml
 from uq.rows import results
 from uq.rows.sampling import rows
 from uq.store.chunk_file import Block, unpack
@@ -121,3 +122,14 @@ def _rerun(variants: Sequence[Mapping[str, Any]], code: int, count: int) -> xr.V
     }
     attrs |= {f"changed_{i}": toml(variants[i]) for i in range(1, len(variants))}
     return xr.Variable("sample", np.full(count, code, np.int16), attrs)
+
+
+def by_settings(ds: xr.Dataset) -> Iterator[tuple[dict[str, Any], Mask]]:
+    """Yield the settings of rows that differ from the study's, and which rows have them."""
+    if "rerun" not in ds:
+        yield {}, np.ones(ds.sizes["sample"], np.bool_)
+        return
+    codes = ds["rerun"].values
+    for code in np.unique(codes):
+        text = ds["rerun"].attrs.get(f"changed_{code}", "{}")
+        yield read_toml(f"settings = {text}")["settings"], codes == code

@@ -7,20 +7,29 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from uq.contract import Status
 from uq.errors import InputError
 from uq.interrupts import undone
 from uq.rows import results
-from uq.rows.sampling import rows
-from uq.store.adopt import adopt
+from uq.rows.columns import columns_of
+from uq.rows.evaluate import Chunk
+from uq.rows.sampling import Rows, row_block, rows
+from uq.store.chunk_file import blocks_of
 from uq.store.disk import DiskStore
 from uq.store.files import check_target
 from uq.store.folder import clear, folder_of, history, locked
+from uq.store.merge import by_settings
 from uq.store.records import History, RunRecord, without_overlap
-from uq.store.tally import row_bytes
+from uq.store.tally import Failures, row_bytes
 from uq.study.changes import refusal_to_extend, what_changed
 from uq.study.definition import Study
 from uq.study.registry import is_other_code, made_here
 
+_ROWS = 100_000  # of a result, at a time
 _REMEDY = "choose another output, or start over with --fresh"
 
 
@@ -77,7 +86,7 @@ def keep(
             if found is not None:
                 _find(store, found, say)
             elif path.is_file() and not fresh:
-                adopt(store, study, path, all_rows=again is None)
+                _adopt(store, study, path, all_rows=again is None)
             store.note(_run_record(study, store, again is not None))
             store.settings = dict(again or {})
             if store.found:
@@ -161,3 +170,53 @@ def _other_versions(study: Study, store: DiskStore) -> Iterator[str]:
         if differing:
             pairs = ", ".join(f"{name} {made.get(name)} (here {here[name]})" for name in differing)
             yield f"some rows were computed with {pairs}"
+
+
+def _adopt(store: DiskStore, study: Study, path: Path, all_rows: bool) -> None:
+    """Copy the rows of a result into a store.
+
+    Parameters
+    ----------
+    store : DiskStore
+    study : Study
+        The result's own, perhaps with more samples.
+    path : Path
+    all_rows : bool
+        Whether to include failed rows.
+    """
+    ds = results.open_result(path)
+    here = made_here(study.model_reference)
+    made = {name: str(ds.attrs[name]) for name in here if name in ds.attrs}
+    for first in range(0, ds.sizes["sample"], _ROWS):
+        some = ds.isel(sample=slice(first, first + _ROWS)).load()
+        wanted = np.ones(some.sizes["sample"], np.bool_) if all_rows else ~results.failed(some)
+        for settings, variant in by_settings(some):
+            numbers = first + np.flatnonzero(wanted & variant)
+            if numbers.size:
+                part = some.isel(sample=numbers - first)
+                rows, chunk = _inputs(study, part, first), _outputs(study, part, numbers)
+                store.adopt(blocks_of(numbers), rows, chunk, (made, settings))
+
+
+def _inputs(study: Study, part: xr.Dataset, first: int) -> Rows:
+    numbers = part["sample"].values
+    drawn = row_block(study, first, int(numbers[-1]) + 1)
+    kept = Rows(*(field[numbers - first] for field in drawn))
+    for i, name in enumerate(study.model.parameter_names):
+        kept.x[:, i] = part[name].values
+    return kept
+
+
+def _outputs(study: Study, part: xr.Dataset, numbers: NDArray[np.int64]) -> Chunk:
+    columns = {
+        name: part[name].values.astype(column.dtype)
+        for name, column in columns_of(study.model, study.settings).items()
+    }
+    status = part["status"].values
+    failures: Failures = {}
+    for code in np.unique(status[status != Status.OK]):
+        kind, row = Status(code), int(numbers[np.argmax(status == code)])
+        example = str(part["status"].attrs.get(f"example_{kind.name.lower()}", ""))
+        known = example.startswith(f"row {row}: ")
+        failures[kind.label] = row, example.partition(": ")[2] if known else kind.meaning
+    return Chunk(columns, status, failures)

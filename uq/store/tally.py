@@ -1,4 +1,4 @@
-"""Counts of the rows of a run, wherever they are kept."""
+"""The rows of a run: counted wherever they are kept, or kept in memory as they arrive."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -6,13 +6,16 @@ from math import prod
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from uq.contract import Status
 from uq.rows.columns import columns_of, failed_rows
+from uq.rows.evaluate import Chunk
 from uq.rows.preview import Preview
+from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
-from uq.store.chunk_file import row_type
+from uq.store.chunk_file import pack, row_type, unpack
 from uq.study.definition import Study
 
 Failures = dict[str, tuple[int, str]]
@@ -82,6 +85,50 @@ class Tally:
             if not output.may_be_undefined
         )
         return len(status), int(np.count_nonzero(failed_rows(status, required))), by_status(status)
+
+
+class MemoryStore(Tally):
+    """The rows of one run, as they arrive.
+
+    Parameters
+    ----------
+    workload : Workload
+
+    Attributes
+    ----------
+    missing : list of (int, int)
+        Blocks of rows that are missing at the start: all.
+    """
+
+    def __init__(self, workload: Workload) -> None:
+        super().__init__(workload)
+        self.missing = [(0, self.total)]
+        self._data = np.empty(self.total, self.row_type)
+
+    def add(self, start: int, rows: Rows, chunk: Chunk) -> None:
+        """Keep the rows from `start` on.
+
+        Parameters
+        ----------
+        start : int
+        rows : Rows
+        chunk : Chunk
+        """
+        data = pack(self.row_type, rows, chunk.columns, chunk.status)
+        self._data[start : start + len(data)] = data
+        self.count(*self.counts(chunk.columns, chunk.status), chunk.failures)
+
+    def keep_up(self) -> None:
+        """Do nothing: these rows are written nowhere."""
+
+    def chunk(self) -> Chunk:
+        """Return outputs and status of the rows of a complete run."""
+        return Chunk(*unpack(self._data)[1:], self.failures)
+
+    def dataset(self) -> xr.Dataset:
+        """Return the result of a complete run."""
+        assert self.workload.finish is not None
+        return self.workload.finish(*unpack(self._data), self.examples)
 
 
 def by_status(status: NDArray[np.int8]) -> dict[str, int]:

@@ -12,7 +12,7 @@ import xarray as xr
 
 from uq import store
 from uq.errors import InputError
-from uq.inputs.values import read_settings
+from uq.inputs.values import fault_lines, read_settings
 from uq.rows import results
 from uq.rows.workload import workload_of
 from uq.running import runner
@@ -159,12 +159,7 @@ def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
     """
     changed, wrong = read_settings(study.model, asdict(study.settings) | dict(settings))
     if wrong:
-        raise InputError(
-            *(
-                f"setting {name} = {settings[name]!r}: {problem}" if name in settings else problem
-                for name, problem in wrong.items()
-            )
-        )
+        raise InputError(*fault_lines("setting ", settings, wrong))
     axes, others = (
         {dim: list(values) for dim, values in study.model.coordinates(each).items()}
         for each in (changed, study.settings)

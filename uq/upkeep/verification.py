@@ -12,7 +12,7 @@ from uq.rows import results
 from uq.rows.columns import censored_name
 from uq.rows.evaluate import evaluate
 from uq.rows.sampling import row_block
-from uq.store.adopt import variants
+from uq.store.merge import by_settings
 from uq.store.seal import is_intact
 from uq.study.definition import Study
 from uq.study.registry import made_here
@@ -77,7 +77,7 @@ def recompute(path: Path, model: str | None = None) -> tuple[list[int], list[str
     count = min(ROWS, len(candidates))
     chosen = np.sort(np.random.default_rng().choice(candidates, count, replace=False))
     settings: dict[int, object] = {}
-    for changes, rows in variants(ds):
+    for changes, rows in by_settings(ds):
         settings |= dict.fromkeys(chosen[rows[chosen]].tolist(), changed_settings(study, changes))
     differences = [
         f"row {row}: {', '.join(names)}"
