@@ -9,7 +9,7 @@ from uq import json_form
 from uq.analysis.life_quantiles import whenever_censored_rows_end
 from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
-from uq.order_statistics import rows_needed, tolerance_bounds
+from uq.order_statistics import rows_for_bound, tolerance_bounds
 from uq.rows.elements import Element
 
 
@@ -49,7 +49,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
             heading=name,
             sentence=sentence,
         )
-    needed = rows_needed(*asked, failed)
+    needed = rows_for_bound(*asked, failed)
     yield Statistic(
         ("tolerance", "rows_needed"),
         "rows needed",
