@@ -22,7 +22,7 @@ MIN_ROWS = 64
 DUMMIES = 19
 """One input in twenty without effect exceeds the largest of 19."""
 
-TIED = 0.05
+TIED_INPUT = 0.05
 """An input has many equal values if one of them has a larger share of the rows than this."""
 
 Measure = Callable[[Floats, Sample], tuple[dict[IndexKind, Floats], tuple[str, ...]]]
@@ -114,7 +114,7 @@ def largest_of(inputs: int, idle: Floats) -> float:
 
 def _is_tied(column: Floats) -> bool:
     counts = np.unique(column, return_counts=True)[1]
-    return bool(counts.max() > max(TIED * len(column), 1))
+    return bool(counts.max() > max(TIED_INPUT * len(column), 1))
 
 
 def _no_order(tied: list[str], inputs: int, instead: str) -> str:

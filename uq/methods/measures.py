@@ -15,7 +15,7 @@ MIN_SIDE = 10
 _HARMONICS = 10
 _GRID = 100
 _PAWN_SLICES = 10
-_TIED = 0.01
+_TIED_OUTPUT = 0.01
 
 
 def rbd_fast(x: Floats, y: Floats) -> Floats:
@@ -57,7 +57,7 @@ def delta(x: Floats, y: Floats, instead: str) -> Floats:
     """
     n = len(y)
     _, counts = np.unique(y, return_counts=True)
-    if counts.max() > max(_TIED * n, 1):
+    if counts.max() > max(_TIED_OUTPUT * n, 1):
         raise RefusedError(
             f"{counts.max()} rows share one value, and delta compares densities; use {instead}"
         )
