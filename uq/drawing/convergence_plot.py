@@ -12,7 +12,7 @@ from uq.drawing.elements_plot import curve_style, display_unit
 from uq.drawing.index_plot import range_of_indices, subject
 from uq.drawing.panel import column, finish, heading
 from uq.drawing.style import COLOURS, LINES, styled
-from uq.drawing.words import in_words, label, sentence
+from uq.drawing.words import as_label, in_words, label
 from uq.errors import InputError
 from uq.methods.indices import ST
 from uq.rows.elements import independent_rows, named_elements
@@ -56,7 +56,7 @@ def convergence(
         colour, line = curve_style(i, element, chosen)
         _curve(panel, own[own["output"] == element.name], per, colour, line, label(ds, element))
     what = "mean" if kind == "mean" else "median"
-    panel.set_ylabel(sentence(f"{what}: {chosen[0].meaning}", unit, width=30))
+    panel.set_ylabel(as_label(f"{what}: {chosen[0].meaning}", unit, width=30))
     _over_samples(panel, ds)
     return finish(panel, entries=len(chosen))
 
@@ -105,7 +105,7 @@ def index_convergence(
     leading = last["input"].tolist()[: len(COLOURS)]
     (panel,) = column(axes, 2.1)
     for i, name in enumerate(leading):
-        words = sentence(in_words(ds[name]), width=60)
+        words = as_label(in_words(ds[name]), width=60)
         colour, line = COLOURS[i], LINES[i % len(LINES)]
         _curve(panel, own[own["input"] == name], 1.0, colour, line, words)
     panel.set_ylabel("Total index (ST) [1]")

@@ -14,7 +14,7 @@ from uq.drawing.elements_plot import bins, curve_style, display_unit, entitle, o
 from uq.drawing.figure import Drawing
 from uq.drawing.panel import column, figure_of, finish, is_wide, logarithmic, roomy
 from uq.drawing.style import MARK, WIDTH, styled, thinned
-from uq.drawing.words import label, rows_in_words, sentence
+from uq.drawing.words import as_label, label, rows_in_words
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.wording import TimeUnit, interval, time_unit
@@ -53,7 +53,7 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
         counts = np.histogram(own / per, edges)[0] / max(len(own), 1)
         panel.stairs(counts, edges, color=colour, label=label(ds, element), **style)
     panel.set(ylim=(0, None), ylabel="Share of rows per bin")
-    panel.set_xlabel(sentence(chosen[0].meaning, unit))
+    panel.set_xlabel(as_label(chosen[0].meaning, unit))
     logarithmic(panel) if wide else roomy(panel)
     entitle(panel, chosen)
     return finish(panel, entries=len(chosen))
@@ -96,7 +96,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
             base = top
         panel.set(ylim=(0, None), ylabel="Share of rows\nper bin")
         entitle(panel, [element], of=label(ds, element))
-    panels[-1].set_xlabel(sentence(chosen[0].meaning, unit))
+    panels[-1].set_xlabel(as_label(chosen[0].meaning, unit))
     logarithmic(panels[-1]) if wide else roomy(panels[-1])
     return finish(panels[0])
 
@@ -142,7 +142,7 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
                 bands[meaning] = True
         _mark(panel, element, replicates_of(rows), unit, colour)
     panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
-    panel.set_xlabel(sentence(chosen[0].meaning, unit.name))
+    panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
     other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
     other.set_ylabel("Survival probability")
     if is_wide(ends):
@@ -195,7 +195,7 @@ def quantile_table(
         axes = Drawing(figsize=(WIDTH, height)).add_axes((0.02, 0.0, 0.96, 1.0))
     axes.set_axis_off()
     axes.set(xlim=(0, 1), ylim=(height / _LINE, 0))
-    axes.text(0, 0.3, sentence(chosen[0].meaning, unit, 60), va="top")
+    axes.text(0, 0.3, as_label(chosen[0].meaning, unit, 60), va="top")
     axes.text(0, 1.5, f"{rows_in_words(chosen)}; 95 % intervals", va="top", color="0.35", size=7)
     places = [(k + 1) / len(found[0]) for k in range(len(found[0]))]
     for place, one in zip(places, found[0], strict=True):

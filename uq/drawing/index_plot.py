@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from uq.drawing.panel import column, finish, heading, roomy
 from uq.drawing.style import COLOURS, styled
-from uq.drawing.words import element_in_words, in_words, sentence
+from uq.drawing.words import as_label, element_in_words, in_words
 from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
@@ -54,7 +54,7 @@ def index_bars(
     kinds, name = found.kinds(), found.target.name
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
-    labels = [sentence(in_words(ds[parameter]), width=30) for parameter in parameters]
+    labels = [as_label(in_words(ds[parameter]), width=30) for parameter in parameters]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
     (panel,) = column(axes, 0.8 + 0.13 * lines.sum())
     middle = np.cumsum(lines) - lines / 2
@@ -110,7 +110,7 @@ def subject(ds: xr.Dataset, name: str) -> str:
     category, _, label = inside.partition("=")
     if is_category(ds, category):
         meaning = ds[category].attrs["long_name"].removeprefix("the ")
-        return sentence(f"whether the {meaning} is {label}", width=56)
+        return as_label(f"whether the {meaning} is {label}", width=56)
     (element,) = named_elements(ds, inside)
     words = element_in_words(ds, element)
     if threshold:
@@ -119,4 +119,4 @@ def subject(ds: xr.Dataset, name: str) -> str:
         words = f"whether the {words.removeprefix('the ')}{',' * bool(element.place)} is below {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
-    return sentence(words, width=56)
+    return as_label(words, width=56)

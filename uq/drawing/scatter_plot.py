@@ -13,7 +13,7 @@ from uq import intervals, order_statistics
 from uq.drawing.elements_plot import display_unit, entitle, occurring_regimes
 from uq.drawing.panel import finish, grid, is_wide, logarithmic, roomy, whole_numbers
 from uq.drawing.style import COLOURS, point_size, styled, thinned
-from uq.drawing.words import label, named_input, sentence
+from uq.drawing.words import as_label, label, named_input
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.methods.indices import RefusedError
@@ -59,7 +59,7 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
         _conditional(panel, inputs[name], element, per, wide, independent)
         _name_input(panel, rows, name)
         whole_numbers(panel.yaxis)
-        panel.set_ylabel(sentence(element.meaning, unit, width=24))
+        panel.set_ylabel(as_label(element.meaning, unit, width=24))
         if wide:
             logarithmic(panel, vertical=True)
     entitle(panels[0], [element], of=label(ds, element))

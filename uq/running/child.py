@@ -52,12 +52,12 @@ class ModelSpec(NamedTuple):
         if model.version != self.version:
             raise InputError(
                 f"the process that computes rows has version {model.version} of model "
-                f"'{model.name}', this one has {self.version}: install the same on both"
+                f"'{model.name}', this process has {self.version}: install the same on both"
             )
         if self.code not in ("", code_of(self.model)):
             raise InputError(
                 f"the process that computes rows has other code of model '{model.name}' than this "
-                "one: start again if it was edited meanwhile, or install the same on both"
+                "process: start again if it was edited meanwhile, or install the same on both"
             )
         wanted = model.alone(self.output) if self.output else model
         return wanted, model.settings(**dict(self.settings))

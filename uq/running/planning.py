@@ -97,15 +97,16 @@ def pilot(
         ]
         load_seconds = _load_seconds()
         row_seconds, first_seconds = _warm_up(workload, evaluators)
-        chunk_rows = ChunkSizes(workload).good(row_seconds)
-        done, chunks = _spread_chunks(workload, evaluators, chunk_rows)
+        size = ChunkSizes(workload).good(row_seconds)
+        done, chunks = _spread_chunks(workload, evaluators, size)
     some, found, seconds = zip(*done, strict=True)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
     row_seconds, error = _row_cost(seconds, [len(part.x) for part in some], chunks)
 
-    kept_bytes = row_bytes(study) * total
+    kept = row_bytes(study) * total
     constants = len(study.model.parameter_names) - len(study.uncertain)
-    result_bytes = _FILE_BYTES + kept_bytes - 8 * constants * total  # a constant is one number
+    # A constant is one number in the result.
+    result_bytes = _FILE_BYTES + kept - 8 * constants * total
     alone = row_seconds * total
     if in_one_process(workers, alone):
         count = 1
@@ -114,8 +115,8 @@ def pilot(
         beside += _WORKERS_LOADS * load_seconds + first_seconds
     shares = 1.0, max(0.0, 1 - error), 1 + error
     likely, low, high = (alone / count * share + beside for share in shares)
-    sizes = result_bytes, kept_bytes + result_bytes
-    cost = Cost(total, count, len(rows.x), row_seconds, likely, low, high, *sizes)
+    times = row_seconds, likely, low, high
+    cost = Cost(total, count, len(rows.x), *times, result_bytes, kept + result_bytes)
     chunk = joined(found)
     failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
     return cost, results.build(study, rows, chunk.columns, chunk.status, failures)
