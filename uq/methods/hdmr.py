@@ -16,7 +16,7 @@ EXPLAINED = 0.8
 _DEGREES = (2, 4, 6, 8)  # and the highest that an input of few values allows
 _ENOUGH = 0.99
 _LEAST_VALUES = 10
-_MIN_ROWS = 600  # half of them are held out; SALib accepts no fewer than the other 300
+_MIN_ROWS = 600  # SALib accepts no fewer than the 300 that are not held out
 _MOST_ROWS = 2048
 _TERMS_PER_ROW = 0.8
 _MOST_TERMS = 500
@@ -57,7 +57,9 @@ def hdmr_indices(sample: Sample) -> Indices:
             " it; use pawn"
         )
     if len(y) < _MIN_ROWS:
-        raise RefusedError(f"only {len(y)} rows have a value; {_MIN_ROWS} are needed")
+        raise RefusedError(
+            f"only {len(y)} rows have a value; {_MIN_ROWS} are needed, half of them held out"
+        )
     n = min(len(y), _MOST_ROWS)
     names = [*x, ""]
     rng = np.random.default_rng(0)
