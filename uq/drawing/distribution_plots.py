@@ -12,7 +12,7 @@ from uq.analysis.lifetime import survival
 from uq.analysis.summary import Summary, summarise
 from uq.drawing.elements_plot import bins, curve_style, display_unit, entitle, occurring_regimes
 from uq.drawing.figure import Drawing
-from uq.drawing.panel import column, figure_of, is_wide, legend, logarithmic, roomy
+from uq.drawing.panel import column, figure_of, finish, is_wide, logarithmic, roomy
 from uq.drawing.style import MARK, WIDTH, styled, thinned
 from uq.drawing.words import as_label, label, rows_in_words
 from uq.intervals import Replicates
@@ -43,7 +43,7 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
     """
     chosen = named_elements(independent_rows(ds), output)
     values = [element.at_least for element in chosen]
-    (panel,) = column(axes, 2.1, entries=len(chosen))
+    (panel,) = column(axes, 2.1)
     together = np.concatenate(values)
     unit, per = display_unit(chosen[0].units, together)
     edges, wide = bins(together / per)
@@ -56,7 +56,7 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
     panel.set_xlabel(as_label(chosen[0].meaning, unit))
     logarithmic(panel) if wide else roomy(panel)
     entitle(panel, chosen)
-    return legend(panel)
+    return finish(panel, entries=len(chosen))
 
 
 @styled
@@ -86,7 +86,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
     unit, per = display_unit(chosen[0].units, together)
     edges, wide = bins(together / per)
-    panels = column(axes, 0.7 + 1.1 * len(chosen), len(chosen), entries=len(regimes))
+    panels = column(axes, 0.7 + 1.1 * len(chosen), len(chosen))
     for panel, element, mask in zip(panels, chosen, ended, strict=True):
         base = np.zeros(len(edges) - 1)
         for name, (code, colour) in regimes.items():
@@ -98,7 +98,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
         entitle(panel, [element], of=label(ds, element))
     panels[-1].set_xlabel(as_label(chosen[0].meaning, unit))
     logarithmic(panels[-1]) if wide else roomy(panels[-1])
-    return legend(panels[0])
+    return finish(panels[0])
 
 
 @styled
@@ -126,7 +126,7 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     chosen = named_elements(rows, output)
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = time_unit(float(np.median(ends)) if len(ends) else 0.0)
-    (panel,) = column(axes, 2.3, entries=len(chosen))
+    (panel,) = column(axes, 2.3)
     bands: dict[str, bool] = {}  # in the order in which they are drawn
     for i, element in enumerate(chosen):
         curve = survival(ds, element.name)
@@ -148,7 +148,7 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     if is_wide(ends):
         logarithmic(panel)
     entitle(panel, chosen, *bands)
-    return legend(panel)
+    return finish(panel, entries=len(chosen))
 
 
 def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, colour: str) -> None:

@@ -16,8 +16,6 @@ from uq.rows.elements import named_elements
 from uq.rows.variables import is_category
 from uq.wording import time_unit
 
-_LIMITS = ("95 % limit for an input without effect", "95 % limit for the largest of them")
-
 
 @styled
 def index_bars(
@@ -68,7 +66,9 @@ def index_bars(
         panel.errorbar(value, y, xerr=np.abs(ends - value), fmt="none", ecolor="black", lw=0.8)
     for kind, null in found.indices.nulls.items():
         colour = COLOURS[list(kinds).index(kind)] if len(kinds) > 1 else "black"
-        for line, limit, label in zip(("--", ":"), (null.one, null.largest), _LIMITS, strict=True):
+        one = f"{100 * (1 - null.exceeded):g} % limit for an input without effect"
+        limits = {one: null.one, "95 % limit for the largest of them": null.largest}
+        for line, (label, limit) in zip(("--", ":"), limits.items(), strict=True):
             if np.isfinite(limit):
                 named = "_" * (label in panel.get_legend_handles_labels()[1])  # each once
                 panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named + label)

@@ -90,7 +90,8 @@ def hdmr_indices(sample: Sample) -> Indices:
         f"polynomials of degree {degree} in one and in two inputs explain {explained:.1%} of the"
         " variance of rows held out; half of the inputs without effect exceed the null"
     )
-    return Indices(values, (note,), {kind: Null(float(own[-1])) for kind, own in kinds.items()})
+    nulls = {kind: Null(float(own[-1]), exceeded=0.5) for kind, own in kinds.items()}
+    return Indices(values, (note,), nulls)
 
 
 def _best(x: Floats, y: Floats, degrees: tuple[int, ...]) -> tuple[int, float]:

@@ -36,8 +36,7 @@ class Subject(NamedTuple):
     pictures : tuple of Picture
     notes : list of str
     leading : str
-        A sentence on the input with the largest index; "" if no index exceeds that of an input
-        without effect.
+        A sentence on the input with the largest index; "" if no index exceeds the null.
     """
 
     name: str

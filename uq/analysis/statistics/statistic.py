@@ -159,7 +159,7 @@ class Statistic:
     Attributes
     ----------
     key : tuple of str
-        Path of its entry in JSON.
+        Path of its entry in JSON, or where that would be; no two of an output are equal.
     label : str
         Its name on a terminal, and wherever no other is given; "" is not shown there.
     estimate : Estimate
