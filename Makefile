@@ -64,6 +64,8 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.mole
 	@$(BIN)/python -m benchmarks.store
 	@$(BIN)/python -m benchmarks.large
+	@$(BIN)/python -m benchmarks.scaling
+	@$(BIN)/python -m benchmarks.cluster
 
 # Coverage of every reported interval: writes docs/coverage.md, in about an hour and a half.
 coverage: $(TEST)
