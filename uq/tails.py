@@ -190,8 +190,10 @@ def generalised_pareto(excess: Floats) -> tuple[float, float]:
 def _distance(excess: Floats, shape: float, scale: float) -> float:
     """Return the Anderson-Darling statistic of ascending values and this law."""
     x = excess / scale
-    left = np.log(-special.inv_boxcox1p(-x, -shape))
     right = -special.log1p(shape * x) / shape
+    below, above = -special.inv_boxcox1p(-x, -shape), special.inv_boxcox(-x, -shape)
+    with np.errstate(divide="ignore"):  # in the half that is not taken
+        left = np.where(below < 0.5, np.log(below), np.log1p(-above))
     n = len(excess)
     return float(-n - (2 * np.arange(1, n + 1) - 1) @ (left + right[::-1]) / n)
 
