@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.vibrator.equations.time_scales import slowest_period
-from models.vibrator.lanes.fixed_steps import STABLE, advance
+from models.vibrator.lanes.fixed_steps import advance
 from models.vibrator.lanes.machines import Machines, prepared, start
 from models.vibrator.lanes.notes import ANGLE_HIGH, ANGLE_LOW, EXCURSION, LAST_ENTRY
 from models.vibrator.lanes.packed import Array
+from models.vibrator.lanes.steps import STABLE
 from models.vibrator.parameters import Rows, Settings
 from models.vibrator.start.last_second import LAST, NEAR, STEPS, Live, learn, run_last_second
 from models.vibrator.start.regimes import (

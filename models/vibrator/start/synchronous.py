@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from models.numerics import elementary
 from models.vibrator.equations.rigid import Rigid
 from models.vibrator.exact.measures import kloss
-from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.following import follow
 from models.vibrator.lanes.machines import Machines
-from models.vibrator.lanes.orbit import Orbits, find_orbits, follow
+from models.vibrator.lanes.orbit import Orbits, find_orbits
 from models.vibrator.lanes.packed import STATE, Array
+from models.vibrator.lanes.steps import STABLE
 from models.vibrator.parameters import Rows
 from models.vibrator.start.regimes import CAPTURED_BELOW, Outcome, wrapped
 from models.vibrator.theory import averaged
@@ -97,7 +98,7 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
     none = Orbits(np.zeros(n, bool), state, period, np.full(n, np.nan))
     unknown = np.full((2, n), np.nan)
     known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), *unknown)
-    needed = np.maximum(period * machines.fastest / fixed_steps.STABLE, max(steps, STEPS))
+    needed = np.maximum(period * machines.fastest / STABLE, max(steps, STEPS))
     rung = np.array([*LADDER, 0])[np.searchsorted(LADDER, needed)]
     rung = np.where((rung > 0) & (steps > 0) & (needed <= steps), steps, rung)
     for count in np.unique(rung[wanted & (rung > 0)]).tolist():
