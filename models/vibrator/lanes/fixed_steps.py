@@ -1,4 +1,4 @@
-"""The fast propagator: n rigid machines advanced by steps of fixed length, and what they do noted."""
+"""The fast propagator: n rigid machines advanced by steps of fixed length, with notes of them."""
 
 import numpy as np
 
