@@ -47,10 +47,10 @@ def mole():
 
 def vibrator_orbit():
     p = Vibrator._make(field[:1] for field in test_orbit.MACHINES)
-    found, state, period, multiplier = test_orbit.find(p, 8)
+    found, state, period, *others = test_orbit.find(p, 8)
     assert found.all()
     trace = follow(pack(systems(p).rigid), state, period, 8)
-    return np.concatenate([state[0], period, multiplier, trace[0, 3]])
+    return np.concatenate([state[0], period, *others, trace[0, 3]])
 
 
 def vibrator(p, kinematics, **feed):
