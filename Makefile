@@ -56,6 +56,7 @@ notebooks: $(TEST)
 	@$(BIN)/python notebooks/execute.py
 
 bench: $(TEST)
+	@$(BIN)/python -m benchmarks.startup
 	@$(BIN)/python -m benchmarks.beam
 	@$(BIN)/python -m benchmarks.beam_study
 	@$(BIN)/python -m benchmarks.beam_lives
