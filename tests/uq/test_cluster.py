@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import process_models
@@ -21,6 +22,7 @@ from uq.errors import InputError
 from uq.running import dispatch, local_cluster, remote_cluster
 from uq.running.child import ModelSpec
 from uq.running.dask_task import evaluate_rows
+from uq.running.workers import Workers
 from uq.study.definition import load_study
 
 
@@ -110,6 +112,16 @@ def test_a_worker_that_died_is_replaced(tidy):
             time.sleep(0.05)
 
 
+def test_workers_are_not_counted_for_every_chunk():
+    counted = []
+    client = SimpleNamespace(status="running", nthreads=lambda: counted.append(1) or {"a": 2})
+    crew = Workers(client, lambda *_: None)
+    assert [crew.threads for _ in range(100)] == [2] * 100
+    assert len(counted) < 100
+    client.status = "closed"
+    assert crew.threads == 0
+
+
 @pytest.mark.slow
 def test_an_existing_cluster_is_used(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=100), "process_models:PROCESS")
@@ -156,9 +168,9 @@ def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monk
 
 def test_a_worker_that_differs_is_refused_with_its_first_rows():
     x, seed = np.full((2, 3), 0.5), np.zeros(2, np.uint64)
-    with pytest.raises(InputError, match="a worker has version 1 of model 'ishigami'.* has 2"):
+    with pytest.raises(InputError, match="computes rows has version 1 of model 'ishigami'.* has 2"):
         evaluate_rows(ModelSpec("ishigami", "2", ()), provenance.versions(), None, x, seed, 0)
-    with pytest.raises(InputError, match="a worker has other code of model 'ishigami' than this"):
+    with pytest.raises(InputError, match="computes rows has other code of model 'ishigami' than"):
         evaluate_rows(
             ModelSpec("ishigami", "1", (), code="x"), provenance.versions(), None, x, seed, 0
         )

@@ -15,6 +15,7 @@ from uq.analysis.statistics.statistic import Context, Kind, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.statistics.thresholds import share_of
 from uq.designs.registry import DESIGNS
+from uq.intervals import replicates_of_some
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
@@ -152,8 +153,10 @@ def summarise(
         ds = within_regime(ds, regime)
     rows = independent_rows(ds)
     context = Context(rows, analysis, replicates_of(rows))
-    elements = list(elements_of(rows, shown_outputs(ds, analysis)))
-    most = max((int(element.failed.sum()) for element in elements), default=0)
+    outputs, most = dict[str, Described](), 0
+    for element in elements_of(rows, shown_outputs(ds, analysis)):  # one at a time in memory
+        outputs[element.name] = _described(element, context, fits)
+        most = max(most, int(element.failed.sum()))
     if most:
         notes.append(SOME_FAILED.format(most=most, rows=rows.sizes["sample"]))
     return Summary(
@@ -161,7 +164,7 @@ def summarise(
         rows_used=rows.sizes["sample"],
         status=status_counts(ds),
         regimes=regime_shares(rows) if "regime" in output_names(ds) else {},
-        outputs={element.name: _described(element, context, fits) for element in elements},
+        outputs=outputs,
         most_failed=most,
         notes=notes,
     )
@@ -187,7 +190,7 @@ def regime_shares(rows: xr.Dataset) -> dict[str, Statistic]:
         label: Statistic(
             ("regime", label),
             label,
-            share_of(hits[kept], None if replicate is None else replicate[kept]),
+            share_of(hits[kept], replicates_of_some(replicate, kept)),
             kind=REGIME,
             failed=failed_share_bounds(hits, ~kept, replicate),
             facts={"count": int(hits[kept].sum())},

@@ -1,31 +1,30 @@
 """Intervals of methods whose rows come in groups: the scatter between replicates, and few rows.
 
 A replicate with three hits of an event, or three rows of the regime that scatters, does not show
-the scatter of the next three, and eight such replicates may agree by chance. Measured on 37 events
-and outputs of two regimes with 8 replicates of 128 or 512 groups, 600 times each: where fewer than
-50 rows of each replicate counted, intervals from the scatter alone covered S1 in 63 to 97 % of
-cases, widened ones in 94 to 100 %.
+the scatter of the next three, and eight such replicates may agree by chance. Where few rows count,
+intervals are therefore widened; docs/statistics.md states what they cover with and without it, and
+`benchmarks/coverage/few.py` counts the widened ones.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from scipy import stats
 
 from uq.estimate import Estimate
-from uq.intervals import CONFIDENCE, scatter_interval
+from uq.intervals import CONFIDENCE, scatter_interval, upper_tail
 from uq.methods.indices import IndexKind
 from uq.methods.sample import Floats
+from uq.quantile_functions import student
 
 ENOUGH_ROWS, ENOUGH_SHARE = 50, 0.22
 """Where the variance rests on fewer rows of each replicate, and on less than this share of them,
 intervals are widened. Of a normal law it rests on a third of the rows."""
 
 Values = Mapping[IndexKind, Mapping[str, float]]
-"""IndexKind of index -> input -> value."""
+"""Kind of index -> input -> value."""
 
 
-def by_replicates(
+def pooled_with_intervals(
     estimate: Callable[[Floats], Values],
     pooled: Floats,
     replicates: Sequence[Floats],
@@ -107,8 +106,8 @@ def one_more_row(deviations: Floats, groups: int, replicates: int) -> float:
     enough = min(ENOUGH_ROWS * replicates, ENOUGH_SHARE * len(deviations))
     if replicates < 2 or effective_rows(deviations) >= enough:
         return 0.0
-    student = stats.t.ppf(0.5 + CONFIDENCE / 2, replicates - 1)
-    return float(student * (deviations**2).max() / groups)
+    wide = student(upper_tail(CONFIDENCE), replicates - 1)
+    return float(wide * (deviations**2).max() / groups)
 
 
 def widened(estimate: Estimate, by: float) -> Estimate:
