@@ -35,8 +35,8 @@ def advance(
         growth,
         cos(phase),
         sin(phase),
-        *room(m),
-        Lines.room(bool(beams.is_random.any()), system.steps, system.oscillators.shape[2]),
+        room(m, system.steps),
+        Lines.room(bool(beams.is_random.any()), system.oscillators.shape[2]),
         tuple(record),
     )
     # Steps too long for the ringing of a long contact amplify it: this is no motion of the beam.
