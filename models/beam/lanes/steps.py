@@ -151,8 +151,8 @@ def _meet(head, drive, s):
         deepest_r, deepest_l = head[_PEAK_R * LANES + lane], head[_PEAK_L * LANES + lane]
         head[_PEAK_R * LANES + lane] = depth if depth > deepest_r else deepest_r
         head[_PEAK_L * LANES + lane] = depth if depth < deepest_l else deepest_l
-        # The missed impulse of a curved force, and of one with a kink inside the step. In the latter
-        # contact lasts for the share |d/after|, with d the penetration at the one end or the other.
+        # The missed impulse of a curved force, and of one with a kink inside the step: the contact
+        # then takes the share |d/after| of it, with d the penetration at the one end or the other.
         d = d1 + p
         p -= bend * (1 / 12) if is_in else 0.0
         p -= 0.5 * d * (1.0 - abs(d * (inverse * curvature))) if crossed else 0.0
