@@ -59,7 +59,7 @@ class Lines(NamedTuple):
     def room(is_random: bool, modes: int) -> "Lines":
         """Return room for the lines of a block, or none."""
         if not is_random:
-            return Lines(aligned(0), np.empty((0, 3)), np.empty((2, 0)))
+            return Lines(np.empty(0), np.empty((0, 3)), np.empty((2, 0)))
         return Lines(aligned(COUNT * _LINE * LANES), np.empty((COUNT, 3)), np.empty((2, modes)))
 
 

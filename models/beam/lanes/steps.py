@@ -41,10 +41,12 @@ def room(modes: int, steps: int) -> tuple[Array, Array, Array]:
 
     The latter at each step of a period, and at a few steps more.
     """
+    of_modes, of_lanes = padded(modes) * _MODE * LANES, _HEAD * LANES
+    whole = aligned(of_modes + of_lanes + in_fours(steps) * LANES)
     return (
-        aligned(padded(modes) * _MODE * LANES),
-        aligned(_HEAD * LANES),
-        aligned(in_fours(steps) * LANES),
+        whole[:of_modes],
+        whole[of_modes : of_modes + of_lanes],
+        whole[of_modes + of_lanes :],
     )
 
 

@@ -11,6 +11,7 @@ from models.beam.lanes.recurrence import is_static, mode_step
 from models.beam.parameters import Settings
 from models.beam.structure.modal import Array, Beams, free_reach, steady_response
 from models.beam.structure.propagation import LONGEST
+from models.numerics.elementary import cos, sin
 from models.numerics.jit import kernel
 
 LADDER = tuple(base << k for k in range(8) for base in (64, 96))
@@ -34,20 +35,26 @@ class System(NamedTuple):
         Displacement within the step per unit of its final penetration, negative.
     modal : ndarray, shape (n, all modes), complex
         Steady amplitude of each mode.
+    response : ndarray, shape (n,), complex
+        Their sum.
     oscillators : ndarray, shape (n, 3, all modes)
         w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode, for the response to a random load.
     free_reach, beams, steps
         As there.
+    wave : ndarray, shape (2, steps)
+        Cosine and sine of the force's phase at the end of each step.
     """
 
     modes: Array
     begin: Array
     sigma: Array
     modal: NDArray[np.complex128]
+    response: NDArray[np.complex128]
     oscillators: Array
     free_reach: Array
     beams: Beams
     steps: int
+    wave: Array
 
     @property
     def longest(self) -> int:
@@ -56,7 +63,8 @@ class System(NamedTuple):
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return some of the beams."""
-        return System._make([*(a[rows] for a in self[:-2]), self.beams.take(rows), self.steps])
+        arrays = (a[rows] for a in self[:-3])
+        return System._make([*arrays, self.beams.take(rows), self.steps, self.wave])
 
 
 @kernel
@@ -141,15 +149,19 @@ def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
         sigma,
         compliance,
     )
+    modal = steady_response(b)
+    phase = 2 * np.pi * np.arange(1, steps + 1) / steps
     system = System(
         modes,
         begin,
         sigma,
-        steady_response(b),
+        modal,
+        modal.sum(axis=1),
         np.stack([b.frequency, b.decay, b.mobility], axis=1),
         free_reach(b),
         b,
         steps,
+        np.stack([cos(phase), sin(phase)]),
     )
     sound = (np.abs(compliance) <= UNSTABLE) & (_least_steps(b) <= steps)
     sound &= (b.load["power"] == 0) | (steps <= MOST_UNDER_RANDOM)
