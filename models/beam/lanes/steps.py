@@ -233,4 +233,5 @@ def advance_blocks(
                 head[_RIGHT * LANES + lane] += growth[row, 0] * work[row, period, 0]
                 head[_LEFT * LANES + lane] += growth[row, 1] * work[row, period, 1]
         _store(w, head, first, state, gaps, peak)
-    state[:, CLOCK] += periods
+    for row in range(n):
+        state[row, CLOCK] += periods
