@@ -1,4 +1,6 @@
-"""Rows of rigid machines in lanes: their constants and states."""
+"""Rows of rigid machines in lanes: their constants, states and parts of a revolution."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,3 +69,36 @@ def store(lanes, first, table):
     for n in range(first, min(first + LANES, table.shape[0])):
         for i in range(table.shape[1]):
             table[n, i] = lanes[i * LANES + n - first]
+
+
+class Part(NamedTuple):
+    """One of one or two equal parts of a revolution; the second mirrors the first.
+
+    The equations are the same for the opposite displacement of the body and vibrators turned by pi.
+
+    Attributes
+    ----------
+    parts : int
+        Of a revolution.
+    mirror : ndarray, shape (10,)
+        Signs with which the components of the state return.
+    turn : float
+        Angle by which the vibrators turn [rad].
+    """
+
+    parts: int
+    mirror: Array
+    turn: float
+
+
+WHOLE = Part(1, np.ones(STATE), 2 * np.pi)
+HALF = Part(2, np.where(np.isin(np.arange(STATE), (0, 1, 2, 5, 6, 7)), -1.0, 1.0), np.pi)
+
+
+@kernel
+def turn_back(y, mirror, turn, out):
+    """Set `out` to the states y of all lanes after a part, turned back by it."""
+    for i in range(STATE):
+        angle = turn if i == 3 or i == 4 else 0.0
+        for lane in range(LANES):
+            out[i * LANES + lane] = mirror[i] * y[i * LANES + lane] - angle

@@ -15,7 +15,16 @@ from models.numerics.tableaux import TSITOURAS_5
 from models.vibrator.lanes.derivatives import FACTORS, SUPPORTS, change, linearise, support
 from models.vibrator.lanes.dynamics import DEGREES, accelerate
 from models.vibrator.lanes.machines import Machines
-from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, machine
+from models.vibrator.lanes.packed import (
+    CONSTANTS,
+    STATE,
+    WHOLE,
+    Array,
+    Part,
+    load,
+    machine,
+    turn_back,
+)
 from models.vibrator.lanes.steps import AT, SIZE, combine_5, prepare
 
 ANCHOR = 3  # psi_1
@@ -131,8 +140,8 @@ def _look(w):
 
 
 @kernel
-def _revolve(constants, start, h, steps, end, work):
-    c, w, step, tangents = work
+def _revolve(constants, start, h, steps, mirror, turn, end, work):
+    c, w, step, tangents, back = work
     y = w[AT.position : AT.position + _WHOLE]
     for first in range(0, start.shape[0], LANES):
         load(constants, first, c)
@@ -144,48 +153,58 @@ def _revolve(constants, start, h, steps, end, work):
             _step(c, w, tangents)
         _look(w)
         accelerate(w)
+        turn_back(y, mirror, turn, back)
         for n in range(first, min(first + LANES, start.shape[0])):
-            _note(c, w, tangents, n - first, end[n])
+            for i in range(STATE):
+                end[n, i, 0] = back[i * LANES + n - first]
+            _note(c, w, tangents, n - first, mirror, end[n])
 
 
 @kernel
-def _note(c, w, tangents, lane, end):
-    """Record the state of a lane, its derivatives and its rates."""
+def _note(c, w, tangents, lane, mirror, end):
+    """Record the derivatives of the state of a lane, by the start and by time."""
     up, per_step = machine(c, lane).support_offset, 1 / w[AT.step + lane]
     for i in range(STATE):
-        end[i, 0] = w[AT.position + i * LANES + lane]
         for column in range(COLUMNS):
             o = _TANGENTS + column * _WHOLE + lane
             change = tangents[o + i * LANES]
             if i == 0 or i == DEGREES:
                 change = fma(-up, tangents[o + (i + 2) * LANES], change)
-            end[i, 1 + column] = change * (1.0 if i < DEGREES else per_step)
+            end[i, 1 + column] = mirror[i] * (change if i < DEGREES else change * per_step)
     for i in range(DEGREES):
-        end[i, 1 + COLUMNS] = w[AT.velocity + i * LANES + lane]
-        end[DEGREES + i, 1 + COLUMNS] = w[AT.rise + i * LANES + lane] * per_step
+        rise = w[AT.rise + i * LANES + lane] * per_step
+        end[i, 1 + COLUMNS] = mirror[i] * w[AT.velocity + i * LANES + lane]
+        end[DEGREES + i, 1 + COLUMNS] = mirror[DEGREES + i] * rise
 
 
-def revolve(constants: Array, start: Array, period: Array, steps: int) -> Array:
-    """Return the states of n machines after a period, with derivatives by the start and by time.
+def revolve(constants: Array, start: Array, time: Array, steps: int, part: Part) -> Array:
+    """Return where n machines return, with derivatives by the start and by time.
 
     Parameters
     ----------
     constants : ndarray, shape (n, CONSTANTS)
     start : ndarray, shape (n, 10)
-    period : ndarray, shape (n,)
-        [s]
+    time : ndarray, shape (n,)
+        Of this part of a revolution [s].
     steps : int
-        In the period.
+        In that time.
+    part : Part
 
     Returns
     -------
     ndarray, shape (n, 10, 11)
-        By columns: the state, its derivatives with respect to the components of the start except
-        psi_1, and its rates.
+        By columns: the state after that time, turned back; its derivatives with respect to the
+        components of the start except psi_1; and its rates.
     """
     end = np.empty((len(start), STATE, 2 + COLUMNS))
-    work = aligned(CONSTANTS * LANES), aligned(SIZE), aligned(LANES), aligned(_BLOCK)
-    _revolve(constants, start, (period / steps)[:, None], steps, end, work)
+    work = (
+        aligned(CONSTANTS * LANES),
+        aligned(SIZE),
+        aligned(LANES),
+        aligned(_BLOCK),
+        aligned(_WHOLE),
+    )
+    _revolve(constants, start, (time / steps)[:, None], steps, part.mirror, part.turn, end, work)
     return end
 
 
@@ -207,5 +226,5 @@ def monodromy(machines: Machines, state: Array, period: Array, steps: int) -> Ar
         Zero with respect to psi_1.
     """
     out = np.zeros((len(state), STATE, STATE))
-    out[:, :, FREE] = revolve(machines.constants, state, period, steps)[:, :, 1:-1]
+    out[:, :, FREE] = revolve(machines.constants, state, period, steps, WHOLE)[:, :, 1:-1]
     return out
