@@ -46,12 +46,11 @@ def main() -> NoReturn:
 
 
 def forgo_dask() -> None:
-    """Have dask pass for not installed, unless xarray, or a model, has looked for it already.
+    """Have dask pass for not installed, unless something has imported it.
 
     For each array of a result, xarray would import it to ask whether the array is one of dask's.
     """
-    if "xarray" not in sys.modules:
-        sys.modules.setdefault("dask", None)  # type: ignore[arg-type]
+    sys.modules.setdefault("dask", None)  # type: ignore[arg-type]
 
 
 def say_when_interrupted(sentence: str) -> None:
