@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from uq.cli import forgo_dask, say_when_interrupted
 from uq.cli import options as given
+from uq.cli import say_when_interrupted
 from uq.errors import InputError
 from uq.running.options import RunOptions
 
@@ -116,8 +116,6 @@ def run(
     from uq.running.runner import finished, output_path, run_study
 
     asked = loaded(study, model, samples)
-    if scheduler is None and workers != 0:  # where only other processes run code of the model
-        forgo_dask()
     target = output_path(asked, output)
     if not fresh and (ds := finished(asked, target)) is not None:
         note = f"{target} is already complete; nothing was computed (--fresh recomputes it)"
