@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numba
-
-from uq.running.cores import cores
+from dask.system import CPU_COUNT
 
 FOLDER = Path("results/benchmarks")
 
@@ -69,4 +68,6 @@ def machine() -> str:
         name = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
     except (OSError, StopIteration):
         name = platform.processor() or platform.machine()
-    return f"{name}, {cores()} cores, Python {platform.python_version()}, numba {numba.__version__}"
+    return (
+        f"{name}, {CPU_COUNT} cores, Python {platform.python_version()}, numba {numba.__version__}"
+    )
