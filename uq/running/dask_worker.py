@@ -1,0 +1,41 @@
+"""One dask worker process of a local cluster: ``python -m uq.running.dask_worker ADDRESS FOLDER``.
+
+Its standard input is a pipe from its parent. When the parent ends, for whatever reason, the pipe
+closes; then the worker removes their temporary folder and stops.
+"""
+
+import asyncio
+import shutil
+import sys
+
+from uq.running.child import end_with_parent
+
+_GOODBYE_SECONDS = 2.0
+
+
+def main(address: str, folder: str) -> None:
+    """Serve the scheduler at `address` until the parent process is gone."""
+    guard = end_with_parent(lambda: shutil.rmtree(folder, ignore_errors=True))
+    try:
+        asyncio.run(_serve(address, folder))
+    finally:  # the scheduler lives in the parent: if it is gone, the folder must be removed
+        guard.join(_GOODBYE_SECONDS)
+
+
+async def _serve(address: str, folder: str) -> None:
+    from distributed import Worker
+
+    worker = Worker(
+        address,
+        host="127.0.0.1",
+        nthreads=1,
+        memory_limit=0,
+        dashboard=False,
+        local_directory=folder,
+    )
+    async with worker:
+        await worker.finished()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
