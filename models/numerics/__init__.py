@@ -17,7 +17,6 @@ Reading order; a module imports only those above it:
     batch_means     time means with their errors
     events          event location within a step
     tableaux        coefficients of the Runge-Kutta methods
-    tsit5           order 5, many systems, fixed steps
     nystrom         any tableau for q'' = f(q, q'), many systems, fixed steps
     dop8            order 8, many systems, with an error estimate
     dop853_step     order 8(5,3), one system: a step
