@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.analysis.statistics.statistic import Context, Kind, Reader, Statistic
+from uq.clusters import dealt
 from uq.estimate import NOTHING, Estimate
 from uq.indices.targets import number_of
 from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Replicates, scatter_interval
@@ -78,7 +79,7 @@ def between_share(
     if replicate is None:
         value, low, high = _independent(value, deviation, residual, regime.max() + 1)
     else:
-        of = replicate[kept]
+        of = dealt(replicate[kept])
         found = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
         low, high = scatter_interval(value, found) if np.isfinite(found).all() else UNKNOWN
     return Estimate(value, max(float(low), 0.0), min(float(high), 1.0))
