@@ -12,7 +12,6 @@ import numpy as np
 
 from uq.designs.streams import Points, drawn_at_once, generator, inside, replicate_seed
 
-
 MOST_OF_SOBOL = 21_201
 """Dimensions that `scipy.stats.qmc.Sobol` has direction numbers for."""
 

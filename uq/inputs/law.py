@@ -20,14 +20,12 @@ STRICT = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=Fals
 
 def _known_level(level: str) -> str:
     if level not in LEVELS:
-        raise ValueError(
-            f"no such level{nearest(level, LEVELS)} (allowed: {', '.join(LEVELS)})"
-        )
+        raise ValueError(f"no such level{nearest(level, LEVELS)} (allowed: {', '.join(LEVELS)})")
     return level
 
 
 Level = Annotated[str, AfterValidator(_known_level)]
-LEVEL_SCHEMA = {"enum": list(LEVELS)}
+LEVEL_SCHEMA: dict[str, Any] = {"enum": list(LEVELS)}
 LEVEL_MEANING = ", ".join(f"{name}: {meaning}" for name, meaning in LEVELS.items())
 
 

@@ -123,7 +123,8 @@ class Study:
         if self.imported:
             parts.append(dict(self.imported))
         if self.design.rows_of_a_sample > 1:  # else every level is a row of its own
-            parts.append([self.design.units, self.design.repeats, self.levels])
+            sizes = [self.design.units, self.design.repeats]
+            parts.append({"rows of a sample": sizes, "levels": self.levels})
         if self.random and DESIGNS[self.design.method].shares_seeds:
             parts.append("rows that are compared share a seed")
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()

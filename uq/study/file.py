@@ -134,10 +134,16 @@ class DesignTable(_Table):
         description="independent scrambles of the design: the source of confidence intervals",
     )
     units: int = Field(
-        1, ge=1, le=MAX_ROWS_OF_A_SAMPLE, description="of each sample; they share its 'shared' inputs"
+        1,
+        ge=1,
+        le=MAX_ROWS_OF_A_SAMPLE,
+        description="of each sample: they have its shared inputs",
     )
     repeats: int = Field(
-        1, ge=1, le=MAX_ROWS_OF_A_SAMPLE, description="of each unit; 'chance' inputs and seeds differ"
+        1,
+        ge=1,
+        le=MAX_ROWS_OF_A_SAMPLE,
+        description="of each unit: they differ by chance",
     )
     second_order: bool = Field(False, description="saltelli only: also pairs of parameters")
     seed: int = Field(0, ge=0, lt=2**63, description="the same seed gives the same rows")
