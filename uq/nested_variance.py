@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
 from uq.estimate import Estimate
-from uq.intervals import CONFIDENCE, upper_tail
+from uq.intervals import CONFIDENCE, ROUNDING, is_constant, upper_tail
 from uq.quantile_functions import student
 
 FEWEST_SAMPLES = 8
@@ -23,6 +23,7 @@ FARTHEST = 2.0
 an interval: samples without such a one scatter too little (measured)."""
 
 FEW = f"needs {FEWEST_SAMPLES} samples to judge its scatter"
+ALL_SAME = "all values are the same"
 TOO_FEW = "fewer than two samples have values in two units, and in two repeats of one"
 NO_SCATTER = "no two samples show different shares"
 
@@ -120,9 +121,9 @@ def nested_shares(
     total = _Sums(*columns.sum(axis=1))
     shares, variance = _shares(total)
     left_out = int((~whole).sum())
-    if not variance > 0:
-        enough = "all values are the same" if whole.sum() > 1 else TOO_FEW
-        nothing = Estimate(reason=enough)
+    there = values[whole][np.isfinite(values[whole])]
+    if len(there) < 2 or is_constant(there):
+        nothing = Estimate(reason=ALL_SAME if whole.sum() > 1 else TOO_FEW)
         return NestedShares(nothing, nothing, nothing, nothing, 0.0, left_out)
     groups = int(independent.max(initial=-1)) + 1
     reason = FEW if replicate is None and groups < FEWEST_SAMPLES else ""
@@ -152,10 +153,12 @@ def _columns(values: Floats, errors: Floats | None) -> tuple[Floats, Mask]:
     enough_units = units > min(values.shape[1] - 1, 1)
     whole = enough_units & ((repeated > 0) | (values.shape[2] == 1))
     values, counts, units, repeated = (one[whole] for one in (values, counts, units, repeated))
+    least = (ROUNDING * np.nanmax(np.abs(values), initial=0.0)) ** 2
     values = values - (np.nanmean(values) if values.size else 0.0)  # squares lose no digits
     known = counts > 0
-    unit_means, within = _mean_and_variance(values, counts)
-    sample_means, between = _mean_and_variance(np.where(known, unit_means, np.nan), units)
+    unit_means, within = _mean_and_variance(values, counts, least)
+    means = np.where(known, unit_means, np.nan)
+    sample_means, between = _mean_and_variance(means, units, least)
     inner = np.divide(
         np.where(counts > 1, within, 0.0).sum(axis=1),
         repeated,
@@ -177,14 +180,16 @@ def _columns(values: Floats, errors: Floats | None) -> tuple[Floats, Mask]:
     return np.stack([*columns, squares]), whole
 
 
-def _mean_and_variance(values: Floats, counts: NDArray[np.integer]) -> tuple[Floats, Floats]:
-    """Return both along the last axis, 0 where there are too few values."""
+def _mean_and_variance(
+    values: Floats, counts: NDArray[np.integer], least: float
+) -> tuple[Floats, Floats]:
+    """Return both along the last axis, 0 for too few values, or a variance of rounding errors."""
     known = np.isfinite(values)
     sums = np.where(known, values, 0.0).sum(axis=-1)
     mean = np.divide(sums, counts, out=np.zeros(counts.shape), where=counts > 0)
     squares = np.where(known, values - mean[..., None], 0.0) ** 2
     variance = squares.sum(axis=-1) / np.maximum(counts - 1, 1)
-    return mean, variance
+    return mean, np.where(variance > least, variance, 0.0)
 
 
 def _shares(sums: _Sums) -> tuple[tuple[_Share, ...], Floats]:

@@ -1,11 +1,12 @@
 """What ``uq levels`` shows."""
 
 from collections.abc import Iterator
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 from uq import json_form
-from uq.analysis.level_shares import ByLevel, LevelShares, by_level
+from uq.analysis.level_shares import SOLVER, ByLevel, LevelShares, by_level
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.designs.levels import LEVELS
 from uq.methods.indices import S1
@@ -33,7 +34,8 @@ def levels(result: Path, output: str | None, json: bool) -> None:
         grid([line], header=("", "probability", "95 % interval"))
         if another.reason:
             paragraph(another.reason, indent=2)
-    note("the solver's share is contained in the others")
+    if any(isfinite(one.shares[SOLVER].value) for one in found.outputs.values()):
+        note("the solver's share is contained in the others")
 
 
 def _lines(one: LevelShares) -> Iterator[tuple[str, str, str, str]]:

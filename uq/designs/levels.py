@@ -52,7 +52,8 @@ def _coordinates(levels: tuple[str, ...], units: int, repeats: int) -> NDArray[n
     places[1:, :, own] = more
     rows = places.reshape(-1, len(levels))
     first = count + more.size
-    rows[1:, chance] = first + np.arange((len(rows) - 1) * len(chance)).reshape(-1, len(chance))
+    more = np.arange((len(rows) - 1) * len(chance)).reshape(len(rows) - 1, len(chance))
+    rows[1:, chance] = first + more
     rows.setflags(write=False)
     return rows
 

@@ -150,7 +150,14 @@ def sensitivities(
         own = replace(sample, values=target.values, quantiles=quantiles)
         found[target.name] = one = _indices(ds, METHODS[method], target, own, notes)
         (whole if one.refused else used).append(own.whole)
+    if nested:
+        found = {name: _with_reason(one) for name, one in found.items()}
     return Sensitivities(method, *_counts(*(used or whole), rows=len(sample.values)), found)
+
+
+def _with_reason(one: TargetIndices) -> TargetIndices:
+    """Return indices of one row a sample, with that reason where there are none."""
+    return replace(one, refused=f"{one.refused}; {ONE_ROW}") if one.refused else one
 
 
 def _indices(
