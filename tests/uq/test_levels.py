@@ -209,10 +209,7 @@ def test_what_several_rows_of_a_sample_rule_out_is_refused(tables, line):
 
 
 def test_a_level_may_change_where_no_row_depends_on_it():
-    one, other = (
-        nested(units=1, repeats=1),
-        nested(levels={"x1": "own"} | LEVELS, units=1, repeats=1),
-    )
+    one, other = (nested(levels=LEVELS | {"x1": x}, units=1, repeats=1) for x in ("own", "shared"))
     ds = computed(one)
     assert relabel(ds, other)["y"].equals(ds["y"])
     seeded = replace(other, design=other.design.model_copy(update={"seed": 6}))

@@ -27,8 +27,9 @@ def levels(ds: xr.Dataset, output: str | None = None) -> xr.Dataset:
         ``variance`` (the sum of the three components) and ``samples_left_out``. The share of the
         solver, from ``<output>_error``, is contained in the others. Lifetimes are replaced by their
         logarithms, or by their ranks where rows never end or are censored; a value with a heavy
-        tail likewise. Of a model with regimes: over ``sample``, ``another_regime``, the share of the other repeats of its unit that end in
-        another regime; ``another_regime_mean``, with ``_low`` and ``_high``, their mean.
+        tail likewise. Of a model with regimes: over ``sample``, ``another_regime``, the share of
+        the other repeats of its unit that end in another regime; ``another_regime_mean``, with
+        ``_low`` and ``_high``, their mean.
 
     Raises
     ------

@@ -47,13 +47,11 @@ def _coordinates(levels: tuple[str, ...], units: int, repeats: int) -> NDArray[n
     kind = np.array(levels)
     own, chance = np.flatnonzero(kind == OWN), np.flatnonzero(kind == CHANCE)
     places = np.tile(np.arange(len(levels)), (units, repeats, 1))
-    count = len(levels)
-    more = count + np.arange((units - 1) * len(own)).reshape(units - 1, 1, len(own))
-    places[1:, :, own] = more
+    first, count = len(levels), (units - 1) * len(own)
+    places[1:, :, own] = first + np.arange(count).reshape(units - 1, 1, len(own))
     rows = places.reshape(-1, len(levels))
-    first = count + more.size
-    more = np.arange((len(rows) - 1) * len(chance)).reshape(len(rows) - 1, len(chance))
-    rows[1:, chance] = first + more
+    first, count = first + count, (len(rows) - 1) * len(chance)
+    rows[1:, chance] = first + np.arange(count).reshape(len(rows) - 1, len(chance))
     rows.setflags(write=False)
     return rows
 
