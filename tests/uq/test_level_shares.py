@@ -6,6 +6,7 @@ from command_line import strict_json
 from computed import asking, computed, with_output
 from nested_studies import LEVELS, nested, nested_result
 from noisy_studies import noisy
+from scipy import stats
 
 import uq as api
 from uq.analysis.level_shares import by_level, shares_of
@@ -62,6 +63,28 @@ def test_components_are_those_of_the_analysis_of_variance():
     assert found.variance == pytest.approx(sum(parts))
     assert [one.value * found.variance for one in found[:3]] == pytest.approx(parts)
     assert all("needs 8 samples" in one.reason for one in found[:3])
+
+
+def test_the_interval_is_a_jackknife_over_samples():
+    table = effects((0.7, 0.2, 0.1), (12, 4, 3))
+    noise = table.mean(axis=2).var(axis=1, ddof=1).mean() / 4 / nested_shares(table).variance
+
+    def logit(share):
+        return np.log((share + noise) / (1 - share))
+
+    found = nested_shares(table).outer
+    pseudo = np.array(
+        [
+            12 * found.value - 11 * nested_shares(np.delete(table, i, axis=0)).outer.value
+            for i in range(12)
+        ]
+    )
+    squares = (pseudo - pseudo.mean()) ** 2
+    slope = 1 / (found.value + noise) + 1 / (1 - found.value)
+    widened = 1 + 2 * (squares.max() / squares.sum()) ** 2
+    half = stats.t.ppf(0.975, 11) * slope * np.sqrt(widened * squares.sum() / 11 / 12)
+    assert logit(found.high) - logit(found.value) == pytest.approx(half)
+    assert logit(found.value) - logit(found.low) == pytest.approx(half)
 
 
 def test_missing_values_leave_the_shares_unbiased():

@@ -118,22 +118,24 @@ def test_no_band_and_no_fit_of_rows_that_depend():
 
 
 def test_curves_of_equal_rows_are_as_wide_as_those_of_samples():
-    ds = nested_result(levels=SHARED_ALONE, samples=256)
-    life = np.exp(ds["y"].values)
-    cut = np.minimum(life, 300.0)
-    lives = asking(with_output(ds, "life", cut, "lifetime", life > 300), outputs=["life"])
-    alone = linear(samples=256)
-    once = life[:: len(life) // 256]
-    plain = asking(
-        with_output(alone, "life", np.minimum(once, 300.0), "lifetime", once > 300),
-        outputs=["life"],
-    )
-    wide, narrow = (
-        survival(one, "life").sel(time=np.quantile(once, 0.3), method="ffill")
-        for one in (lives, plain)
-    )
-    for end in ("low", "high"):
-        assert float(wide[end]) == pytest.approx(float(narrow[end]), abs=0.05)
+    ds = nested_result(levels=SHARED_ALONE, samples=512)
+    times = len(ds["y"]) // 512
+    rng = np.random.default_rng(0)
+    life, left = rng.exponential(size=512), rng.exponential(size=512)
+    seen, cut = np.minimum(life, left), life > left
+    curves = [
+        survival(asking(with_output(one, "life", *column), outputs=["life"]), "life")
+        for one, column in (
+            (ds, (np.repeat(seen, times), "lifetime", np.repeat(cut, times))),
+            (linear(samples=512), (seen, "lifetime", cut)),
+        )
+    ]
+    for time in (0.3, 1.0, 1.5):
+        wide, narrow = (
+            float(at["high"] - at["low"])
+            for at in (curve.sel(time=time, method="ffill") for curve in curves)
+        )
+        assert wide == pytest.approx(narrow, rel=0.3)
 
 
 def test_studies_with_one_seed_are_not_paired_row_by_row():
