@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from uq.contract import Floats, Mask
 from uq.estimate import Estimate
-from uq.intervals import CONFIDENCE, ROUNDING, is_constant, upper_tail
+from uq.intervals import CONFIDENCE, ROUNDING, is_constant, upper_probability
 from uq.quantile_functions import student
 
 FEWEST_SAMPLES = 8
@@ -224,7 +224,7 @@ def _estimate(share: _Share, without: Floats, groups: int) -> Estimate:
         return Estimate(value, 0.0, 1.0)
     widened = 1 + FARTHEST * float((pulls**2).max() / squares) ** 2
     error = np.sqrt(widened * squares / (groups * (groups - 1)))
-    half = student(upper_tail(CONFIDENCE), groups - 1) * error * (1 / up + 1 / down)
+    half = student(upper_probability(CONFIDENCE), groups - 1) * error * (1 / up + 1 / down)
     middle = np.log(up / down)
     odds = np.exp([middle - half, middle + half])
     low, high = (odds * (1 + share.beside) - share.added) / (1 + odds)
