@@ -74,8 +74,12 @@ SIZES = {
 """Samples, replicates, units, repeats."""
 
 
-REASONS = {
-    "sd": "raised by one more sample as extreme as the farthest",
+REASONS = {"sd": "raised by one more sample as extreme as the farthest"}
+EXACT = "few effective hits: exact, and conservative"
+FEW = {
+    "P(": EXACT,
+    "regime": EXACT,
+    "quantile": "20 samples seldom show how far their ends scatter",
 }
 
 
@@ -88,7 +92,8 @@ def statistics(name, repetitions):
     study = study_of(method, samples, replicates, NAME, LAWS, design=rows, analysis=asked)
     size = f"{samples} samples of {units} units, {repeats} repeats"
     several = f"{replicates} replicates of " * (replicates > 1)
-    tally = Tally(f"random model, {method}, {several}{size}", REASONS)
+    reasons = REASONS | (FEW | {"shared": WIDENED} if samples < 50 else {})
+    tally = Tally(f"random model, {method}, {several}{size}", reasons)
     quantiles = {p: ppf(p) for p in (0.05, 0.5, 0.95)}
     for ds in repeated(study, repetitions):
         _count(tally, ds, quantiles)
