@@ -25,7 +25,13 @@ from uq.rows.elements import (
     shown_outputs,
     why_no_statistics,
 )
-from uq.rows.nesting import Nesting, levels_of, levels_that_vary, nesting_of
+from uq.rows.nesting import (
+    Nesting,
+    levels_of,
+    levels_that_vary,
+    nesting_of,
+    size_in_words,
+)
 from uq.rows.variables import error_name
 from uq.tails import lacks_variance
 
@@ -108,6 +114,11 @@ class ByLevel:
     outputs: Mapping[str, LevelShares]
     another_regime: Estimate | None
     switching: Floats
+
+    @property
+    def size(self) -> str:
+        """Samples, units and repeats in words."""
+        return size_in_words(self.samples, self.units, self.repeats)
 
     def inputs_on(self, level: str) -> list[str]:
         """Return the inputs on a level."""

@@ -31,7 +31,7 @@ from uq.rows.elements import (
     why_no_statistics,
 )
 from uq.rows.in_regime import within_regime
-from uq.rows.nesting import is_nested
+from uq.rows.nesting import is_nested, nesting_of, size_in_words
 from uq.study.file import AnalysisTable
 
 NO_INTERVALS = (
@@ -44,10 +44,7 @@ NOT_STATED = (
     " the laws, set independent = true in [design]"
 )
 
-SEVERAL_ROWS = (
-    "each sample has {units} units and {repeats} repeats, whose rows are not independent: intervals"
-    " rest on samples"
-)
+SEVERAL_ROWS = "the rows of one sample are not independent ({size}): intervals rest on samples"
 
 NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
 
@@ -215,7 +212,9 @@ def _notes(ds: xr.Dataset) -> list[str]:
     if design.until is not None:
         notes.append(stopping.sentence(design, ds))
     if is_nested(ds):
-        notes.append(SEVERAL_ROWS.format(**ds.attrs))
+        place = nesting_of(ds)
+        size = size_in_words(place.samples, place.units, place.repeats)
+        notes.append(SEVERAL_ROWS.format(size=size))
     if not has_independent_samples(ds) and ds.attrs["replicates"] == 1:
         reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
         notes.append(reason.format(design=ds.attrs["design"]))

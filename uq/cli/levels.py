@@ -20,8 +20,7 @@ def levels(result: Path, output: str | None, json: bool) -> None:
     if json:
         print_json(plain(found))
         return
-    size = f"{found.samples} samples of {found.units} units, {found.repeats} repeats of each"
-    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {size}")
+    heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.size}")
     grid([(level, ", ".join(found.inputs_on(level)) or "-") for level in LEVELS])
     for name, shares in found.outputs.items():
         heading(f"\n{name}", "shares of the variance")

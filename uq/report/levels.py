@@ -35,12 +35,11 @@ def levels_of(findings: Findings) -> Levels | None:
     rows, notes = [], []
     for name, one in found.outputs.items():
         rows.append((Cell(name), *(_cell(one.shares[source]) for source in SOURCES)))
-        notes += [f"{name}: {sentence}" for sentence in one.sentences]
+        notes += [f"{sentence} ({name})" for sentence in one.sentences]
     if (another := found.another_regime) is not None:
         said = another.reason or percent_with_interval(another)
         notes.append(f"probability that a repeat ends in another regime: {said}")
-    size = f"{found.samples} samples of {found.units} units, {found.repeats} repeats of each"
-    return Levels(size, Table("Shares of the variance", ("output", *SOURCES), rows), notes)
+    return Levels(found.size, Table("Shares of the variance", ("output", *SOURCES), rows), notes)
 
 
 def _cell(share: Estimate) -> Cell:

@@ -95,6 +95,13 @@ def nesting_of(ds: xr.Dataset) -> Nesting:
     )
 
 
+def size_in_words(samples: int, units: int, repeats: int) -> str:
+    """Return the size of a design: ``20 samples of 3 units, 2 repeats of each``."""
+    if units == 1:
+        return f"{samples} samples" + f" of {repeats} repeats" * (repeats > 1)
+    return f"{samples} samples of {units} units" + f", {repeats} repeats of each" * (repeats > 1)
+
+
 def is_nested(ds: xr.Dataset) -> bool:
     """Whether samples of a result have several rows."""
     return "world" in ds.variables
