@@ -9,6 +9,7 @@ import uq as api
 from uq.analysis.lifetime import survival
 from uq.analysis.pairing import Kinship, kinship
 from uq.analysis.sampled_inputs import drawn_inputs, laws_and_values
+from uq.analysis.statistics.between_regimes import between_share
 from uq.clusters import Clusters, dealt, linearised_means
 from uq.errors import InputError
 from uq.indices.sensitivities import ONE_ROW, sensitivities
@@ -200,3 +201,9 @@ def test_a_damaged_nesting_is_refused():
         with pytest.raises(InputError, match="not a sound result"):
             check(fault)
     check(ds)
+
+
+def test_the_variance_between_regimes_has_no_interval():
+    ds = nested_result(samples=100)
+    found = between_share(ds["y"].values, (ds["x1"].values > 0.5).astype(int), replicates_of(ds))
+    assert 0 < found.value < 1 and not found.has_interval

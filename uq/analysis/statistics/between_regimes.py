@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.analysis.statistics.statistic import Context, Kind, Reader, Statistic
-from uq.clusters import dealt
+from uq.clusters import Clusters
 from uq.estimate import NOTHING, Estimate
 from uq.indices.targets import number_of
 from uq.intervals import (
@@ -68,7 +68,8 @@ def between_share(
         where fewer than two regimes have enough rows, all values are equal, or their tail is too
         heavy for a variance. Its interval is, for independent rows, by the normal law of the
         estimate's influence function, and unknown where an F-test finds no difference between the
-        regimes: there the estimate has no normal law. For replicates it is from their scatter.
+        regimes: there the estimate has no normal law. For replicates it is from their scatter;
+        where samples have several rows there is none.
 
     References
     ----------
@@ -85,8 +86,10 @@ def between_share(
         return NOTHING
     if replicate is None:
         value, low, high = _independent(value, deviation, residual, regime.max() + 1)
+    elif isinstance(replicate, Clusters):  # that of few rows scatters otherwise
+        low, high = UNKNOWN
     else:
-        of = dealt(replicate[kept])
+        of = replicate[kept]
         found = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])
         low, high = scatter_interval(value, found) if np.isfinite(found).all() else UNKNOWN
     return Estimate(value, max(float(low), 0.0), min(float(high), 1.0))
