@@ -14,6 +14,7 @@ from uq.rows.nesting import levels_of, nesting_of, one_of_each_sample
 from uq.rows.results import relabel
 from uq.rows.sampling import row_block, rows
 from uq.study.changes import what_changed
+from uq.study.schema import json_schema
 
 NESTING = ("monte-carlo", "latin-hypercube", "sobol", "halton")
 
@@ -230,3 +231,14 @@ def test_an_extended_run_equals_one_from_the_start(uq, tmp_path):
     assert extended.drop_attrs().equals(whole.drop_attrs())
     assert extended.attrs["samples"] == 24
     assert uq("verify", short).code == 0
+
+
+def test_the_schema_allows_units_where_a_design_has_them():
+    rules = {}
+    for rule in json_schema()["allOf"]:
+        known = rule["if"]["properties"].get("design")
+        if known:
+            table = rule["then"]["properties"]["design"]["properties"]
+            rules[known["properties"]["method"]["const"]] = table
+    assert {name for name, table in rules.items() if "units" not in table} == set(NESTING)
+    assert rules["saltelli"]["repeats"] == {"const": 1}
