@@ -163,7 +163,9 @@ def sd_interval(
         logarithm = float(np.log(variance))
         if isinstance(replicate, Clusters):  # a few rows each: their logarithms scatter too much
             low, high = np.exp(scatter_interval(logarithm, found / variance, confidence))
-            return float(np.sqrt(low)), float(np.sqrt(high + found.max() / len(found)))
+            return float(np.sqrt(low)), float(
+                np.sqrt(high + found.max() / max(len(found), replicate.samples))
+            )
         if not (found > 0).all():
             return UNKNOWN
         low, high = np.exp(scatter_interval(logarithm, np.log(found), confidence))
