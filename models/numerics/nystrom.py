@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from models.numerics.blocks import LANES
 from models.numerics.fma import fma
-from models.numerics.jit import kernel
+from models.numerics.jit import kernel, lean
 from models.numerics.tableaux import Tableau
 
 STAGES = 12  # at most
@@ -72,7 +72,7 @@ def _combiner(
 
     # Terms after the n-th are removed at compile time. Two chains of sums, so that the additions do
     # not all wait for each other.
-    @kernel
+    @lean
     def combine(w):
         for j in range(whole):
             k, v_0 = w[rise + j], w[velocity + j]

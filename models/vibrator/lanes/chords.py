@@ -6,7 +6,7 @@ Convergence is linear, but an iteration costs only the motion itself.
 import numpy as np
 from numpy.typing import NDArray
 
-from models.numerics.blocks import LANES, aligned
+from models.numerics.blocks import LANES, aligned, copy
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
 from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, Part, load, turn_back
@@ -79,7 +79,7 @@ def _approach(constants, state, time, guess, image, inverse, steps, mirror, turn
             for lane in range(LANES):
                 h[lane] = t[lane] / steps
             prepare(c, h, w)
-            y[:] = at
+            copy(at, y)
             for _ in range(steps):
                 step_5(w)
             turn_back(y, mirror, turn, back)
