@@ -188,8 +188,11 @@ def test_rows_go_to_the_child_that_started_before_them(write_study, tidy):
     work = workload_of(study)
     rows, spec = work.block(0, 4), spec_of(work)
     dask_task.begin_child(spec, None)
-    (child,) = workers()
     try:
+        limit = time.monotonic() + 10
+        while not workers() and time.monotonic() < limit:  # it has just been started
+            time.sleep(0.01)
+        (child,) = workers()
         data = rows.x, rows.seed, 0
         chunk, _ = evaluate_rows(spec, provenance.versions(), None, *data)
     finally:

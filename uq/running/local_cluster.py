@@ -5,13 +5,14 @@ no ``__main__`` guard; dask's scheduler runs in a thread of this process.
 """
 
 import logging
-import pickle
+import os
 import shutil
 import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,6 @@ from dask.system import CPU_COUNT
 from uq.errors import RunError
 from uq.interrupts import undone
 from uq.running.child import ModelSpec
-from uq.running.dask_worker import WANTED
 from uq.running.environment import command, inherited
 from uq.running.isolation import TRIES
 
@@ -38,10 +38,12 @@ _WORKER_SETTINGS = {
 }
 
 
+Wanted = tuple[ModelSpec, float | None] | None
+"""What `begin_child` takes, or None."""
+
+
 @contextmanager
-def local_workers(
-    count: int, wanted: tuple[ModelSpec, float | None] | None = None
-) -> "Iterator[Workers]":
+def local_workers(count: int, wanted: Wanted = None) -> "Iterator[Workers]":
     """Start `count` worker processes with one thread each, and end them.
 
     Parameters
@@ -58,9 +60,7 @@ def local_workers(
     with ExitStack() as stack:
         folder = Path(tempfile.mkdtemp(prefix="uq-"))
         stack.enter_context(undone(lambda: shutil.rmtree(folder, ignore_errors=True)))
-        if wanted:
-            (folder / WANTED).write_bytes(pickle.dumps(wanted))
-        processes = _Processes(folder)
+        processes = _Processes(folder, wanted)
         stack.enter_context(undone(processes.kill))
         for _ in range(count):
             processes.start()
@@ -92,8 +92,8 @@ def local_workers(
 class _Processes:
     """The worker processes of one local cluster."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, wanted: Wanted) -> None:
+        self._folder, self._wanted = folder, wanted
         self._address = ""
         self._running: dict[subprocess.Popen[bytes], Path] = {}
         self._started = 0
@@ -113,6 +113,7 @@ class _Processes:
                 env=inherited() | _WORKER_SETTINGS,
             )
         self._running[process] = log
+        _tell(process, self._wanted)
         if self._address:
             _tell(process, self._address)
 
@@ -151,9 +152,9 @@ class _Processes:
             process.communicate()
 
 
-def _tell(process: subprocess.Popen[bytes], address: str) -> None:
-    """Write the address of the scheduler to a process; one that has died is replaced later."""
-    with suppress(OSError):
-        assert process.stdin
-        process.stdin.write(address.encode())
-        process.stdin.flush()
+def _tell(process: subprocess.Popen[bytes], what: Wanted | str) -> None:
+    """Send something to a process; one that has died is replaced later."""
+    assert process.stdin
+    pipe = os.dup(process.stdin.fileno())
+    with suppress(OSError), Connection(pipe, readable=False) as connection:
+        connection.send(what)
