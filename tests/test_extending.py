@@ -23,7 +23,7 @@ from uq.designs.registry import DESIGNS  # noqa: E402
 from uq.designs.sequences import monte_carlo  # noqa: E402
 from uq.drawing import subjects  # noqa: E402
 from uq.drawing.catalogue import Entry  # noqa: E402
-from uq.drawing.panel import column, figure_of  # noqa: E402
+from uq.drawing.panel import column, finish  # noqa: E402
 from uq.estimate import Estimate  # noqa: E402
 from uq.inputs.law import Law, Positive  # noqa: E402
 from uq.inputs.registry import LAWS  # noqa: E402
@@ -41,7 +41,7 @@ def rows_in_order(ds, output, *, axes=None):
     (panel,) = column(axes, 2.0)
     panel.plot(ds[output].values.reshape(ds.sizes["sample"], -1)[:, 0], ".")
     panel.set_xlabel("Row")
-    return figure_of(panel)
+    return finish(panel)
 
 
 @pytest.fixture

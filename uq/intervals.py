@@ -213,6 +213,11 @@ def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) ->
     return sums[counts > 0] / counts[counts > 0]
 
 
+def replicates_of_some(replicate: Replicates, rows: Mask) -> Replicates:
+    """Return the replicate of each of some rows."""
+    return None if replicate is None else replicate[rows]
+
+
 def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Ends:
     """Return Wilson's interval; scipy's takes only integer numbers of rows.
 

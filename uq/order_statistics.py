@@ -133,7 +133,7 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
     Returns
     -------
     low, high : float
-        NaN where there are fewer rows than `rows_needed`.
+        NaN where there are fewer rows than `rows_for_bound`.
 
     References
     ----------
@@ -145,7 +145,7 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
     return order_statistic(values, outside), order_statistic(values, n + 1 - outside)
 
 
-def rows_needed(coverage: float, confidence: float, failed: int = 0) -> int:
+def rows_for_bound(coverage: float, confidence: float, failed: int = 0) -> int:
     """Return the smallest number of rows, `failed` of them failed, for a tolerance bound."""
     beyond = failed + 1  # rows that must lie outside the bound
     return beyond + int(stats.nbinom.ppf(confidence, beyond, 1 - coverage))

@@ -47,7 +47,7 @@ FIGURES: dict[str, Entry] = {
         of.outputs,
         "Convergence of {name}: {meaning}",
         section="convergence",
-        applies=(of.settles,),
+        applies=(of.has_running_estimate,),
         needs=("running",),
     ),
     "pairs": Entry(

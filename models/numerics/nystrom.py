@@ -8,9 +8,11 @@ This is the method of the same tableau with half the memory and half the loads.
 """
 
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from models.numerics.blocks import LANES
 from models.numerics.fma import fma
@@ -114,6 +116,12 @@ def _combiner(
     return combine
 
 
+def _product(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return a matrix product, rounded once: the sums of a BLAS depend on the processor."""
+    exact = np.vectorize(Fraction, otypes=[object])
+    return (exact(a) @ exact(b)).astype(float)
+
+
 def stepper(
     quantities: int, slopes: int, method: Tableau, accelerate: Callable[[Any], None]
 ) -> Callable[[Any], None]:
@@ -140,7 +148,7 @@ def stepper(
     position, arguments = at.position, at.at
     a = method.matrix()
     rows = np.vstack([a, method.b])
-    squares = rows @ a
+    squares = _product(rows, a)
     stages = len(rows) - 1
     combiners = [
         _combiner(

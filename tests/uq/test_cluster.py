@@ -156,9 +156,9 @@ def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monk
 
 def test_a_worker_that_differs_is_refused_with_its_first_rows():
     x, seed = np.full((2, 3), 0.5), np.zeros(2, np.uint64)
-    with pytest.raises(InputError, match="a worker has version 1 of model 'ishigami'.* has 2"):
+    with pytest.raises(InputError, match="computes rows has version 1 of model 'ishigami'.* has 2"):
         evaluate_rows(ModelSpec("ishigami", "2", ()), provenance.versions(), None, x, seed, 0)
-    with pytest.raises(InputError, match="a worker has other code of model 'ishigami' than this"):
+    with pytest.raises(InputError, match="computes rows has other code of model 'ishigami' than"):
         evaluate_rows(
             ModelSpec("ishigami", "1", (), code="x"), provenance.versions(), None, x, seed, 0
         )

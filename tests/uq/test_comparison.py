@@ -68,8 +68,8 @@ def test_pairs_of_rows_give_the_interval_of_students_paired_test(design):
 def test_what_is_known_of_the_rows_decides_the_width(estimate, design):
     one, narrow = study(FOUR, **design), FOUR | {"x4": NARROW}
     pairs = width(api.compare(one, study(narrow, **design)), estimate)
-    strangers = width(api.compare(one, study(narrow, seed=8, **design)), estimate)
-    assert pairs < strangers
+    independent = width(api.compare(one, study(narrow, seed=8, **design)), estimate)
+    assert pairs < independent
 
 
 def test_paired_replicates_tell_a_quantile_apart_as_well_as_all_their_rows_do():

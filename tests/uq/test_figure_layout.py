@@ -12,7 +12,7 @@ from uq import plots
 from uq.drawing.catalogue import file_name
 from uq.drawing.figure import lay_out
 from uq.drawing.panel import roomy
-from uq.drawing.words import powers, sentence
+from uq.drawing.words import as_label, powers
 
 
 def test_numbers_on_logarithmic_axes_are_plain():
@@ -33,10 +33,10 @@ def test_minus_signs_are_the_same_on_every_axis():
 
 
 def test_words_and_units_of_axes():
-    assert sentence("worn volume per work", "m2 N-1") == "Worn volume per work [m² N⁻¹]"
-    assert sentence("a $price$") == r"A $price$"
-    assert sentence("stiffness of a stop", "N m-1", 24) == "Stiffness of a stop\n[N m⁻¹]"
-    assert sentence("a pure number", "1") == "A pure number"
+    assert as_label("worn volume per work", "m2 N-1") == "Worn volume per work [m² N⁻¹]"
+    assert as_label("a $price$") == r"A $price$"
+    assert as_label("stiffness of a stop", "N m-1", 24) == "Stiffness of a stop\n[N m⁻¹]"
+    assert as_label("a pure number", "1") == "A pure number"
     assert powers("kg m-1") == "kg m⁻¹"
     assert file_name("sobol", "P(life[depth=0.1]<1e6)") == "sobol-P_life_depth_0.1_1e6"
 

@@ -10,6 +10,9 @@ from scipy import stats
 from uq.errors import InputError
 from uq.indices import sensitivities as module
 from uq.indices.dataset import sensitivity
+from uq.methods.indices import RefusedError
+from uq.methods.registry import METHODS
+from uq.methods.sample import Sample
 
 ISHIGAMI = {"distribution": "uniform", "lower": -np.pi, "upper": np.pi}
 CASES = {
@@ -107,8 +110,26 @@ def test_expansion_is_refused_where_it_explains_too_little():
     ds = with_output(ds, "noise", ds["y"].values + rng.normal(size=700) * 3)
     assert "held out" in entry_of(ds, "hdmr", "noise")["refused"]
     ds = with_output(ds, "step", ds["y"].values > 5)
-    assert "no polynomial" in entry_of(ds, "hdmr", "step")["refused"]
-    assert "600 are needed" in entry_of(plain("linear", 500), "hdmr")["refused"]
+    assert "polynomials cannot" in entry_of(ds, "hdmr", "step")["refused"]
+    few = plain("linear", 500)
+    assert "600 are needed" in entry_of(few, "hdmr")["refused"]
+    few = with_output(few, "step", few["y"].values > 5)  # more rows would not help
+    assert "polynomials cannot" in entry_of(few, "hdmr", "step")["refused"]
+
+
+def test_the_method_that_a_refusal_names_accepts_what_was_refused():
+    rng = np.random.default_rng(0)
+    level = rng.integers(0, 5, 700).astype(float)
+    continuous = {name: rng.random(700) for name in ("x1", "x2")}
+    for method, inputs, y in (
+        ("rbd-fast", {"x1": level}, level + rng.random(700)),
+        ("delta", continuous, level),
+        ("hdmr", continuous, level),
+    ):
+        with pytest.raises(RefusedError, match="use pawn$"):
+            METHODS[method].indices(Sample.plain(y, inputs))
+        found = METHODS["pawn"].indices(Sample.plain(y, inputs))
+        assert all(np.isfinite(one.value) for own in found.values.values() for one in own.values())
 
 
 @pytest.mark.slow

@@ -181,7 +181,9 @@ def test_the_same_imported_rows_are_pairs_and_others_are_not(table):
     folder, x = table
     one = result_of(folder, independent=True)
     assert kinship(one, result_of(folder, independent=True, seed=5)) is Kinship.ROWS_IMPORTED
-    assert compared(one, one)["pairing"] == "rows"
+    found = compared(one, one)
+    same = {"value": 0.0, "low": None, "high": None, "identical": True}
+    assert found["pairing"] == "rows" and found["outputs"]["y"]["sd"]["difference"] == same
     lines = ["x2,x1", *(f"{a!r},{b!r}" for b, a in (1 - x).tolist())]
     (folder / "rows.csv").write_text("\n".join(lines))
     other = result_of(folder, independent=True, seed=5)

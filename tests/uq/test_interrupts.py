@@ -123,11 +123,11 @@ def test_while_a_kernel_compiles(started, options):
 @pytest.mark.parametrize("send", [pytest.param(to_process, marks=pytest.mark.slow), to_group])
 def test_while_workers_work(started, send):
     process, _ = started("SLEEPING", "--workers", "2", "--chunk-rows", "4", seconds=0.05)
-    wait_until(lambda: len(workers_of(process)) == 2)
-    time.sleep(2.0)
+    wait_until(lambda: any(Path("results").glob("*/*.rows")))
     workers = workers_of(process)
     send(process)
     check_ended(process, "interrupted after ")
+    assert len(workers) == 2
     psutil.wait_procs(workers, timeout=PATIENCE)
     assert not any(worker.is_running() for worker in workers)
 

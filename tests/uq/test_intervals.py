@@ -4,7 +4,7 @@ from scipy import stats
 
 from uq import intervals
 from uq.intervals import mean_interval, share_interval
-from uq.order_statistics import quantile, quantile_interval, rows_needed, tolerance_bounds
+from uq.order_statistics import quantile, quantile_interval, rows_for_bound, tolerance_bounds
 
 RNG = np.random.default_rng(3)
 VALUES = RNG.lognormal(size=200)
@@ -121,7 +121,7 @@ def test_a_replicate_without_rows_does_not_count():
 def test_tolerance_needs_the_numbers_of_rows_that_textbooks_list(
     coverage, confidence, failed, rows
 ):
-    assert rows_needed(coverage, confidence, failed) == rows
+    assert rows_for_bound(coverage, confidence, failed) == rows
     values = np.arange(float(rows - failed))
     enough = tolerance_bounds(values, failed, coverage, confidence)
     assert enough == (0.0, values[-1])

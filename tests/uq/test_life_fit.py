@@ -10,7 +10,7 @@ from uq.analysis.as_json import summary_json
 from uq.analysis.location_scale import FAMILIES, anderson_darling, fit
 from uq.analysis.summary import summarise
 from uq.errors import InputError
-from uq.order_statistics import rows_needed
+from uq.order_statistics import rows_for_bound
 
 WEIBULL = stats.weibull_min(1.7, scale=3e5)
 LOGNORMAL = stats.lognorm(0.6, scale=2e5)
@@ -160,7 +160,7 @@ def test_share_that_ended_by_a_time_with_rows_censored_before():
 def test_rows_that_a_bound_needs_are_those_of_openturns(coverage, confidence):
     for failed in (0, 2):
         expected = ot.Wilks.ComputeSampleSize(coverage, confidence, failed)
-        assert rows_needed(coverage, confidence, failed) == expected
+        assert rows_for_bound(coverage, confidence, failed) == expected
 
 
 def test_beside_quantiles_of_censored_rows_stand_those_of_kaplan_and_meier_as_b_lives_are():

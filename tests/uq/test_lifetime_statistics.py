@@ -43,7 +43,7 @@ def test_censored_rows_give_bounds_where_they_give_no_values():
     assert before["above"]["value"] == 0.7 and before["below"]["value"] == 0.29
     assert at["above"]["value"] == 0.41 and at["below"]["value"] == 0.59
     assert beyond["above"]["value"] is beyond["below"]["low"] is None
-    assert "41 of 100 rows were censored before then" in beyond["reason"]
+    assert "41 of 100 rows were censored before that time" in beyond["reason"]
 
 
 def test_early_censoring_widens_the_upper_bound_only():

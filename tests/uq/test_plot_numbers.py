@@ -41,6 +41,13 @@ def test_estimates_converge_in_the_unit_of_their_axis():
     assert (last.min(), last.max()) == pytest.approx((low, high))
 
 
+def test_values_that_differ_by_rounding_alone_are_drawn_as_one():
+    ds = linear(samples=64)
+    values = 1.0 + 1e-16 * ds["y"].values
+    (axes,) = plots.histogram(with_output(ds, "same", values), "same").axes
+    assert axes.patches[0].get_data().values.sum() > 0
+
+
 def test_an_interval_is_spoken_of_where_there_is_one():
     for ds, there in ((linear(samples=64), True), (linear("sobol", samples=64), False)):
         assert ("95 % interval" in words(plots.convergence(ds, "y"))) is there

@@ -65,7 +65,10 @@ def test_index_bars_show_values_intervals_and_full_names():
     ]
     assert "Value of the function" in words(figure) and "95 % interval" in words(figure)
     plain = words(plots.index_bars(linear(samples=128), "y", method="pawn"))
-    assert "without effect" in plain and "PAWN" in plain and "95 % interval" not in plain
+    assert "PAWN" in plain and "95 % interval" not in plain
+    assert "95 % limit for an input without effect" in plain
+    fitted = words(plots.index_bars(linear(samples=600), "y", method="hdmr"))
+    assert "50 % limit for an input without effect" in fitted and "largest" not in fitted
 
 
 def test_a_wide_interval_does_not_squeeze_the_bars():

@@ -101,6 +101,13 @@ def test_variance_between_regimes_of_noise_has_no_interval():
         assert np.isnan(found.numbers).all()
 
 
+def test_variance_may_lie_between_regimes_alone():
+    codes = np.repeat([0, 1, 2], 40)
+    for noise in (1e-13, 1e-11, 1e-9):  # of the size of rounding errors, and larger
+        y = (codes + 1) / 3 + noise * np.random.default_rng(0).normal(size=120)
+        assert between_share(y, codes).value == pytest.approx(1.0)
+
+
 def test_variance_between_regimes_is_as_uncertain_as_the_jackknife_finds_it():
     rng, n = np.random.default_rng(4), 400
     codes = rng.integers(0, 3, n)

@@ -103,7 +103,7 @@ def test_the_status_table_is_of_all_rows():
     ds["status"].attrs["example_out_of_budget"] = "row 0: too long"
     line = lines(status_table(ds, summarise(ds)))["out-of-budget"]
     assert (line["rows"], line["share"]) == ("2", "2.1 %")  # of 96, of which 32 are independent
-    assert line["the first such row said"] == "row 0: too long"
+    assert line["first message"] == "row 0: too long"
 
 
 def test_shares_of_regimes_have_their_interval():

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from uq.rows.evaluate import KernelError, evaluate
 from uq.rows.sampling import row_block
 from uq.rows.workload import workload_of
 from uq.running import dispatch, runner
+from uq.running.options import RunOptions
 from uq.store import MemoryStore
 from uq.study.definition import load_study
 
@@ -45,6 +47,32 @@ def test_every_design_gives_the_same_bits_for_any_chunk_size(write_study, design
 @pytest.mark.parametrize(("seconds", "rows"), [(1e-3, 1024), (0.004, 1024), (0.1, 50), (20.0, 1)])
 def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_study, seconds, rows):
     assert dispatch.ChunkSizes(workload_of(load_study(write_study()))).good(seconds) == rows
+
+
+class OneGivenUp(list):
+    """Chunks on workers that compute at once, at 3 s each; the cost of the last one is unknown."""
+
+    def __init__(self, workload, *_):
+        self.workload = workload
+
+    def send(self, start, some):
+        model, given = self.workload.model, self.workload.settings
+        seconds = 0.0 if start + len(some.x) == self.workload.total else 3.0
+        self.append((start, some, evaluate(model, given, some.x, some.seed, start), seconds))
+
+    def returned(self):
+        back = self[:]
+        self.clear()
+        return back
+
+
+def test_a_row_that_was_given_up_leaves_the_cost_of_a_row_as_it_was(write_study, monkeypatch):
+    monkeypatch.setattr(dispatch, "SentChunks", OneGivenUp)
+    workload = workload_of(load_study(write_study(samples=16)))
+    options = RunOptions(chunk_rows=1, row_limit=60.0)
+    dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload), evaluate)
+    dispatcher.finish_on(SimpleNamespace(dashboard="", threads=1, own=0))
+    assert (dispatcher.left, dispatcher.row_seconds) == (0, 3.0)
 
 
 @settings(

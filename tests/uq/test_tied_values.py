@@ -127,7 +127,7 @@ def test_rbd_fast_gives_no_index_of_an_input_with_equal_values():
     assert found["x1"] == pytest.approx(1 / 12 / y.var(), abs=0.06)
     assert indices_.notes == (
         "the method sorts the rows by each input, so it accepts none with many equal values: x2;"
-        " use delta, pawn or quantile",
+        " use pawn",
     )
     with pytest.raises(RefusedError, match="it accepts none with many equal values: x2"):
         of_plain_sample("rbd-fast", {"x2": binary}, y, QUANTILES)

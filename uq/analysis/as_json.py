@@ -79,12 +79,12 @@ def comparison_json(comparison: Comparison) -> dict[str, Any]:
     dict
         ``a`` and ``b``: title, samples, rows_used and status of each. ``changed``: kind, name, a
         and b of each entry that differs. ``only``: the one input that differs, if it is the only
-        thing: name, units, and mean and sd of each; else None. ``pairing``: ``rows``,
-        ``replicates``, ``strangers`` or ``unknown``. ``regime``: label -> estimate; ``outputs``:
-        element -> its statistics under their keys in a summary, each with ``a`` and ``b``, as
-        `summary_json` has them, and ``difference``: ``value``, ``low``, ``high`` of b less a, and
-        ``identical`` where the rows are paired and agree: then there is no interval. A scale also
-        has ``ratio``. ``notes``: sentences.
+        thing: name, units, and mean and sd of each; else None. ``pairing``: see
+        `Comparison`. ``regime``: label -> estimate; ``outputs``: element -> its statistics under
+        their keys in a summary, each with ``a`` and ``b``, as `summary_json` has them, and
+        ``difference``: ``value``, ``low``, ``high`` of b less a, and ``identical`` where the rows
+        are paired and agree: then there is no interval. A scale also has ``ratio``. ``notes``:
+        sentences.
     """
     return {
         "a": _about(comparison.first),

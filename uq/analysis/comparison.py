@@ -42,7 +42,8 @@ class Comparison:
     only : OnlyChange, optional
         The input that differs, if nothing else does.
     pairing : str
-        ``rows``, ``replicates``, ``strangers`` or ``unknown``.
+        ``rows`` or ``replicates`` where these are paired by number, ``strangers`` where the samples
+        are independent, else ``unknown``.
     regimes : dict of str to Compared
     outputs : dict of str to ComparedOutput
     notes : list of str

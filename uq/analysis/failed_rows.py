@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from uq.analysis.statistics.statistic import Context, Maker, Statistic
 from uq.estimate import Estimate
-from uq.intervals import Replicates, share_interval
+from uq.intervals import Replicates, replicates_of_some, share_interval
 from uq.rows.elements import Element, Floats, Mask
 
 
@@ -118,7 +118,7 @@ def failed_share_bounds(hits: Mask, failed: Mask, replicate: Replicates) -> Esti
     """
     if not failed.any():
         return None
-    plain = share_interval(hits[~failed], None if replicate is None else replicate[~failed])
+    plain = share_interval(hits[~failed], replicates_of_some(replicate, ~failed))
 
     def bound(which: str, place: int, some: Mask) -> float:
         found = share_interval(some, replicate)[place]

@@ -7,7 +7,7 @@ import numpy as np
 from uq import order_statistics
 from uq.analysis.lifetime import curve
 from uq.estimate import NOTHING, Estimate
-from uq.intervals import UNKNOWN, Ends, Replicates
+from uq.intervals import UNKNOWN, Ends, Replicates, replicates_of_some
 from uq.rows.elements import Element, Floats
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
@@ -42,7 +42,7 @@ def life_quantiles(
     .. [1] R. Brookmeyer, J. Crowley, "A confidence interval for the median survival time",
        Biometrics 38, 29-41 (1982).
     """
-    within = None if replicate is None else replicate[element.present]
+    within = replicates_of_some(replicate, element.present)
     found = {name: quantile_estimate(element, p, within) for name, p in asked.items()}
     open_ones = [name for name, one in found.items() if "value" in one.beyond]
     if open_ones:

@@ -132,8 +132,9 @@ class Pair:
         self.rows = (independent_rows(first), independent_rows(second))
         self.kinship = kinship(first, second)
         self._replicate = [replicates_of(rows) for rows in self.rows]
-        paired = self.kinship in (Kinship.ROWS, Kinship.ROWS_IMPORTED)
-        self._shared = shared_rows(*self.rows) if paired else None
+        rows = self.kinship in (Kinship.ROWS, Kinship.ROWS_IMPORTED)
+        self._shared = shared_rows(*self.rows) if rows else None
+        self._paired = rows or self.kinship is Kinship.REPLICATES
 
     def difference(
         self, estimator: Estimator, samples: list[Sample], known: list[Estimate]
@@ -152,14 +153,13 @@ class Pair:
             known = [_newcombe(sample) for sample in samples]
         found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
         wide = sum(one.high - one.low for one in known)
-        paired = self.kinship in (Kinship.ROWS, Kinship.REPLICATES)
-        if paired and found.high - found.low <= _ROUNDING * wide < np.inf:
+        if self._paired and found.high - found.low <= _ROUNDING * wide < np.inf:
             return Estimate(found.value)  # equal in each pair, but for rounding
         return found
 
     def identical(self, samples: list[Sample]) -> bool:
         """Whether the rows are paired and both rows of each pair agree."""
-        if self.kinship not in (Kinship.ROWS, Kinship.REPLICATES):
+        if not self._paired:
             return False
         first, second = samples
         return np.array_equal(first.kept, second.kept) and np.array_equal(

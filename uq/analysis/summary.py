@@ -15,6 +15,7 @@ from uq.analysis.statistics.statistic import Context, Kind, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.statistics.thresholds import share_of
 from uq.designs.registry import DESIGNS
+from uq.intervals import replicates_of_some
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
@@ -187,7 +188,7 @@ def regime_shares(rows: xr.Dataset) -> dict[str, Statistic]:
         label: Statistic(
             ("regime", label),
             label,
-            share_of(hits[kept], None if replicate is None else replicate[kept]),
+            share_of(hits[kept], replicates_of_some(replicate, kept)),
             kind=REGIME,
             failed=failed_share_bounds(hits, ~kept, replicate),
             facts={"count": int(hits[kept].sum())},

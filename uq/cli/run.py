@@ -75,7 +75,7 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixe
     Rows computed by other code are reported even where all else is quiet, unless they are wanted.
     """
     say_when_interrupted(f"interrupted; the result is complete in {target}")
-    if not mixed and (line := runner.made_elsewhere(study, target, ds)):
+    if not mixed and (line := runner.line_on_other_code(study, target, ds)):
         print(plain_line(line), file=sys.stderr)
     if not quiet:
         from uq.analysis.summary import summarise

@@ -10,9 +10,9 @@ from matplotlib.ticker import LogLocator
 from uq.analysis.convergence import running_estimates
 from uq.drawing.elements_plot import curve_style, display_unit
 from uq.drawing.index_plot import range_of_indices, subject
-from uq.drawing.panel import column, heading, legend
+from uq.drawing.panel import column, finish, heading
 from uq.drawing.style import COLOURS, LINES, styled
-from uq.drawing.words import in_words, label, sentence
+from uq.drawing.words import as_label, in_words, label
 from uq.errors import InputError
 from uq.methods.indices import ST
 from uq.rows.elements import independent_rows, named_elements
@@ -51,13 +51,14 @@ def convergence(
         raise InputError(f"{output}: neither its mean nor its median can be estimated")
     chosen = named_elements(independent_rows(ds), output)
     unit, per = display_unit(chosen[0].units, own["value"].to_numpy(float))
-    (panel,) = column(axes, 2.1, entries=len(chosen))
+    (panel,) = column(axes, 2.1)
     for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)
         _curve(panel, own[own["output"] == element.name], per, colour, line, label(ds, element))
     what = "mean" if kind == "mean" else "median"
-    panel.set_ylabel(sentence(f"{what}: {chosen[0].meaning}", unit, width=30))
-    return _finish(panel, ds)
+    panel.set_ylabel(as_label(f"{what}: {chosen[0].meaning}", unit, width=30))
+    _over_samples(panel, ds)
+    return finish(panel, entries=len(chosen))
 
 
 def followed(ds: xr.Dataset, output: str, running: pd.DataFrame) -> tuple[str, pd.DataFrame]:
@@ -102,16 +103,16 @@ def index_convergence(
         raise InputError(f"{output}: no total indices of fewer rows are known")
     last = own[own["samples"] == own["samples"].max()].sort_values("value", ascending=False)
     leading = last["input"].tolist()[: len(COLOURS)]
-    (panel,) = column(axes, 2.1, entries=len(leading))
+    (panel,) = column(axes, 2.1)
     for i, name in enumerate(leading):
-        words = sentence(in_words(ds[name]), width=60)
+        words = as_label(in_words(ds[name]), width=60)
         colour, line = COLOURS[i], LINES[i % len(LINES)]
         _curve(panel, own[own["input"] == name], 1.0, colour, line, words)
     panel.set_ylabel("Total index (ST) [1]")
     panel.set_ylim(range_of_indices(panel.get_ylim()))
-    figure = _finish(panel, ds)
+    _over_samples(panel, ds)
     heading(panel, subject(ds, output))
-    return figure
+    return finish(panel)
 
 
 def total_indices(running: pd.DataFrame) -> pd.DataFrame:
@@ -128,7 +129,7 @@ def _curve(
     axes.fill_between(samples, low, high, color=colour, alpha=0.2, lw=0)
 
 
-def _finish(axes: Axes, ds: xr.Dataset) -> Figure:
+def _over_samples(axes: Axes, ds: xr.Dataset) -> None:
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -137,4 +138,3 @@ def _finish(axes: Axes, ds: xr.Dataset) -> Figure:
     axes.set_xlabel("Samples" + (f" of each of {replicates} replicates" if replicates > 1 else ""))
     known = any(len(band.get_paths()) for band in axes.collections)
     axes.set_title("Convergence" + known * ", with 95 % intervals", loc="left")
-    return legend(axes)

@@ -12,9 +12,9 @@ from uq.analysis.lifetime import survival
 from uq.analysis.summary import Summary, summarise
 from uq.drawing.elements_plot import bins, curve_style, display_unit, entitle, occurring_regimes
 from uq.drawing.figure import Drawing
-from uq.drawing.panel import column, figure_of, is_wide, legend, logarithmic, roomy
+from uq.drawing.panel import column, figure_of, finish, is_wide, logarithmic, roomy
 from uq.drawing.style import MARK, WIDTH, styled, thinned
-from uq.drawing.words import label, rows_in_words, sentence
+from uq.drawing.words import as_label, label, rows_in_words
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 from uq.wording import TimeUnit, interval, time_unit
@@ -43,7 +43,7 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
     """
     chosen = named_elements(independent_rows(ds), output)
     values = [element.at_least for element in chosen]
-    (panel,) = column(axes, 2.1, entries=len(chosen))
+    (panel,) = column(axes, 2.1)
     together = np.concatenate(values)
     unit, per = display_unit(chosen[0].units, together)
     edges, wide = bins(together / per)
@@ -53,10 +53,10 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
         counts = np.histogram(own / per, edges)[0] / max(len(own), 1)
         panel.stairs(counts, edges, color=colour, label=label(ds, element), **style)
     panel.set(ylim=(0, None), ylabel="Share of rows per bin")
-    panel.set_xlabel(sentence(chosen[0].meaning, unit))
+    panel.set_xlabel(as_label(chosen[0].meaning, unit))
     logarithmic(panel) if wide else roomy(panel)
     entitle(panel, chosen)
-    return legend(panel)
+    return finish(panel, entries=len(chosen))
 
 
 @styled
@@ -86,7 +86,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
     unit, per = display_unit(chosen[0].units, together)
     edges, wide = bins(together / per)
-    panels = column(axes, 0.7 + 1.1 * len(chosen), len(chosen), entries=len(regimes))
+    panels = column(axes, 0.7 + 1.1 * len(chosen), len(chosen))
     for panel, element, mask in zip(panels, chosen, ended, strict=True):
         base = np.zeros(len(edges) - 1)
         for name, (code, colour) in regimes.items():
@@ -96,9 +96,9 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
             base = top
         panel.set(ylim=(0, None), ylabel="Share of rows\nper bin")
         entitle(panel, [element], of=label(ds, element))
-    panels[-1].set_xlabel(sentence(chosen[0].meaning, unit))
+    panels[-1].set_xlabel(as_label(chosen[0].meaning, unit))
     logarithmic(panels[-1]) if wide else roomy(panels[-1])
-    return legend(panels[0])
+    return finish(panels[0])
 
 
 @styled
@@ -126,7 +126,7 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     chosen = named_elements(rows, output)
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
     unit = time_unit(float(np.median(ends)) if len(ends) else 0.0)
-    (panel,) = column(axes, 2.3, entries=len(chosen))
+    (panel,) = column(axes, 2.3)
     bands: dict[str, bool] = {}  # in the order in which they are drawn
     for i, element in enumerate(chosen):
         curve = survival(ds, element.name)
@@ -142,13 +142,13 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
                 bands[meaning] = True
         _mark(panel, element, replicates_of(rows), unit, colour)
     panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
-    panel.set_xlabel(sentence(chosen[0].meaning, unit.name))
+    panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
     other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
     other.set_ylabel("Survival probability")
     if is_wide(ends):
         logarithmic(panel)
     entitle(panel, chosen, *bands)
-    return legend(panel)
+    return finish(panel, entries=len(chosen))
 
 
 def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, colour: str) -> None:
@@ -195,7 +195,7 @@ def quantile_table(
         axes = Drawing(figsize=(WIDTH, height)).add_axes((0.02, 0.0, 0.96, 1.0))
     axes.set_axis_off()
     axes.set(xlim=(0, 1), ylim=(height / _LINE, 0))
-    axes.text(0, 0.3, sentence(chosen[0].meaning, unit, 60), va="top")
+    axes.text(0, 0.3, as_label(chosen[0].meaning, unit, 60), va="top")
     axes.text(0, 1.5, f"{rows_in_words(chosen)}; 95 % intervals", va="top", color="0.35", size=7)
     places = [(k + 1) / len(found[0]) for k in range(len(found[0]))]
     for place, one in zip(places, found[0], strict=True):

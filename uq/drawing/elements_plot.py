@@ -50,6 +50,8 @@ def bins(values: Floats) -> tuple[Floats, bool]:
         return np.array([0.0, 1.0]), False
     wide = is_wide(values)
     scaled = np.log10(values) if wide else values
+    if np.ptp(scaled) <= 1e-9 * np.abs(scaled).max():  # but for rounding, one value
+        scaled = scaled[:1]
     count = len(np.histogram_bin_edges(scaled, "scott")) - 1
     edges = np.histogram_bin_edges(scaled, min(count, 60))
     return (10**edges if wide else edges), wide

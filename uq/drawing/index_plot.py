@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from uq.drawing.panel import column, finish, heading, roomy
 from uq.drawing.style import COLOURS, styled
-from uq.drawing.words import element_in_words, in_words, sentence
+from uq.drawing.words import as_label, element_in_words, in_words
 from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
@@ -15,8 +15,6 @@ from uq.indices.targets import FORMS, split_name
 from uq.rows.elements import named_elements
 from uq.rows.variables import is_category
 from uq.wording import time_unit
-
-_LIMITS = ("95 % limit for an input without effect", "95 % limit for the largest of them")
 
 
 @styled
@@ -56,7 +54,7 @@ def index_bars(
     kinds, name = found.kinds(), found.target.name
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
-    labels = [sentence(in_words(ds[parameter]), width=30) for parameter in parameters]
+    labels = [as_label(in_words(ds[parameter]), width=30) for parameter in parameters]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
     (panel,) = column(axes, 0.8 + 0.13 * lines.sum())
     middle = np.cumsum(lines) - lines / 2
@@ -68,7 +66,9 @@ def index_bars(
         panel.errorbar(value, y, xerr=np.abs(ends - value), fmt="none", ecolor="black", lw=0.8)
     for kind, null in found.indices.nulls.items():
         colour = COLOURS[list(kinds).index(kind)] if len(kinds) > 1 else "black"
-        for line, limit, label in zip(("--", ":"), (null.one, null.largest), _LIMITS, strict=True):
+        one = f"{100 * (1 - null.exceeded):g} % limit for an input without effect"
+        limits = {one: null.one, "95 % limit for the largest of them": null.largest}
+        for line, (label, limit) in zip(("--", ":"), limits.items(), strict=True):
             if np.isfinite(limit):
                 named = "_" * (label in panel.get_legend_handles_labels()[1])  # each once
                 panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named + label)
@@ -110,7 +110,7 @@ def subject(ds: xr.Dataset, name: str) -> str:
     category, _, label = inside.partition("=")
     if is_category(ds, category):
         meaning = ds[category].attrs["long_name"].removeprefix("the ")
-        return sentence(f"whether the {meaning} is {label}", width=56)
+        return as_label(f"whether the {meaning} is {label}", width=56)
     (element,) = named_elements(ds, inside)
     words = element_in_words(ds, element)
     if threshold:
@@ -119,4 +119,4 @@ def subject(ds: xr.Dataset, name: str) -> str:
         words = f"whether the {words.removeprefix('the ')}{',' * bool(element.place)} is below {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
-    return sentence(words, width=56)
+    return as_label(words, width=56)

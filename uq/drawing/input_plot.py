@@ -9,7 +9,7 @@ from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values
 from uq.drawing.elements_plot import bins
 from uq.drawing.panel import figure_of, grid, logarithmic, roomy
 from uq.drawing.style import COLOURS, styled
-from uq.drawing.words import named_input, sentence
+from uq.drawing.words import as_label, named_input
 from uq.errors import InputError
 from uq.inputs.conditioning import cdf_within
 from uq.inputs.law import Law
@@ -53,7 +53,7 @@ def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
             panel.set_xlabel(named_input(ds[name], width))
         else:
             factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
-            panel.set_xlabel(sentence(factor, width=width))
+            panel.set_xlabel(as_label(factor, width=width))
     rows = len(next(iter(found.values()))[1])
     panels[0].set_title(f"Share of {rows} rows per bin; line: stated law", loc="left")
     return figure_of(panels[0])

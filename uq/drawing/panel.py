@@ -35,7 +35,7 @@ def grid(
     axes : matplotlib.axes.Axes or None
         Several panels divide its area.
     height : float
-        Of a new figure [inch].
+        Of a new figure, without the legend that `finish` draws [inch].
     rows, columns : int
     **shared
         The axes that panels share, as in `matplotlib.figure.Figure.subplots`.
@@ -61,19 +61,9 @@ def grid(
     return place.subgridspec(rows, columns).subplots(squeeze=False, **shared)
 
 
-def column(axes: Axes | None, height: float, rows: int = 1, entries: int = 0) -> list[Axes]:
-    """Return panels, top to bottom, that share the horizontal axis; see `grid`.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes or None
-    height : float
-        Of a new figure without its legend [inch].
-    rows : int
-    entries : int
-        Lines of the legend below.
-    """
-    panels = grid(axes, height + _ENTRY * entries, rows, sharex=True)[:, 0]
+def column(axes: Axes | None, height: float, rows: int = 1) -> list[Axes]:
+    """Return panels, top to bottom, that share the horizontal axis; see `grid`."""
+    panels = grid(axes, height, rows, sharex=True)[:, 0]
     if axes is None:
         roomy(panels[0])
     return list(panels)
@@ -133,13 +123,15 @@ def figure_of(axes: Axes) -> Figure:
     return figure
 
 
-def legend(axes: Axes) -> Figure:
+def finish(axes: Axes, entries: int | None = None) -> Figure:
     """Draw the legend, if there is one: below a `Drawing`, or below the given axes.
 
     Parameters
     ----------
     axes : Axes
         One panel of the figure.
+    entries : int, optional
+        Lines that a `Drawing` grows by; by default those of the legend.
 
     Returns
     -------
@@ -147,6 +139,9 @@ def legend(axes: Axes) -> Figure:
     """
     handles, labels = axes.get_legend_handles_labels()
     figure = figure_of(axes)
+    if isinstance(figure, Drawing):
+        lines = len(labels) if entries is None else entries
+        figure.set_figheight(figure.get_figheight() + _ENTRY * lines)
     if labels and isinstance(figure, Drawing):
         shown = figure.legend(handles, labels, loc="outside lower left", markerscale=1.5)
         for handle in shown.legend_handles:
@@ -158,15 +153,6 @@ def legend(axes: Axes) -> Figure:
         place = {"bbox_to_anchor": (0, 0), "bbox_transform": below_label}
         axes.legend(loc="upper left", borderaxespad=0, ncols=columns, **place)
     return figure
-
-
-def finish(axes: Axes) -> Figure:
-    """Draw the legend of a panel, make room for it in a `Drawing`, and return the figure."""
-    figure = figure_of(axes)
-    if isinstance(figure, Drawing):
-        entries = len(axes.get_legend_handles_labels()[1])
-        figure.set_figheight(figure.get_figheight() + _ENTRY * entries)
-    return legend(axes)
 
 
 def heading(axes: Axes, text: str) -> None:

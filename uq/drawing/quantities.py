@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from uq.drawing.style import COLOURS
-from uq.drawing.words import in_words, sentence
+from uq.drawing.words import as_label, in_words
 from uq.errors import InputError, nearest
 from uq.rows.elements import Floats
 from uq.wording import time_unit
@@ -132,8 +132,8 @@ def label_axes(
         Of a line beside the vertical axis [characters].
     """
     scales = scale_of([across]), scale_of([up])
-    axes.set_xlabel(sentence(in_words(across), scales[0].unit))
-    axes.set_ylabel(sentence(in_words(up), scales[1].unit, width))
+    axes.set_xlabel(as_label(in_words(across), scales[0].unit))
+    axes.set_ylabel(as_label(in_words(up), scales[1].unit, width))
     return scales
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from uq.drawing.panel import column, finish
 from uq.drawing.quantities import families, find, label_axes, pair, scale_of
 from uq.drawing.style import COLOURS, LINES, are_many, point_size, styled
-from uq.drawing.words import powers, sentence
+from uq.drawing.words import as_label, powers
 from uq.errors import InputError
 from uq.wording import percent
 
@@ -187,4 +187,4 @@ def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
         value = find(one, f"representative_{name}")
         scale = scale_of([value])
         known.append(f"{value.item() * scale.factor:.3g} {powers(scale.unit)}".removesuffix(" 1"))
-    return sentence(", ".join([*known, percent(float(one["share"]))]), width=60)
+    return as_label(", ".join([*known, percent(float(one["share"]))]), width=60)

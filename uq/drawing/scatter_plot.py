@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from uq import intervals, order_statistics
 from uq.drawing.elements_plot import display_unit, entitle, occurring_regimes
-from uq.drawing.panel import grid, is_wide, legend, logarithmic, roomy, whole_numbers
+from uq.drawing.panel import finish, grid, is_wide, logarithmic, roomy, whole_numbers
 from uq.drawing.style import COLOURS, point_size, styled, thinned
-from uq.drawing.words import label, named_input, sentence
+from uq.drawing.words import as_label, label, named_input
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.methods.indices import RefusedError
@@ -59,11 +59,11 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
         _conditional(panel, inputs[name], element, per, wide, independent)
         _name_input(panel, rows, name)
         whole_numbers(panel.yaxis)
-        panel.set_ylabel(sentence(element.meaning, unit, width=24))
+        panel.set_ylabel(as_label(element.meaning, unit, width=24))
         if wide:
             logarithmic(panel, vertical=True)
     entitle(panels[0], [element], of=label(ds, element))
-    return legend(panels[0])
+    return finish(panels[0], entries=0)  # the panels are high enough to make room
 
 
 def _points(axes: Axes, x: Floats, element: Element, per: float) -> None:
@@ -160,8 +160,8 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     leading = _deciding(inputs, codes)[:_MOST_INPUTS]
     size = len(leading) - 1
     alone = size == 1
-    height = 0.5 + (2.1 if alone else 1.45 * size) + 0.15 * len(regimes)
-    panels = grid(axes, height, size, size, sharex="col", sharey="row")
+    height = 2.1 if alone else 1.45 * size
+    panels = grid(axes, 0.5 + height, size, size, sharex="col", sharey="row")
     shown = thinned(len(codes), _MOST_POINTS)
     points: Any = {
         "ms": point_size("cloud", len(shown)),
@@ -186,7 +186,7 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
             if j == 0:
                 panel.set_ylabel(named_input(rows[down], width=30 if alone else 20))
     panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
-    return legend(panels[0, 0])
+    return finish(panels[0, 0])
 
 
 def _deciding(inputs: dict[str, Floats], codes: NDArray[Any]) -> list[str]:

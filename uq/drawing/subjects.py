@@ -77,6 +77,6 @@ def follows_laws(findings: Findings, name: str) -> bool:
     return bool(laws_and_values(findings.ds))
 
 
-def settles(findings: Findings, name: str) -> bool:
+def has_running_estimate(findings: Findings, name: str) -> bool:
     """Whether an estimate of the output is known for fewer rows."""
     return bool(followed(findings.ds, name, findings.running)[0])

@@ -13,8 +13,8 @@ from uq.rows.elements import Element
 from uq.wording import percent
 
 
-def sentence(text: str, unit: str = "", width: int = 44) -> str:
-    """Return text for an axis: capitalised, with its unit, wrapped."""
+def as_label(text: str, unit: str = "", width: int = 44) -> str:
+    """Return text for an axis or a panel: capitalised, with its unit, wrapped."""
     text = plain(text[:1].upper() + text[1:])
     if unit and unit != "1":
         text += f" [{unbroken(unit)}]"
@@ -76,4 +76,4 @@ def in_words(variable: xr.DataArray) -> str:
 
 def named_input(parameter: xr.DataArray, width: int = 44) -> str:
     """Return the label of an input for an axis."""
-    return sentence(in_words(parameter), parameter.attrs["units"], width)
+    return as_label(in_words(parameter), parameter.attrs["units"], width)

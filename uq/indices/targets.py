@@ -168,8 +168,8 @@ def _lighter_form(element: Element) -> str:
 
 def _event(element: Element, threshold: float) -> Target:
     ended = element.values < threshold
-    unknown = int((ended & element.censored).sum())
-    refused = f"{unknown} of {ended.size} rows were censored before then" * (unknown > 0)
+    unknown = int(element.unknown_sides(threshold).sum())
+    refused = f"{unknown} of {ended.size} rows were censored before that time" * (unknown > 0)
     event = np.where(element.present, ended, np.nan)
     return Target(f"P({element.name}<{threshold!r})", element, event, refused, event=True)
 

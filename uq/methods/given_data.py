@@ -1,6 +1,7 @@
-"""Sensitivity from a plain sample: what the methods share that need no design of their own.
+"""Sensitivity from a plain sample: indices beside those of inputs without effect.
 
-RBD-FAST, Borgonovo's delta, PAWN and HDMR are SALib's estimators. Their scatter is not known:
+RBD-FAST, Borgonovo's delta, PAWN, quantile-oriented indices and regional sensitivity need no design
+of their own (`uq.methods.measures`, `uq.methods.quantile_oriented`). Their scatter is not known:
 bootstrap intervals of these estimates cover far less than their nominal level. Each index is
 therefore compared with a null: the same estimate for inputs without effect, which one in twenty of
 them exceeds, and a second one, which the largest of all inputs would exceed once in twenty. An
@@ -22,7 +23,7 @@ MIN_ROWS = 64
 DUMMIES = 19
 """One input in twenty without effect exceeds the largest of 19."""
 
-TIED = 0.05
+TIED_INPUT = 0.05
 """An input has many equal values if one of them has a larger share of the rows than this."""
 
 Measure = Callable[[Floats, Sample], tuple[dict[IndexKind, Floats], tuple[str, ...]]]
@@ -37,7 +38,7 @@ def one_kind(kind: IndexKind, measure: Callable[[Floats, Floats], Floats]) -> Me
 def beside_nulls(
     measure: Measure,
     corrected: Callable[[Floats, Floats], Floats] = lambda raw, idle: raw,
-    instead: str = "",
+    sorts_rows: bool = False,
 ) -> Callable[[Sample], Indices]:
     """Return the estimate of indices with the null of inputs without effect.
 
@@ -47,9 +48,8 @@ def beside_nulls(
         See `Measure`; NaN for an input whose rows are all in one slice.
     corrected : callable, optional
         ``corrected(raw, idle)`` -> indices, from raw ones and those of inputs without effect.
-    instead : str, optional
-        The methods for inputs with many equal values, if this one sorts the rows by each input and
-        so accepts none; "" if it does accept them.
+    sorts_rows : bool, optional
+        Whether it sorts the rows by each input, and so accepts none with many equal values.
 
     Returns
     -------
@@ -66,19 +66,19 @@ def beside_nulls(
         found: dict[IndexKind, dict[str, Estimate]] = {kind: {} for kind in raw}
         notes = (*notes, *_no_slices(list(x), raw))
         tied = [name for name, column in x.items() if _is_tied(column)]
-        if instead and tied:
-            notes = (*notes, _no_order(tied, len(x), instead))
+        if sorts_rows and tied:
+            notes = (*notes, _no_order(tied, len(x)))
         for i, (name, column) in enumerate(x.items()):
             own = idle
             sliced = not all(np.isnan(one[i]) for one in raw.values())
-            if name in tied and sliced and not instead:
+            if name in tied and sliced and not sorts_rows:
                 shuffled = np.column_stack([rng.permutation(column) for _ in range(DUMMIES)])
                 own, _ = measure(shuffled, sample)
                 reached = {kind: corrected(one, one) for kind, one in own.items()}
                 notes = (*notes, _own_null(name, reached))
             for kind, one in raw.items():
                 value = float(corrected(one[i], own[kind]))
-                lost = name in tied and instead
+                lost = name in tied and sorts_rows
                 found[kind][name] = Estimate(np.nan if lost else value)
         reached = {kind: corrected(one, one) for kind, one in idle.items()}
         return Indices(found, notes, {kind: _null(one, len(x)) for kind, one in reached.items()})
@@ -114,30 +114,30 @@ def largest_of(inputs: int, idle: Floats) -> float:
 
 def _is_tied(column: Floats) -> bool:
     counts = np.unique(column, return_counts=True)[1]
-    return bool(counts.max() > max(TIED * len(column), 1))
+    return bool(counts.max() > max(TIED_INPUT * len(column), 1))
 
 
-def _no_order(tied: list[str], inputs: int, instead: str) -> str:
+def _no_order(tied: list[str], inputs: int) -> str:
     """Return which inputs a method cannot sort the rows by; refuse if that is all of them."""
-    said = (
+    reason = (
         "the method sorts the rows by each input, so it accepts none with many equal values:"
-        f" {', '.join(tied)}; use {instead}"
+        f" {', '.join(tied)}; use pawn"
     )
     if len(tied) == inputs:
-        raise RefusedError(said)
-    return said
+        raise RefusedError(reason)
+    return reason
 
 
 def _no_slices(names: Sequence[str], raw: Mapping[IndexKind, Floats]) -> list[str]:
     """Return which inputs have all rows in one slice; refuse if that is all of them."""
-    said = [
+    reasons = [
         f"{name} has too few rows of any value but one: no {' or '.join(lost)}"
         for i, name in enumerate(names)
         if (lost := [kind.key for kind, one in raw.items() if np.isnan(one[i])])
     ]
     if all(np.isnan(one[: len(names)]).all() for one in raw.values()):
-        raise RefusedError("; ".join(said))
-    return said
+        raise RefusedError("; ".join(reasons))
+    return reasons
 
 
 def _own_null(name: str, own: Mapping[IndexKind, Floats]) -> str:

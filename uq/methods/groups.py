@@ -1,10 +1,9 @@
 """Intervals of methods whose rows come in groups: the scatter between replicates, and few rows.
 
 A replicate with three hits of an event, or three rows of the regime that scatters, does not show
-the scatter of the next three, and eight such replicates may agree by chance. Measured on 37 events
-and outputs of two regimes with 8 replicates of 128 or 512 groups, 600 times each: where fewer than
-50 rows of each replicate counted, intervals from the scatter alone covered S1 in 63 to 97 % of
-cases, widened ones in 94 to 100 %.
+the scatter of the next three, and eight such replicates may agree by chance. Where few rows count,
+intervals are therefore widened; docs/statistics.md states what they cover with and without it, and
+`benchmarks/coverage/few.py` counts the widened ones.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -22,10 +21,10 @@ ENOUGH_ROWS, ENOUGH_SHARE = 50, 0.22
 intervals are widened. Of a normal law it rests on a third of the rows."""
 
 Values = Mapping[IndexKind, Mapping[str, float]]
-"""IndexKind of index -> input -> value."""
+"""Kind of index -> input -> value."""
 
 
-def by_replicates(
+def pooled_with_intervals(
     estimate: Callable[[Floats], Values],
     pooled: Floats,
     replicates: Sequence[Floats],

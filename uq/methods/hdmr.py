@@ -10,29 +10,25 @@ from uq.estimate import Estimate
 from uq.methods.indices import S1, S2, SHAPLEY, ST, Indices, Null, RefusedError
 from uq.methods.sample import Floats, Sample
 
-MIN_ROWS = 600
-"""Half of them are held out; SALib accepts no fewer than the other 300."""
-
 EXPLAINED = 0.8
 """An expansion that explains less of the rows held out does not represent the output."""
 
 _DEGREES = (2, 4, 6, 8)  # and the highest that an input of few values allows
 _ENOUGH = 0.99
 _LEAST_VALUES = 10
+_MIN_ROWS = 600  # SALib accepts no fewer than the 300 that are not held out
 _MOST_ROWS = 2048
 _TERMS_PER_ROW = 0.8
 _MOST_TERMS = 500
 
 
-def hdmr_indices(sample: Sample, instead: str) -> Indices:
+def hdmr_indices(sample: Sample) -> Indices:
     """Estimate the indices of an expansion in functions of one and of two inputs.
 
     Parameters
     ----------
     sample : Sample
-        Of independent inputs; `MIN_ROWS` rows or more.
-    instead : str
-        The methods to use for an output with few values.
+        Of independent inputs.
 
     Returns
     -------
@@ -44,8 +40,8 @@ def hdmr_indices(sample: Sample, instead: str) -> Indices:
     Raises
     ------
     RefusedError
-        Few values, an input with a single value, or no degree of polynomials explains enough of
-        the rows held out.
+        Few values or rows, an input with a single value, or no degree of polynomials explains
+        enough of the rows held out.
 
     References
     ----------
@@ -57,8 +53,12 @@ def hdmr_indices(sample: Sample, instead: str) -> Indices:
     x, y = sample.inputs, sample.values
     if len(np.unique(y)) < _LEAST_VALUES:
         raise RefusedError(
-            f"it has fewer than {_LEAST_VALUES} values, and no polynomial has such steps; use"
-            f" {instead}"
+            f"the output takes fewer than {_LEAST_VALUES} values, and polynomials cannot represent"
+            " it; use pawn"
+        )
+    if len(y) < _MIN_ROWS:
+        raise RefusedError(
+            f"only {len(y)} rows have a value; {_MIN_ROWS} are needed, half of them held out"
         )
     n = min(len(y), _MOST_ROWS)
     names = [*x, ""]
@@ -88,9 +88,10 @@ def hdmr_indices(sample: Sample, instead: str) -> Indices:
     }
     note = (
         f"polynomials of degree {degree} in one and in two inputs explain {explained:.1%} of the"
-        " variance of rows held out; every second input without effect exceeds the null"
+        " variance of rows held out; half of the inputs without effect exceed the null"
     )
-    return Indices(values, (note,), {kind: Null(float(own[-1])) for kind, own in kinds.items()})
+    nulls = {kind: Null(float(own[-1]), exceeded=0.5) for kind, own in kinds.items()}
+    return Indices(values, (note,), nulls)
 
 
 def _best(x: Floats, y: Floats, degrees: tuple[int, ...]) -> tuple[int, float]:

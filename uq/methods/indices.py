@@ -56,13 +56,16 @@ class Null:
     Attributes
     ----------
     one : float
-        What one input in twenty without effect exceeds.
+        A limit for one of them.
     largest : float
         What the largest of as many inputs as there are exceeds once in twenty; NaN if not known.
+    exceeded : float
+        Share of inputs without effect that exceed `one`.
     """
 
     one: float
     largest: float = nan
+    exceeded: float = 0.05
 
 
 @dataclass(frozen=True)

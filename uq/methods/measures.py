@@ -15,7 +15,7 @@ MIN_SIDE = 10
 _HARMONICS = 10
 _GRID = 100
 _PAWN_SLICES = 10
-_TIED = 0.01
+_TIED_OUTPUT = 0.01  # share of the rows with one value
 
 
 def rbd_fast(x: Floats, y: Floats) -> Floats:
@@ -28,15 +28,13 @@ def rbd_fast(x: Floats, y: Floats) -> Floats:
     return unskew_S1(share, _HARMONICS, len(y))
 
 
-def delta(x: Floats, y: Floats, instead: str) -> Floats:
+def delta(x: Floats, y: Floats) -> Floats:
     """Estimate Borgonovo's delta: the mean area between the density in a slice and anywhere.
 
     Parameters
     ----------
     x : ndarray, shape (n, d)
     y : ndarray, shape (n,)
-    instead : str
-        The methods to use where it is refused.
 
     Returns
     -------
@@ -57,9 +55,9 @@ def delta(x: Floats, y: Floats, instead: str) -> Floats:
     """
     n = len(y)
     _, counts = np.unique(y, return_counts=True)
-    if counts.max() > max(_TIED * n, 1):
+    if counts.max() > max(_TIED_OUTPUT * n, 1):
         raise RefusedError(
-            f"{counts.max()} rows share one value, and delta compares densities; use {instead}"
+            f"{counts.max()} rows share one value, and delta compares densities; use pawn"
         )
     scores = stats.norm.ppf((stats.rankdata(y) - 0.5) / n)
     grid = np.linspace(scores.min(), scores.max(), _GRID)
@@ -129,7 +127,7 @@ def ks_distances(x: Floats, event: Floats) -> Floats:
     ndarray, shape (d,)
         The distance of Kolmogorov and Smirnov [1]_; of an input with few values the largest over
         all orders of them, which is the distance in total variation and does not depend on what
-        the values are called. An input that plays no part has one too.
+        the values are called. Inputs without effect also have a positive distance.
 
     Raises
     ------

@@ -96,8 +96,8 @@ class Method:
         whole = sample.whole
         kept = int(whole.sum())
         if kept < self.least:
-            told = f"only {kept} of {whole.size} {self.layout.needs}"
-            raise RefusedError(f"{told}; {self.least} are needed")
+            reason = f"only {kept} of {whole.size} {self.layout.needs}"
+            raise RefusedError(f"{reason}; {self.least} are needed")
         if self.layout is not PLAIN:
             return self.estimate(sample)
         rows, note = np.flatnonzero(whole), ""

@@ -4,7 +4,7 @@ import numpy as np
 
 from uq.designs.trajectories import STEP
 from uq.intervals import ROUNDING, is_constant
-from uq.methods.groups import Values, by_replicates
+from uq.methods.groups import Values, pooled_with_intervals
 from uq.methods.indices import IndexKind, Indices, RefusedError
 from uq.methods.method import NO_EFFECT
 from uq.methods.sample import Floats, Sample
@@ -41,7 +41,7 @@ def morris_indices(sample: Sample) -> Indices:
     -----
     Trajectories chosen far apart favour the corners. Their intervals are those of the average over
     such trajectories, which differs from the mean over all trajectories by tens of per cent; the
-    design says so.
+    note of the design states this.
 
     References
     ----------
@@ -70,4 +70,4 @@ def morris_indices(sample: Sample) -> Indices:
             kind: dict(zip(sample.inputs, own.tolist(), strict=True)) for kind, own in found.items()
         }
 
-    return Indices(*by_replicates(measures, effects[whole], replicates, "effects", lacking))
+    return Indices(*pooled_with_intervals(measures, effects[whole], replicates, "effects", lacking))

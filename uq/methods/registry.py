@@ -9,9 +9,9 @@ from functools import partial
 from uq.designs.design import Design
 from uq.designs.layouts import CROSSED, CURVES, PATHS, PLAIN, TRAJECTORIES
 from uq.designs.registry import DESIGNS
-from uq.methods import hdmr
 from uq.methods.fast import fast_indices
 from uq.methods.given_data import MIN_ROWS, beside_nulls, one_kind
+from uq.methods.hdmr import EXPLAINED, hdmr_indices
 from uq.methods.indices import S1, S2, SHAPLEY, ST, IndexKind
 from uq.methods.measures import delta, ks_distances, pawn, rbd_fast
 from uq.methods.method import Method
@@ -35,14 +35,14 @@ _of_any_inputs = partial(_of_plain_rows, assumes_independence=False)
 METHODS = {
     "rbd-fast": _of_plain_rows(
         "how much of the variance, alone",
-        estimate=beside_nulls(one_kind(S1, rbd_fast), instead="delta, pawn or quantile"),
+        estimate=beside_nulls(one_kind(S1, rbd_fast), sorts_rows=True),
         kinds=(S1,),
         source="random balance, bias corrected",
         most_rows=200_000,
     ),
     "delta": _of_any_inputs(
         "how much the whole distribution moves",
-        estimate=beside_nulls(one_kind(DELTA, partial(delta, instead="rbd-fast or pawn"))),
+        estimate=beside_nulls(one_kind(DELTA, delta)),
         kinds=(DELTA,),
         source="Plischke et al. (2013), on normal scores of the output",
         most_rows=10_000,
@@ -58,11 +58,10 @@ METHODS = {
     ),
     "hdmr": _of_plain_rows(
         "how much of the variance, alone, in pairs and in total",
-        estimate=partial(hdmr.hdmr_indices, instead="rbd-fast, pawn or regional"),
+        estimate=hdmr_indices,
         kinds=(S1, ST, SHAPLEY, S2),
         source="polynomials in one and in two inputs (Li et al. 2010); refused where they explain"
-        f" less than {100 * hdmr.EXPLAINED:g} % of rows held out",
-        least=hdmr.MIN_ROWS,
+        f" less than {100 * EXPLAINED:g} % of rows held out",
     ),
     "quantile": _of_any_inputs(
         "which inputs move a quantile, or B10 of a life",

@@ -8,7 +8,7 @@ import numpy as np
 
 from uq.designs.layouts import NOISE
 from uq.intervals import is_constant
-from uq.methods.groups import Values, by_replicates, effective_rows, one_more_row, widened
+from uq.methods.groups import Values, effective_rows, one_more_row, pooled_with_intervals, widened
 from uq.methods.indices import S1, S2, ST, IndexKind, Indices, RefusedError
 from uq.methods.method import NO_VARIANCE
 from uq.methods.sample import Floats, Sample
@@ -62,7 +62,7 @@ def sobol_indices(sample: Sample) -> Indices:
     replicates = [group[rows] for group, rows in zip(y, whole, strict=True)]
     few = any(len(own) < 2 or is_constant(own[:, ends]) for own in replicates)
     lacking = "in some replicates too few rows differ" if few else ""
-    found, notes = by_replicates(
+    found, notes = pooled_with_intervals(
         partial(_estimates, sample.blocks), y[whole], replicates, "indices", lacking
     )
     independent = y[whole][:, ends].ravel()

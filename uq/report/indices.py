@@ -9,7 +9,7 @@ import xarray as xr
 
 from uq.analysis.findings import Findings
 from uq.drawing.index_plot import subject
-from uq.drawing.words import in_words, sentence
+from uq.drawing.words import as_label, in_words
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.ranked import Values, lines, ranking, size
@@ -36,8 +36,7 @@ class Subject(NamedTuple):
     pictures : tuple of Picture
     notes : list of str
     leading : str
-        A sentence on the input with the largest index; "" if no index exceeds that of an input
-        without effect.
+        A sentence on the input with the largest index; "" if no index exceeds the null.
     """
 
     name: str
@@ -131,7 +130,7 @@ def _leading(ds: xr.Dataset, method: str, words: str, found: TargetIndices) -> s
     if index.value < _LEAST:
         text = f"{name} = {kind.text(index.value)} at most"
         return f"No single input explains much of the variance of {what} ({text})."
-    leader = sentence(in_words(ds[first]), width=1000)
+    leader = as_label(in_words(ds[first]), width=1000)
     return f"{leader} explains {percent(index.value)} of the variance of {what} ({name})."
 
 

@@ -26,7 +26,7 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
         share = found / max(summary.samples, 1)
         cells = (Cell(str(found), key=float(found)), Cell(percent(share), key=share))
         rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
-    header = ("status", "rows", "share", "meaning", "the first such row said")
+    header = ("status", "rows", "share", "meaning", "first message")
     return without_empty_columns(Table("Status of all rows", header, rows))
 
 

@@ -89,6 +89,10 @@ class Element:
         """Where there is a value."""
         return ~np.isnan(self.values)
 
+    def unknown_sides(self, threshold: float) -> Mask:
+        """Return where rows were censored below a threshold, so that their side is unknown."""
+        return self.censored & (self.values < threshold)
+
     @property
     def at_least(self) -> Floats:
         """The values, shape (present,), with censored ones at their lower bound."""

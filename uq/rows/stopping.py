@@ -132,14 +132,13 @@ def _estimate(
     kept = ~element.failed
     if until.threshold is not None:
         values = element.for_thresholds
-        if (element.censored & (values < until.threshold)).any():
+        if element.unknown_sides(until.threshold).any():
             return NOTHING
         hits = values > until.threshold if until.above is not None else values < until.threshold
-        within = None if replicate is None else replicate[kept]
+        within = intervals.replicates_of_some(replicate, kept)
         value = hits[kept].mean() if kept.any() else np.nan
         return Estimate(float(value), *intervals.share_interval(hits[kept], within, level))
-    present = element.present
-    within = None if replicate is None else replicate[present]
+    within = intervals.replicates_of_some(replicate, element.present)
     values = element.at_most
     if until.quantile is not None:
         value = order_statistics.quantile(values, until.quantile)

@@ -51,13 +51,13 @@ class ModelSpec(NamedTuple):
         model = find_model(self.model)
         if model.version != self.version:
             raise InputError(
-                f"a worker has version {model.version} of model '{model.name}', "
-                f"this process has {self.version}: install the same on both"
+                f"the process that computes rows has version {model.version} of model "
+                f"'{model.name}', this process has {self.version}: install the same on both"
             )
         if self.code not in ("", code_of(self.model)):
             raise InputError(
-                f"a worker has other code of model '{model.name}' than this process: start again "
-                "if it was edited meanwhile, or install the same on both"
+                f"the process that computes rows has other code of model '{model.name}' than this "
+                "process: start again if it was edited meanwhile, or install the same on both"
             )
         wanted = model.alone(self.output) if self.output else model
         return wanted, model.settings(**dict(self.settings))

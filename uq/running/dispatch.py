@@ -149,7 +149,8 @@ class Dispatcher:
             if crew.own and not threads and self._untaken:
                 self._here(self._shared(sharing))
             for start, some, chunk, seconds in sent.returned():
-                self.row_seconds = seconds / len(some.x)
+                if seconds:  # unknown for a row that was given up
+                    self.row_seconds = seconds / len(some.x)
                 self._keep(start, some, chunk)
             self.store.keep_up()
 

@@ -91,16 +91,16 @@ class Executor:
             dispatcher.begin_here(share=1 / 8)
             dispatcher.finish_on(crew)
             return
-        if not workers and self._crew is None:
+        begun = not workers and self._crew is None
+        if begun:
             dispatcher.begin_here(share=1)
-        # Work that is not worth starting workers, with the rows before.
+        # Counting earlier dispatchers, is the work worth starting workers?
         seconds = self._seconds + dispatcher.row_seconds * dispatcher.left
         if self._crew is None and in_one_process(workers, seconds):
             dispatcher.finish_here()
         elif dispatcher.left:
-            known = workers is None and self._crew is None
             crew = self._started(dispatcher)
-            if not known:
+            if not begun:
                 dispatcher.begin_here(share=1 / 8)  # while they start
             dispatcher.finish_on(crew)
         self._seconds += dispatcher.row_seconds * dispatcher.rows

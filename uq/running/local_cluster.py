@@ -108,8 +108,8 @@ class _Processes:
                 continue
             killed = process.returncode < 0  # from outside: the next may live
             if not self._connected and not killed:
-                said = log.read_text(errors="replace").strip()
-                last = said.splitlines()[-1] if said else f"exit code {process.returncode}"
+                output = log.read_text(errors="replace").strip()
+                last = output.splitlines()[-1] if output else f"exit code {process.returncode}"
                 raise RunError(f"a worker process could not start: {last}")
             del self._running[process]
             process.communicate()  # closes its standard input

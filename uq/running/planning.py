@@ -92,18 +92,21 @@ def pilot(
     workload = workload_of(study)
     total, count = workload.total, processes(workload, workers)
     with ExitStack() as stack:
-        crew = [stack.enter_context(isolated(workload, None, compiling)) for _ in range(count)]
+        evaluators = [
+            stack.enter_context(isolated(workload, None, compiling)) for _ in range(count)
+        ]
         load_seconds = _load_seconds()
-        row_seconds, first_seconds = _warm_up(workload, crew)
+        row_seconds, first_seconds = _warm_up(workload, evaluators)
         size = ChunkSizes(workload).good(row_seconds)
-        done, chunks = _spread_chunks(workload, crew, size)
+        done, chunks = _spread_chunks(workload, evaluators, size)
     some, found, seconds = zip(*done, strict=True)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
     row_seconds, error = _row_cost(seconds, [len(part.x) for part in some], chunks)
 
     kept = row_bytes(study) * total
     constants = len(study.model.parameter_names) - len(study.uncertain)
-    size = _FILE_BYTES + kept - 8 * constants * total  # a constant is one number in the result
+    # A constant is one number in the result.
+    result_bytes = _FILE_BYTES + kept - 8 * constants * total
     alone = row_seconds * total
     if in_one_process(workers, alone):
         count = 1
@@ -112,7 +115,8 @@ def pilot(
         beside += _WORKERS_LOADS * load_seconds + first_seconds
     shares = 1.0, max(0.0, 1 - error), 1 + error
     likely, low, high = (alone / count * share + beside for share in shares)
-    cost = Cost(total, count, len(rows.x), row_seconds, likely, low, high, size, kept + size)
+    times = row_seconds, likely, low, high
+    cost = Cost(total, count, len(rows.x), *times, result_bytes, kept + result_bytes)
     chunk = joined(found)
     failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
     return cost, results.build(study, rows, chunk.columns, chunk.status, failures)
@@ -135,7 +139,7 @@ def _timed(
     return rows, chunk, time.perf_counter() - began
 
 
-def _warm_up(workload: Workload, crew: Sequence[Evaluate]) -> tuple[float, float]:
+def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> tuple[float, float]:
     """Compile the model in one process, and load it in the others.
 
     Then one process computes growing chunks, as a run does before it starts workers: return the
@@ -143,10 +147,10 @@ def _warm_up(workload: Workload, crew: Sequence[Evaluate]) -> tuple[float, float
     """
     sizes = ChunkSizes(workload)
     size, seconds = min(workload.total, sizes.first), 0.0
-    for evaluate in crew:
+    for evaluate in evaluators:
         _timed(evaluate, workload, 0, size)
     while True:
-        *_, last = _timed(crew[0], workload, 0, size)
+        *_, last = _timed(evaluators[0], workload, 0, size)
         seconds += last
         grown = min(sizes.following(size, last / size), workload.total)
         if seconds > CHUNK_SECONDS or grown <= size:
@@ -155,7 +159,7 @@ def _warm_up(workload: Workload, crew: Sequence[Evaluate]) -> tuple[float, float
 
 
 def _spread_chunks(
-    workload: Workload, crew: Sequence[Evaluate], size: int
+    workload: Workload, evaluators: Sequence[Evaluate], size: int
 ) -> tuple[list[tuple[Rows, Chunk, float]], int]:
     """Return chunks spread over the study, with the time of each, and how many it has in all.
 
@@ -163,7 +167,7 @@ def _spread_chunks(
     """
     chunks = ceil(workload.total / size)
     starts = [index * size for index in _spread(chunks)]
-    least, end = _CHUNKS_AT_LEAST * len(crew), time.perf_counter() + PILOT_SECONDS
+    least, end = _CHUNKS_AT_LEAST * len(evaluators), time.perf_counter() + PILOT_SECONDS
     done: dict[int, tuple[Rows, Chunk, float]] = {}
     turn = Lock()
 
@@ -176,8 +180,8 @@ def _spread_chunks(
                 start = starts.pop()
             done[start] = _timed(evaluate, workload, start, size)
 
-    with ThreadPoolExecutor(len(crew)) as pool:
-        list(pool.map(compute, crew))
+    with ThreadPoolExecutor(len(evaluators)) as pool:
+        list(pool.map(compute, evaluators))
     return [done[start] for start in sorted(done)], chunks
 
 

@@ -95,7 +95,7 @@ def run(
         workers, scheduler, chunk_rows, row_limit, fresh, mixed, progress or ignore, say or ignore
     )
     ds = run_study(study, path, options)
-    if say is None and not mixed and (line := made_elsewhere(study, path, ds)):
+    if say is None and not mixed and (line := line_on_other_code(study, path, ds)):
         warnings.warn(line, stacklevel=2)
     return ds
 
@@ -147,7 +147,7 @@ def finished(study: Study, path: Path) -> xr.Dataset | None:
     return ds
 
 
-def made_elsewhere(study: Study, path: Path, ds: xr.Dataset) -> str:
+def line_on_other_code(study: Study, path: Path, ds: xr.Dataset) -> str:
     """Say what to do about rows of a result that other code of the model computed."""
     if not is_other_code(ds.attrs, study.model_reference):
         return ""

@@ -1,7 +1,8 @@
 """Chunks sent to dask workers: what returns, and what is sent again.
 
-The chunks of a killed worker are computed by another. A chunk that kills its worker three times is
-halved until the guilty row is found, which is marked as crashed.
+The chunks of a killed worker are computed by another. A chunk that kills own workers `TRIES` times,
+or those of a cluster more often than dask's ``allowed-failures``, is halved until the guilty row is
+found, which is marked as crashed.
 """
 
 from typing import TYPE_CHECKING, Any

@@ -94,7 +94,7 @@ def _independent(
     freedom = regimes - 1, n - regimes
     with np.errstate(divide="ignore", invalid="ignore"):
         statistic = ratio / freedom[0] / ((1 - ratio) / freedom[1])
-    if not half > 0 or stats.f.sf(statistic, *freedom) > 1 - CONFIDENCE:
+    if not half > 0 or not 0 < value < 1 or stats.f.sf(statistic, *freedom) > 1 - CONFIDENCE:
         return value, np.nan, np.nan
     # Fisher's transformation of the root, in which the estimate is nearly normal.
     root = np.sqrt(value)

@@ -57,5 +57,5 @@ def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
             estimator=quantile(p),
         )
     for label, rows in (("never ending", element.never), ("censored", element.censored)):
-        seen = Estimate(float(rows.sum()))
-        yield Statistic((label,), f"rows {label}", seen, "rows", _ROWS)
+        label = f"rows {label}"
+        yield Statistic(("b_lives", label), label, Estimate(float(rows.sum())), "rows", _ROWS)

@@ -11,7 +11,7 @@ import xarray as xr
 from uq import json_form
 from uq.analysis.estimators import Estimator
 from uq.estimate import Estimate
-from uq.intervals import Replicates
+from uq.intervals import Replicates, replicates_of_some
 from uq.rows.elements import Element
 from uq.study.file import AnalysisTable
 from uq.wording import known, number
@@ -48,7 +48,7 @@ class Context:
 
     def present(self, element: Element) -> Replicates:
         """Return the replicate of each row in which the element has a value."""
-        return None if self.replicate is None else self.replicate[element.present]
+        return replicates_of_some(self.replicate, element.present)
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def facts(group: Sequence["Statistic"]) -> dict[str, Any]:
     return {name: fact for one in group for name, fact in one.facts.items()}
 
 
-def rows_in_words(value: float) -> str:
+def count_in_words(value: float) -> str:
     """Return a number of rows, or "" for zero."""
     return f"{value:.0f}" if value else ""
 
@@ -144,7 +144,7 @@ class Kind:
 ESTIMATE = Kind()
 COUNT = Kind(
     write=counts,
-    shown=rows_in_words,
+    shown=count_in_words,
     is_count=True,
     has_interval=False,
     readers=~(Reader.COMPARED | Reader.RUNNING),
@@ -159,7 +159,7 @@ class Statistic:
     Attributes
     ----------
     key : tuple of str
-        Path of its entry in JSON.
+        Path of its entry in JSON, or where that would be; no two of an output are equal.
     label : str
         Its name on a terminal, and wherever no other is given; "" is not shown there.
     estimate : Estimate

@@ -12,7 +12,7 @@ from uq.analysis.failed_rows import bounded
 from uq.analysis.life_quantiles import ended_by
 from uq.analysis.statistics.statistic import Context, Kind, Listing, Statistic, entry
 from uq.estimate import Estimate
-from uq.intervals import Replicates, share_interval
+from uq.intervals import Replicates, replicates_of_some, share_interval
 from uq.rows.elements import Element, Mask
 
 SIDES = {"above": ">", "below": "<"}
@@ -32,10 +32,9 @@ def event(element: Element, threshold: float) -> tuple[Mask, Mask] | None:
         Rows without a value lie on neither side. None where rows were censored below the
         threshold, so that their side is unknown.
     """
-    values, censored = element.values, element.censored
-    if (censored & (values < threshold)).any():
+    if element.unknown_sides(threshold).any():
         return None
-    values = element.for_thresholds
+    values, censored = element.for_thresholds, element.censored
     above = (values > threshold) | (censored & (values == threshold))
     return above, (values < threshold) & ~censored
 
@@ -101,20 +100,20 @@ def _probabilities(
             estimator=share(_hits(threshold, place)),
         )
         if sides is None:
-            yield _after_kaplan_meier(one, element, threshold, replicate)
+            yield _by_kaplan_meier(one, element, threshold, replicate)
         else:
-            within = None if replicate is None else replicate[kept]
+            within = replicates_of_some(replicate, kept)
             yield replace(one, estimate=share_of(sides[place][kept], within))
 
 
-def _after_kaplan_meier(
+def _by_kaplan_meier(
     one: Statistic, element: Element, threshold: float, replicate: Replicates
 ) -> Statistic:
-    unknown = int((element.censored & (element.values < threshold)).sum())
-    reason = f"{unknown} of {len(element.values)} rows were censored before then"
+    unknown = element.unknown_sides(threshold)
+    reason = f"{unknown.sum()} of {unknown.size} rows were censored before that time"
     guess = ended_by(element, threshold, replicate)[one.falls]
     label = f"{one.label}, if" if one.falls else ""  # a terminal shows one side only
-    small = (reason, "by Kaplan-Meier, if censoring is non-informative", guess.reason)
+    small = (reason, f"by Kaplan-Meier, assuming {guess.assumes}", guess.reason)
     return replace(
         one,
         estimate=Estimate(reason=reason),

@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import isfinite
+from math import isnan
 from typing import Any
 
 from uq import json_form
 from uq.analysis.life_quantiles import whenever_censored_rows_end
 from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
-from uq.estimate import NOTHING, Estimate
-from uq.order_statistics import rows_needed, tolerance_bounds
+from uq.estimate import Estimate
+from uq.order_statistics import rows_for_bound, tolerance_bounds
 from uq.rows.elements import Element
 
 
@@ -30,6 +30,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     late = tolerance_bounds(element.at_most, failed, *asked)
     lower = whenever_censored_rows_end((early[0], early[0]))
     upper = whenever_censored_rows_end((early[1], late[1]))
+    needed = rows_for_bound(*asked, failed)
     coverage, confidence = (f"{100 * share:g}" for share in asked)
     listing = Listing(
         f"Tolerance bounds: with {confidence} % confidence each, {coverage} % of all lie above the"
@@ -45,11 +46,11 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
             found,
             element.units,
             bound,
+            rows_needed=needed if isnan(found.value) else None,
             column=f"tolerance_{name}",
             heading=name,
             sentence=sentence,
         )
-    needed = rows_needed(*asked, failed)
     yield Statistic(
         ("tolerance", "rows_needed"),
         "rows needed",
@@ -58,6 +59,3 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         replace(COUNT, listing=listing, readers=COUNT.readers & ~Reader.TERMINAL),
         column="tolerance_rows_needed",
     )
-    if not (isfinite(lower.value) or isfinite(upper.value)):
-        short = replace(bound, readers=Reader.TERMINAL)
-        yield Statistic(("tolerance", "short"), "", NOTHING, kind=short, rows_needed=needed)
