@@ -53,8 +53,6 @@ def _step(modes, w, head, coefficients):
             c = 4 * UNROLL * g
             t0, d0, a0, b0 = modes[c], modes[c + 1], modes[c + 2], modes[c + 3]
             t1, d1, a1, b1 = modes[c + 4], modes[c + 5], modes[c + 6], modes[c + 7]
-            t2, d2, a2, b2 = modes[c + 8], modes[c + 9], modes[c + 10], modes[c + 11]
-            t3, d3, a3, b3 = modes[c + 12], modes[c + 13], modes[c + 14], modes[c + 15]
             for lane in range(LANES):
                 p = top[P * LANES + lane]
                 k = g * (2 * UNROLL * LANES) + lane
@@ -66,15 +64,7 @@ def _step(modes, w, head, coefficients):
                 y1 = fma(a1, p, fma(t1, y, column[k + 3 * LANES]))
                 column[k + 3 * LANES] = fma(b1, p, -d1 * y)
                 column[k + 2 * LANES] = y1
-                y = column[k + 4 * LANES]
-                y2 = fma(a2, p, fma(t2, y, column[k + 5 * LANES]))
-                column[k + 5 * LANES] = fma(b2, p, -d2 * y)
-                column[k + 4 * LANES] = y2
-                y = column[k + 6 * LANES]
-                y3 = fma(a3, p, fma(t3, y, column[k + 7 * LANES]))
-                column[k + 7 * LANES] = fma(b3, p, -d3 * y)
-                column[k + 6 * LANES] = y3
-                top[_SUM * LANES + lane] += (y0 + y1) + (y2 + y3)
+                top[_SUM * LANES + lane] += y0 + y1
         for lane in range(LANES):
             free, x1 = top[_SUM * LANES + lane], top[X1 * LANES + lane]
             p = fma(then_2, top[X2 * LANES + lane], fma(now, free, then_1 * x1))
