@@ -56,6 +56,7 @@ notebooks: $(TEST)
 	@$(BIN)/python notebooks/execute.py
 
 bench: $(TEST)
+	@$(BIN)/python -m benchmarks.startup
 	@$(BIN)/python -m benchmarks.beam
 	@$(BIN)/python -m benchmarks.beam_study
 	@$(BIN)/python -m benchmarks.beam_lives
@@ -64,6 +65,8 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.mole
 	@$(BIN)/python -m benchmarks.store
 	@$(BIN)/python -m benchmarks.large
+	@$(BIN)/python -m benchmarks.scaling
+	@$(BIN)/python -m benchmarks.cluster
 
 # Coverage of every reported interval: writes docs/coverage.md, in about an hour and a half.
 coverage: $(TEST)

@@ -5,6 +5,7 @@ import signal
 import sys
 from typing import NamedTuple
 
+import dask  # noqa: F401  (before a verb that only reads calls it absent)
 import pytest
 
 import models.numerics.jit  # noqa: F401  (before numba: all tests compile as the command does)

@@ -1,7 +1,7 @@
 """The interval of a share estimated from few hits, where Wilson's covers too little."""
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from uq.contract import Floats, Mask
 
@@ -48,6 +48,6 @@ def exact_interval(
     # Rounding must not leave a fraction of a hit where there was none.
     hits = np.where(np.isclose(hits, np.round(hits), rtol=0, atol=1e-9), np.round(hits), hits)
     misses = np.maximum(rows - hits, 0.0)
-    low = np.where(hits > 0, stats.beta.ppf(tail, np.maximum(hits, 1e-9), misses + 1), 0.0)
-    high = np.where(misses > 0, stats.beta.isf(tail, hits + 1, np.maximum(misses, 1e-9)), 1.0)
+    low = np.where(hits > 0, special.betaincinv(np.maximum(hits, 1e-9), misses + 1, tail), 0.0)
+    high = np.where(misses > 0, special.betainccinv(hits + 1, np.maximum(misses, 1e-9), tail), 1.0)
     return low, high

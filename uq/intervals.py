@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from uq.contract import Floats, Mask
 from uq.exact_shares import are_few, exact_interval
+from uq.quantile_functions import normal, student
 
 CONFIDENCE = 0.95
 ROUNDING = 64 * np.finfo(float).eps
@@ -52,7 +52,8 @@ def scatter_interval(value: float, estimates: Floats, confidence: float = CONFID
     count = len(estimates)
     if count < 2 or is_constant(estimates):
         return UNKNOWN
-    half = stats.t.ppf(upper_tail(confidence), count - 1) * stats.sem(estimates)
+    error = estimates.std(ddof=1) / count**0.5
+    half = student(upper_tail(confidence), count - 1) * error
     return float(value - half), float(value + half)
 
 
@@ -158,7 +159,7 @@ def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE)
 
 def wilson_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:
     """Return Wilson's interval of a share from an effective number of independent rows."""
-    return _floats(_wilson(share, rows, stats.norm.ppf(upper_tail(confidence))))
+    return _floats(_wilson(share, rows, normal(upper_tail(confidence))))
 
 
 def scattered_share_interval(
@@ -195,12 +196,11 @@ def scattered_share_interval(
     # A survival curve may reach 0 while that of a censored replicate does not.
     known = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
     worth = at * (1 - at) / np.where(known, variance, np.nan)
-    wide = stats.t.ppf(upper_tail(confidence), count - 1)
+    wide = student(upper_tail(confidence), count - 1)
     found = _wilson(share, worth, wide)
     if rows is None:
         return found
-    normal = stats.norm.ppf(upper_tail(confidence))
-    worth = np.fmin(worth * (normal / wide) ** 2, rows)
+    worth = np.fmin(worth * (normal(upper_tail(confidence)) / wide) ** 2, rows)
     few = are_few(share, rows)
     low, high = exact_interval(share, worth, confidence)
     return np.where(few, low, found[0]), np.where(few, high, found[1])

@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
 
 from uq.estimate import Estimate
 from uq.intervals import (
@@ -17,6 +16,7 @@ from uq.intervals import (
     mean_interval,
     scatter_interval,
 )
+from uq.quantile_functions import normal
 from uq.tails import FEWEST_ROWS, Tail, heavier_tail
 
 LIGHT_ENOUGH = 0.15
@@ -167,12 +167,19 @@ def sd_interval(
 def _bonett(values: Floats, squares: Floats, confidence: float) -> Floats:
     """Return the ends of the interval of the variance, over its estimate."""
     n = len(values)
-    z = stats.norm.ppf(0.5 + confidence / 2)
-    middle = stats.trim_mean(values, 1 / (2 * np.sqrt(n - 4)))
+    z = normal(0.5 + confidence / 2)
+    middle = _trimmed_mean(values, 1 / (2 * np.sqrt(n - 4)))
     kurtosis = n * np.sum((values - middle) ** 4) / squares.sum() ** 2
     c = n / (n - z)
     error = c * np.sqrt(max(kurtosis - (n - 3) / n, 0.0) / (n - 1))
     return np.exp(np.log(c) + z * error * np.array([-1, 1]))
+
+
+def _trimmed_mean(values: Floats, share: float) -> float:
+    """Return the mean without this share of the values at each end."""
+    first = int(share * len(values))
+    last = len(values) - first
+    return float(np.partition(values, (first, last - 1))[first:last].mean())
 
 
 def standard_deviation(values: Floats, replicate: Replicates = None) -> float:

@@ -1,7 +1,6 @@
 """Quantiles, their intervals, and tolerance bounds, from order statistics."""
 
 import numpy as np
-from scipy import stats
 
 from uq.intervals import (
     CONFIDENCE,
@@ -14,6 +13,7 @@ from uq.intervals import (
     scattered_share_interval,
     upper_tail,
 )
+from uq.quantile_functions import binomial, binomial_exceeded, negative_binomial
 
 
 def is_within(probability: float, rows: int) -> bool:
@@ -91,10 +91,10 @@ def quantile_interval(
     if n == 0:
         return UNKNOWN
     if replicate is None:
-        tail = 1 - upper_tail(confidence)  # a frozen law would cost more than the rest
+        tail = 1 - upper_tail(confidence)
         return (
-            order_statistic(values, int(stats.binom.ppf(tail, n, probability))),
-            order_statistic(values, int(stats.binom.isf(tail, n, probability)) + 1),
+            order_statistic(values, binomial(tail, n, probability)),
+            order_statistic(values, binomial_exceeded(tail, n, probability) + 1),
         )
     value = quantile(values, probability)
     if np.isnan(value):
@@ -114,6 +114,12 @@ def order_statistic(values: Floats, rank: int) -> float:
     if not 1 <= rank <= len(values):
         return np.nan
     return float(np.partition(values, rank - 1)[rank - 1])
+
+
+def mean_ranks(values: Floats) -> Floats:
+    """Return ranks from 1, shape (n,); equal values share the mean of theirs."""
+    _, place, counts = np.unique(values, return_inverse=True, return_counts=True)
+    return (np.cumsum(counts) - (counts - 1) / 2)[place]
 
 
 def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: float) -> Ends:
@@ -141,11 +147,11 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
     91-96 (1941).
     """
     n = len(values)
-    outside = int(stats.binom.ppf(1 - confidence, n + failed, 1 - coverage)) - failed
+    outside = binomial(1 - confidence, n + failed, 1 - coverage) - failed
     return order_statistic(values, outside), order_statistic(values, n + 1 - outside)
 
 
 def rows_for_bound(coverage: float, confidence: float, failed: int = 0) -> int:
     """Return the smallest number of rows, `failed` of them failed, for a tolerance bound."""
     beyond = failed + 1  # rows that must lie outside the bound
-    return beyond + int(stats.nbinom.ppf(confidence, beyond, 1 - coverage))
+    return beyond + negative_binomial(confidence, beyond, 1 - coverage)

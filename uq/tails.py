@@ -14,9 +14,10 @@ References
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from uq.contract import Floats
+from uq.quantile_functions import normal
 
 MIN_TAIL = 20
 """Fewer values do not distinguish tails."""
@@ -71,7 +72,7 @@ class Tail(NamedTuple):
     def no_variance(self) -> bool:
         """Whether the rows contradict a finite variance: k is significantly above 1/2."""
         light = _shrunk(LIGHT, self.values)
-        reach = stats.norm.isf(SIGNIFICANCE) * _error(LIGHT, self.values)
+        reach = -normal(SIGNIFICANCE) * _error(LIGHT, self.values)
         return self.k > max(0.5, light + reach)
 
     @property
@@ -188,8 +189,11 @@ def generalised_pareto(excess: Floats) -> tuple[float, float]:
 
 def _distance(excess: Floats, shape: float, scale: float) -> float:
     """Return the Anderson-Darling statistic of ascending values and this law."""
-    left = stats.genpareto.logcdf(excess, shape, scale=scale)
-    right = stats.genpareto.logsf(excess, shape, scale=scale)
+    x = excess / scale
+    right = -special.log1p(shape * x) / shape
+    below, above = -special.inv_boxcox1p(-x, -shape), special.inv_boxcox(-x, -shape)
+    with np.errstate(divide="ignore"):  # in the half that is not taken
+        left = np.where(below < 0.5, np.log(below), np.log1p(-above))
     n = len(excess)
     return float(-n - (2 * np.arange(1, n + 1) - 1) @ (left + right[::-1]) / n)
 

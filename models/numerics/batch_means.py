@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import stdtrit
 
 Array = NDArray[np.float64]
 
@@ -51,6 +50,8 @@ def mean_and_bound(batches: Array) -> tuple[Array, Array]:
     -------
     mean, error : ndarray, shape (n, ...)
     """
+    from scipy.special import stdtrit  # which few rows need
+
     n, count, *rest = batches.shape
     error = np.zeros((n, *rest))
     length = 1

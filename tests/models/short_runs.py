@@ -19,7 +19,7 @@ from models.mole.exact import events  # noqa: E402
 from models.mole.parameters import Params as Mole  # noqa: E402
 from models.vibrator.equations.system import system, systems  # noqa: E402
 from models.vibrator.exact import propagator  # noqa: E402
-from models.vibrator.lanes import orbit  # noqa: E402
+from models.vibrator.lanes.following import follow  # noqa: E402
 from models.vibrator.lanes.packed import pack  # noqa: E402
 from models.vibrator.parameters import Params as Vibrator  # noqa: E402
 
@@ -47,10 +47,10 @@ def mole():
 
 def vibrator_orbit():
     p = Vibrator._make(field[:1] for field in test_orbit.MACHINES)
-    found, state, period, multiplier = test_orbit.find(p, 8)
+    found, state, period, *others = test_orbit.find(p, 8)
     assert found.all()
-    trace = orbit.follow(pack(systems(p).rigid), state, period, 8)
-    return np.concatenate([state[0], period, multiplier, trace[0, 3]])
+    trace = follow(pack(systems(p).rigid), state, period, 8)
+    return np.concatenate([state[0], period, *others, trace[0, 3]])
 
 
 def vibrator(p, kinematics, **feed):

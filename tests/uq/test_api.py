@@ -74,12 +74,11 @@ def test_an_unknown_name_is_an_attribute_error():
     "program",
     [
         "import uq",
-        "import uq.cli, uq.cli.app",
         "import sys; sys.argv[1:] = ['--help']\n"
         "from uq.cli import main\n"
         "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code",
     ],
-    ids=["import uq", "import uq.cli", "uq --help"],
+    ids=["import uq", "uq --help"],
 )
 def test_heavy_modules_stay_unloaded(program):
     check = f"\nimport sys\nprint('loaded:', *{HEAVY!r} & set(sys.modules), file=sys.stderr)"
@@ -87,3 +86,37 @@ def test_heavy_modules_stay_unloaded(program):
         [sys.executable, "-c", program + check], capture_output=True, text=True, timeout=60
     )
     assert ended.stderr == "loaded:\n"
+
+
+DEAR = {
+    *("SALib", "dask", "distributed", "jinja2", "matplotlib", "netCDF4", "numba", "pandas"),
+    *("scipy.linalg", "scipy.optimize", "scipy.stats", "sympy", "xarray"),
+}
+READING = {"netCDF4", "pandas", "xarray"}
+IMPORTED_BY = """
+import sys
+from uq.cli import main
+for command in sys.argv[1].split(","):
+    sys.argv[1:] = command.split()
+    try:
+        main()
+    except SystemExit as end:
+        assert not end.code
+    print("loaded:", *(name for name, module in sys.modules.items() if module), file=sys.stderr)
+"""
+
+
+@pytest.mark.parametrize(
+    ("verbs", "allowed"),
+    [("simulate linear", set()), ("summary small.nc,sensitivity small.nc", READING)],
+    ids=["simulate", "summary and sensitivity"],
+)
+def test_a_verb_imports_only_what_it_needs(verbs, allowed, write_study):
+    """Those who wait for an answer do not wait for modules that have no part in it."""
+    if allowed:
+        uq.run(write_study(), "small.nc", workers=0)
+    command = [sys.executable, "-c", IMPORTED_BY, verbs]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    for line in ended.stderr.splitlines():
+        assert DEAR & set(line.removeprefix("loaded: ").split()) == allowed
+    assert ended.stderr.count("loaded:") == len(verbs.split(","))

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from types import SimpleNamespace
 
 import numpy as np
 import process_models
@@ -21,6 +22,7 @@ from uq.errors import InputError
 from uq.running import dispatch, local_cluster, remote_cluster
 from uq.running.child import ModelSpec
 from uq.running.dask_task import evaluate_rows
+from uq.running.workers import Workers
 from uq.study.definition import load_study
 
 
@@ -108,6 +110,16 @@ def test_a_worker_that_died_is_replaced(tidy):
             assert time.monotonic() < end, "waited in vain"
             crew.watch()
             time.sleep(0.05)
+
+
+def test_workers_are_not_counted_for_every_chunk():
+    counted = []
+    client = SimpleNamespace(status="running", nthreads=lambda: counted.append(1) or {"a": 2})
+    crew = Workers(client, lambda *_: None)
+    assert [crew.threads for _ in range(100)] == [2] * 100
+    assert len(counted) < 100
+    client.status = "closed"
+    assert crew.threads == 0
 
 
 @pytest.mark.slow

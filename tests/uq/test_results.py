@@ -12,6 +12,8 @@ from computed import computed, linear, study_of
 from in_memory import compute
 
 from uq import store
+from uq.analysis.as_json import summary_json
+from uq.analysis.summary import summarise
 from uq.contract import Status
 from uq.errors import InputError
 from uq.exploring.simulation import simulate
@@ -215,6 +217,16 @@ def test_a_file_holds_what_memory_holds(kinds):
     store.write_result(ds, Path("again.nc"))
     with netCDF4.Dataset(path) as merged, netCDF4.Dataset("again.nc") as again:
         assert merged.getncattr(results.CHECKSUM) == again.getncattr(results.CHECKSUM)
+
+
+def test_what_is_read_of_a_large_result_is_not_kept_in_memory(kinds, monkeypatch):
+    _, path = kinds
+    small = results.open_result(path)
+    monkeypatch.setattr(results, "_IN_MEMORY_BYTES", 0)
+    with results.open_result(path) as large:
+        assert summary_json(summarise(large)) == summary_json(summarise(small))
+        assert large.identical(small)
+        assert not any(large[name].variable._in_memory for name in large.data_vars if name != "x1")
 
 
 def test_a_new_text_of_a_study_does_not_say_that_rows_were_computed_here():

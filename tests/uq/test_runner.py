@@ -49,6 +49,21 @@ def test_a_chunk_is_a_whole_block_of_the_kernel_unless_that_takes_long(write_stu
     assert dispatch.ChunkSizes(workload_of(load_study(write_study()))).good(seconds) == rows
 
 
+@pytest.mark.parametrize("row_seconds", [2e-3, 0.5])
+@pytest.mark.parametrize("threads", [100, 1000])
+def test_many_workers_get_chunks_that_the_scheduler_can_follow(write_study, threads, row_seconds):
+    workload = workload_of(load_study(write_study()))
+    sizes = dispatch.ChunkSizes(workload._replace(model=replace(workload.model, block=1)))
+    chunks_per_second = threads / (sizes.good(row_seconds, threads) * row_seconds)
+    assert chunks_per_second == pytest.approx(50)
+
+
+def test_the_inputs_of_all_chunks_sent_take_bounded_memory(write_study):
+    sizes = dispatch.ChunkSizes(workload_of(load_study(write_study())))
+    threads, row_bytes = 100_000, 3 * 8
+    assert 1e9 < 2 * threads * sizes.good(1e-3, threads) * row_bytes < 2e9
+
+
 class OneGivenUp(list):
     """Chunks on workers that compute at once, at 3 s each; the cost of the last one is unknown."""
 
@@ -73,6 +88,23 @@ def test_a_row_that_was_given_up_leaves_the_cost_of_a_row_as_it_was(write_study,
     dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload), evaluate)
     dispatcher.finish_on(SimpleNamespace(dashboard="", threads=1, own=0))
     assert (dispatcher.left, dispatcher.row_seconds) == (0, 3.0)
+
+
+def test_a_few_rows_at_the_end_are_no_chunk_of_their_own(write_study, monkeypatch):
+    sizes = []
+
+    class Noted(OneGivenUp):
+        def send(self, start, some):
+            sizes.append(len(some.x))
+            super().send(start, some)
+
+    monkeypatch.setattr(dispatch, "SentChunks", Noted)
+    workload = workload_of(load_study(write_study(samples=105)))
+    options = RunOptions(chunk_rows=100)
+    dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload), evaluate)
+    dispatcher.finish_on(SimpleNamespace(dashboard="", threads=2, own=0))
+    assert dispatcher.left == 0
+    assert min(sizes) >= 100 // 8
 
 
 @settings(

@@ -7,11 +7,12 @@ more rows: m - b (c_n - c_M).
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
 
 from uq import intervals
 from uq.contract import Floats, Mask
 from uq.estimate import Estimate
+from uq.order_statistics import mean_ranks
+from uq.quantile_functions import student
 
 FEWEST = 5
 """With fewer hits, or misses, a control does not improve a share."""
@@ -61,7 +62,7 @@ def controlled_mean(values: Floats, kept: Mask, *, controls: Floats, many: Float
     value = float(plain - slope @ (controls.mean(axis=0) - many.mean(axis=0)))
     if n < k + 3 or intervals.is_constant(values[kept]):
         return Controlled(Estimate(float(plain)), 1.0)
-    half = stats.t.ppf(_UPPER_TAIL, n - 1 - k) * errors.std(ddof=1 + k) / np.sqrt(n * reduction)
+    half = student(_UPPER_TAIL, n - 1 - k) * errors.std(ddof=1 + k) / np.sqrt(n * reduction)
     return Controlled(Estimate(value, value - float(half), value + float(half)), reduction)
 
 
@@ -121,7 +122,7 @@ def _orientation(hits: Mask, control: Floats) -> float:
     """Return 1 where hits go with large values of the control, -1 where with small ones."""
     if hits.all() or not hits.any():
         return 1.0
-    ranks = stats.rankdata(control)
+    ranks = mean_ranks(control)
     return 1.0 if ranks[hits].mean() >= ranks[~hits].mean() else -1.0
 
 

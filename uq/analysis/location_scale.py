@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy import stats
+import scipy  # which imports scipy.stats when it is first used
 
 from uq.contract import Floats, Mask
 
@@ -29,15 +29,20 @@ class Family:
 
     Attributes
     ----------
-    standard : scipy distribution
-        The law of w.
+    name : str
+        Of the law of w in `scipy.stats`.
     slopes : callable
         ``slopes(w, ended)`` -> first and second derivative by w of the log-likelihood: of the
         density where `ended`, of the survival function elsewhere.
     """
 
-    standard: Any
+    name: str
     slopes: Callable[[Floats, Mask], tuple[Floats, Floats]]
+
+    @property
+    def standard(self) -> Any:
+        """The law of w."""
+        return getattr(scipy.stats, self.name)
 
 
 def _extreme(w: Floats, ended: Mask) -> tuple[Floats, Floats]:
@@ -48,12 +53,12 @@ def _extreme(w: Floats, ended: Mask) -> tuple[Floats, Floats]:
 def _normal(w: Floats, ended: Mask) -> tuple[Floats, Floats]:
     if ended.all():
         return -w, np.full_like(w, -1.0)
-    hazard = np.exp(stats.norm.logpdf(w) - stats.norm.logsf(w))
+    hazard = np.exp(scipy.stats.norm.logpdf(w) - scipy.stats.norm.logsf(w))
     first = np.where(ended, -w, -hazard)
     return first, np.where(ended, -1.0, -hazard * (hazard - w))
 
 
-FAMILIES = {"weibull": Family(stats.gumbel_l, _extreme), "lognormal": Family(stats.norm, _normal)}
+FAMILIES = {"weibull": Family("gumbel_l", _extreme), "lognormal": Family("norm", _normal)}
 """The laws, by the names that study files give them."""
 
 

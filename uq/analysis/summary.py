@@ -153,8 +153,10 @@ def summarise(
         ds = within_regime(ds, regime)
     rows = independent_rows(ds)
     context = Context(rows, analysis, replicates_of(rows))
-    elements = list(elements_of(rows, shown_outputs(ds, analysis)))
-    most = max((int(element.failed.sum()) for element in elements), default=0)
+    outputs, most = dict[str, Described](), 0
+    for element in elements_of(rows, shown_outputs(ds, analysis)):  # one at a time in memory
+        outputs[element.name] = _described(element, context, fits)
+        most = max(most, int(element.failed.sum()))
     if most:
         notes.append(SOME_FAILED.format(most=most, rows=rows.sizes["sample"]))
     return Summary(
@@ -162,7 +164,7 @@ def summarise(
         rows_used=rows.sizes["sample"],
         status=status_counts(ds),
         regimes=regime_shares(rows) if "regime" in output_names(ds) else {},
-        outputs={element.name: _described(element, context, fits) for element in elements},
+        outputs=outputs,
         most_failed=most,
         notes=notes,
     )

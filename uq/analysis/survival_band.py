@@ -1,7 +1,7 @@
 """A simultaneous confidence band of a survival curve."""
 
 import numpy as np
-from scipy import stats
+import scipy  # which imports scipy.stats when it is first used
 
 from uq.intervals import CONFIDENCE, Ends, Floats
 
@@ -71,7 +71,7 @@ def simultaneous_band(
     """
     share = 1 - ending + ending * among
     if complete:
-        half = np.full(len(share), stats.kstwo.ppf(CONFIDENCE, rows))
+        half = np.full(len(share), scipy.stats.kstwo.ppf(CONFIDENCE, rows))
         return _within(share, half, np.ones(len(share), dtype=bool))
     known = np.isfinite(deviation) & (among > 0) & (at_risk >= AT_RISK)
     if not (known & (deviation > 0)).any():

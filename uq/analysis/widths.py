@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from scipy import stats
 
 from uq.designs.registry import DESIGNS
 from uq.indices.targets import lightened, number_of
@@ -17,6 +16,7 @@ from uq.methods.method import Method
 from uq.methods.registry import METHODS, piloted_by
 from uq.methods.sample import Sample
 from uq.order_statistics import is_within
+from uq.quantile_functions import normal, student
 from uq.rows.elements import (
     Element,
     Floats,
@@ -103,8 +103,8 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
 def _factor(independent: bool, replicates: int) -> float | None:
     """Return half the width of an interval in standard errors."""
     if independent:
-        return float(stats.norm.ppf(_LEVEL))
-    return float(stats.t.ppf(_LEVEL, replicates - 1)) if replicates > 1 else None
+        return float(normal(_LEVEL))
+    return student(_LEVEL, replicates - 1) if replicates > 1 else None
 
 
 def _mean(element: Element, rows: int, factor: float) -> float | None:

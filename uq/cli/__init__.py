@@ -3,6 +3,7 @@
 Exit codes: 0 done; 1 no usable result; 2 bad input; 130 interrupted.
 """
 
+import gc
 import os
 import signal
 import sys
@@ -16,11 +17,20 @@ from uq.running.environment import SINGLE_THREADED
 
 _when_interrupted = "interrupted"
 
+_ALLOCATIONS = 100_000  # between searches for garbage; imports allocate much and discard little
+
+_READERS = ("summary", "sensitivity", "convergence", "compare", "plot", "report")
+"""Verbs that only read results. For each array of one, xarray would import dask to ask whether it
+is one of dask's: here none is."""
+
 
 def main() -> NoReturn:
     """Run the command line and end the process."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _stop)
+    gc.set_threshold(_ALLOCATIONS)
+    if sys.argv[1:2] and sys.argv[1] in _READERS:
+        sys.modules.setdefault("dask", None)  # type: ignore[arg-type]  # "not installed"
     for name, value in SINGLE_THREADED.items():
         os.environ.setdefault(name, value)
     streams.watch()

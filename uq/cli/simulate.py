@@ -5,20 +5,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
-from uq import store
 from uq.cli.printing import duration, grid, heading, number, print_json
 from uq.cli.progress import say_compiling
 from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.errors import InputError
-from uq.exploring.simulation import holds_trajectory
-from uq.exploring.simulation import simulate as run_once
+from uq.exploring.one_row import Row, run_row
 from uq.literals import read_number, read_toml
 from uq.places import file_behind
-from uq.rows import results
-from uq.rows.elements import elements_of
 from uq.study.registry import find_model
 
 
@@ -34,19 +29,39 @@ def simulate(
     model = find_model(reference)
     given = dict(_number(text) for text in parameters)
     chosen = dict(literal(text) for text in settings)
+    if output or plot:
+        _check_files(model, output, plot)
+    with compilation(say_compiling):
+        row = run_row(model, given, chosen)
+        if output or plot:
+            _keep(row, output, plot)
+    print_json(as_json(row)) if json else _show(row)
+    return 1 if row.failed else 0
+
+
+def _check_files(model: Model, output: Path | None, plot: Path | None) -> None:
+    from uq.exploring.simulation import holds_trajectory
+    from uq.store.files import check_target
+
     for path in (output, plot):
         if path is not None:
-            store.check_target(path, 0)
+            check_target(path, 0)
     if output and output.exists() and not holds_trajectory(output):
         raise InputError(
             f"{output}: exists and is not a trajectory of 'uq simulate'; choose another name"
         )
-    if model.simulate is None and (output or plot):
+    if model.simulate is None:
         raise InputError(f"model '{model.name}' gives no trajectory; leave out -o and --plot")
-    with compilation(say_compiling):
-        ds = run_once(model, given, chosen, trajectory=bool(output or plot))
+
+
+def _keep(row: Row, output: Path | None, plot: Path | None) -> None:
+    """Write the row with its time history, draw the history, or both."""
+    from uq.exploring.simulation import dataset
+    from uq.store.files import write
+
+    ds = dataset(row)
     if output:
-        store.write(ds, output)
+        write(ds, output)
     if plot:
         from uq.drawing.figure import DOTS_PER_INCH
         from uq.plots import history
@@ -56,34 +71,32 @@ def simulate(
             history(ds).savefig(plot, dpi=DOTS_PER_INCH)
         except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
             raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None
-    print_json(as_json(model, ds)) if json else _show(model, ds)
-    return 1 if results.failed(ds).any() else 0
 
 
-def as_json(model: Model, ds: xr.Dataset) -> dict[str, Any]:
+def as_json(row: Row) -> dict[str, Any]:
     """Return one row as the JSON of ``uq simulate``.
 
     Parameters
     ----------
-    model : Model
-    ds : xarray.Dataset
-        From `uq.simulate`.
+    row : Row
 
     Returns
     -------
     dict
         ``never``, ``censored`` and ``undefined`` name the outputs that are so.
     """
-    status = Status(ds["status"].item())
+    status, meaning = row.ending
     names: dict[str, list[str]] = {"never": [], "censored": [], "undefined": []}
-    for element, _, state in (one for name in model.outputs for one in _states(ds, name)):
+    for element, _, state in (one for name in row.model.outputs for one in _states(row, name)):
         if state:
             names[state].append(element)
     return {
-        "model": model.name,
-        "inputs": {name: ds[name].item() for name in model.parameter_names},
-        "outputs": {name: _plain(model, name, ds[name].values[0]) for name in model.outputs},
-        "status": {"code": status.label, "meaning": _meaning(ds, status)},
+        "model": row.model.name,
+        "inputs": row.values,
+        "outputs": {
+            name: _plain(row.model, name, row.columns[name][0]) for name in row.model.outputs
+        },
+        "status": {"code": status.label, "meaning": meaning},
         **names,
     }
 
@@ -96,22 +109,24 @@ def _plain(model: Model, name: str, values: Any) -> Any:
     return model.outputs[name].categories[int(values)] if values >= 0 else None
 
 
-def _states(ds: xr.Dataset, name: str) -> Iterator[tuple[str, float, str]]:
+def _states(row: Row, name: str) -> Iterator[tuple[str, float, str]]:
     """Yield name, value and never, censored, undefined or "" of each element of an output."""
-    for element in elements_of(ds, [name]):
+    if row.model.outputs[name].is_category:
+        return
+    for element in row.elements(name):
         states = ("censored", "never", "undefined")
         state = next((state for state in states if getattr(element, state)[0]), "")
         yield element.name, float(element.values[0]), state
 
 
-def _show(model: Model, ds: xr.Dataset) -> None:
-    status = Status(ds["status"].item())
-    heading(f"{model.name}: {status.label}", "" if status is Status.OK else _meaning(ds, status))
-    for name, output in model.outputs.items():
+def _show(row: Row) -> None:
+    status, meaning = row.ending
+    heading(f"{row.model.name}: {status.label}", "" if status is Status.OK else meaning)
+    for name, output in row.model.outputs.items():
         unit = "" if output.unit == "1" else f" [{output.unit}]"
         heading(f"\n{name}{unit}", output.meaning)
         if output.is_category:
-            grid([("", _plain(model, name, ds[name].values[0]) or "none")])
+            grid([("", _plain(row.model, name, row.columns[name][0]) or "none")])
             continue
         grid(
             [
@@ -120,7 +135,7 @@ def _show(model: Model, ds: xr.Dataset) -> None:
                     _shown(value, state),
                     duration(value) if output.unit == "s" else "",
                 )
-                for key, value, state in _states(ds, name)
+                for key, value, state in _states(row, name)
             ]
         )
 
@@ -129,10 +144,6 @@ def _shown(value: float, state: str) -> str:
     if state == "censored":
         return f"more than {number(value)}"
     return state or ("failed" if np.isnan(value) else number(value))
-
-
-def _meaning(ds: xr.Dataset, status: Status) -> str:
-    return str(ds["status"].attrs.get(f"example_{status.name.lower()}", status.meaning))
 
 
 def _number(text: str) -> tuple[str, float]:

@@ -51,7 +51,7 @@ def index_bars(
         When there is no such output, the name is ambiguous, or there are no indices.
     """
     found = found or _only(ds, output, method)
-    kinds, name = found.kinds(), found.target.name
+    kinds, name = found.kinds(), found.name
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
     labels = [as_label(in_words(ds[parameter]), width=30) for parameter in parameters]

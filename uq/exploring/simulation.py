@@ -1,4 +1,4 @@
-"""One row of a model, without a study."""
+"""One row of a model as a Dataset, without a study."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,11 +8,9 @@ import numpy as np
 import xarray as xr
 
 from uq.contract import Model
-from uq.errors import InputError
-from uq.inputs.values import fault_lines, parameter_problem, read_settings
+from uq.exploring.one_row import Row, run_row
 from uq.interrupts import in_background
 from uq.rows import results
-from uq.rows.evaluate import evaluate
 from uq.study.registry import find_model
 
 
@@ -55,20 +53,17 @@ def simulate(
     4.75
     """
     model = find_model(model) if isinstance(model, str) else model
-    given, chosen = dict(parameters or {}), dict(settings or {})
-    problems = {name: parameter_problem(model, name, value) for name, value in given.items()}
-    frozen, wrong = read_settings(model, chosen)
-    if faults := fault_lines("", given, problems) + fault_lines("setting ", chosen, wrong):
-        raise InputError(*faults)
+    return dataset(run_row(model, dict(parameters or {}), dict(settings or {}), seed), trajectory)
 
-    values = model.nominal | {name: float(value) for name, value in given.items()}
-    x = np.array([[values[name] for name in model.parameter_names]])
-    chunk = in_background(lambda: evaluate(model, frozen, x, np.array([seed], dtype=np.uint64)))
-    failures = {label: text for label, (_, text) in chunk.failures.items()}
-    ds = results.build_rows(model, frozen, values, chunk.columns, chunk.status, failures)
-    if not trajectory or model.simulate is None:
+
+def dataset(row: Row, trajectory: bool = True) -> xr.Dataset:
+    """Return a row as `simulate` does."""
+    ds = results.build_rows(
+        row.model, row.settings, row.values, row.columns, row.status, row.failures
+    )
+    if not trajectory or row.model.simulate is None:
         return ds
-    return ds.assign(trajectory=in_background(lambda: _trajectory(model, frozen, values, seed)))
+    return ds.assign(trajectory=in_background(lambda: _trajectory(row)))
 
 
 def holds_trajectory(path: Path) -> bool:
@@ -81,11 +76,10 @@ def holds_trajectory(path: Path) -> bool:
         return False
 
 
-def _trajectory(
-    model: Model, settings: Any, values: Mapping[str, float], seed: int
-) -> xr.DataArray:
-    assert model.simulate is not None
-    history = model.simulate(model.parameters(**values), settings, seed=seed)
+def _trajectory(row: Row) -> xr.DataArray:
+    assert row.model.simulate is not None
+    params = row.model.parameters(**row.values)
+    history = row.model.simulate(params, row.settings, seed=row.seed)
     names = list(history.quantities)
     units, meanings, series = zip(*history.quantities.values(), strict=True)
     return xr.DataArray(

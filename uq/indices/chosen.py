@@ -1,6 +1,6 @@
 """Which targets a user means: those that suit a method, or those of some names."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import xarray as xr
 
@@ -12,8 +12,8 @@ from uq.rows.elements import analysis_of, elements_of, named_elements, shown_out
 from uq.rows.variables import is_category
 
 
-def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> list[Target]:
-    """Return the targets that a user means.
+def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> Iterator[Target]:
+    """Yield the targets that a user means.
 
     Parameters
     ----------
@@ -23,10 +23,10 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> l
     output : str or sequence of str, optional
         Names; by default all that suit the method, of the outputs that the study asks for.
 
-    Returns
-    -------
-    list of Target
-        Of several names, unknown ones are skipped.
+    Yields
+    ------
+    Target
+        One at a time, as each holds a number per row. Of several names, unknown ones are skipped.
 
     Raises
     ------
@@ -35,12 +35,12 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> l
     """
     asked = METHODS[method]
     if output is None:
-        found = [
-            target if asked.scale_free else lightened(target)
-            for name in shown_outputs(ds, analysis_of(ds))
-            for target in _targets(ds, name)
-            if (asked.takes_events if target.event else asked.takes_numbers)
-        ]
+        found = False
+        for name in shown_outputs(ds, analysis_of(ds)):
+            for target in _targets(ds, name):
+                if asked.takes_events if target.event else asked.takes_numbers:
+                    yield target if asked.scale_free else lightened(target)
+                    found = True
         if not found and not asked.takes_numbers:
             raise InputError(
                 f"'{method}' needs an event: a category, or a time of a lifetime in"
@@ -48,26 +48,29 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> l
             )
         if not found:
             raise InputError("none of the outputs is a number: there is nothing to apportion")
-        return found
-    names = [output] if isinstance(output, str) else output
-    found = [target for name in names for target in _named(ds, name)]
-    if not found and isinstance(output, str):
+        return
+    named = [
+        target
+        for name in ([output] if isinstance(output, str) else output)
+        for target in _named(ds, name)
+    ]
+    if not named and isinstance(output, str):
         _, inside, _ = split_name(output)
         if output == inside:
             raise InputError(f"no row has a {output}: there is nothing to apportion")
         names = [target.name for target in _targets(ds, _output_in(inside), every=True)]
         raise InputError(f"no such output '{output}'{nearest(output, names)}")
-    return found if asked.scale_free else [with_tail_note(target) for target in found]
+    yield from named if asked.scale_free else map(with_tail_note, named)
 
 
 def _named(ds: xr.Dataset, name: str) -> list[Target]:
     """Return the targets that a user means by a name; none for an unknown name."""
     form, inside, _ = split_name(name)
-    found = _targets(ds, _output_in(inside), every=True)
+    found = list(_targets(ds, _output_in(inside), every=True))
     if form:
         return [target for target in found if target.name == name]
     own = [target for target in found if split_name(target.name)[0] == ""]
-    return own or _targets(ds, name)
+    return own or list(_targets(ds, name))
 
 
 def _output_in(inside: str) -> str:
@@ -75,9 +78,9 @@ def _output_in(inside: str) -> str:
     return inside if "[" in inside else inside.partition("=")[0]
 
 
-def _targets(ds: xr.Dataset, name: str, every: bool = False) -> list[Target]:
+def _targets(ds: xr.Dataset, name: str, every: bool = False) -> Iterator[Target]:
     """Return the targets of an output or of one element of it."""
     if is_category(ds, name) and ds[name].ndim == 1:
-        return list(category_targets(ds, name))
+        return category_targets(ds, name)
     known = elements_of(ds, [name]) if name in ds else named_elements(ds, name)
-    return list(targets.targets(known, analysis_of(ds).thresholds, every))
+    return targets.targets(known, analysis_of(ds).thresholds, every)

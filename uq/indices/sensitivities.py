@@ -35,7 +35,8 @@ class TargetIndices:
 
     Attributes
     ----------
-    target : Target
+    name : str
+        That of the target.
     rows_used, groups_dropped : int
         Rows, and groups of rows, with and without a value in each row.
     indices : Indices
@@ -44,7 +45,7 @@ class TargetIndices:
         Why there are none, or "".
     """
 
-    target: Target
+    name: str
     rows_used: int
     groups_dropped: int
     indices: Indices = Indices({})
@@ -155,9 +156,9 @@ def _indices(
         few = few_hits(ds, target)
         found = method.indices(sample)
     except RefusedError as refusal:
-        return TargetIndices(target, *counts, refused=str(refusal))
+        return TargetIndices(target.name, *counts, refused=str(refusal))
     said = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
-    return TargetIndices(target, *counts, replace(found, notes=said))
+    return TargetIndices(target.name, *counts, replace(found, notes=said))
 
 
 def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:

@@ -7,8 +7,8 @@ about these rows.
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
 
+from uq.order_statistics import mean_ranks
 from uq.rows.elements import Element, Floats
 from uq.tails import heavier_tail
 from uq.wording import percent
@@ -122,7 +122,7 @@ def rank(element: Element) -> Transformed:
         )
     ranks = np.full(len(values), np.nan)
     known = np.where(beyond, np.inf, values)[present]
-    ranks[present] = (stats.rankdata(known) - 0.5) / max(len(known), 1)
+    ranks[present] = (mean_ranks(known) - 0.5) / max(len(known), 1)
     return Transformed(ranks)
 
 

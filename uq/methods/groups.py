@@ -9,12 +9,12 @@ intervals are therefore widened; docs/statistics.md states what they cover with 
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from scipy import stats
 
 from uq.estimate import Estimate
-from uq.intervals import CONFIDENCE, scatter_interval
+from uq.intervals import CONFIDENCE, scatter_interval, upper_tail
 from uq.methods.indices import IndexKind
 from uq.methods.sample import Floats
+from uq.quantile_functions import student
 
 ENOUGH_ROWS, ENOUGH_SHARE = 50, 0.22
 """Where the variance rests on fewer rows of each replicate, and on less than this share of them,
@@ -106,8 +106,8 @@ def one_more_row(deviations: Floats, groups: int, replicates: int) -> float:
     enough = min(ENOUGH_ROWS * replicates, ENOUGH_SHARE * len(deviations))
     if replicates < 2 or effective_rows(deviations) >= enough:
         return 0.0
-    student = stats.t.ppf(0.5 + CONFIDENCE / 2, replicates - 1)
-    return float(student * (deviations**2).max() / groups)
+    wide = student(upper_tail(CONFIDENCE), replicates - 1)
+    return float(wide * (deviations**2).max() / groups)
 
 
 def widened(estimate: Estimate, by: float) -> Estimate:

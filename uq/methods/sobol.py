@@ -1,4 +1,4 @@
-"""Sobol' indices of a crossed design: SALib's estimators, intervals from the replicates."""
+"""Sobol' indices of a crossed design, with intervals from the replicates."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -90,24 +90,44 @@ def _parameters(blocks: Sequence[str]) -> list[str]:
 
 def _estimates(blocks: Sequence[str], y: Floats) -> Values:
     """Return each index from groups y, shape (n, blocks)."""
-    from SALib.analyze.sobol import first_order, second_order, total_order
-
     block = dict(zip(blocks, y.T, strict=True))
     a, b, names = block["A"], block["B"], _parameters(blocks)
     found = {
-        S1: {name: float(first_order(a, block[f"AB_{name}"], b)) for name in names},
-        ST: {name: float(total_order(a, block[f"AB_{name}"], b)) for name in names},
+        S1: {name: first_order(a, block[f"AB_{name}"], b) for name in names},
+        ST: {name: total_order(a, block[f"AB_{name}"], b) for name in names},
     }
     if NOISE in block:
-        found[_NOISE] = {"": float(total_order(a, block[NOISE], b))}
+        found[_NOISE] = {"": total_order(a, block[NOISE], b)}
     if any(label.startswith("BA_") for label in block):
         found[S2] = {
-            f"{one},{other}": float(
-                second_order(a, block[f"AB_{one}"], block[f"AB_{other}"], block[f"BA_{one}"], b)
+            f"{one},{other}": second_order(
+                a, block[f"AB_{one}"], block[f"AB_{other}"], block[f"BA_{one}"], b
             )
             for one, other in combinations(names, 2)
         }
     return found
+
+
+def first_order(a: Floats, ab: Floats, b: Floats) -> float:
+    """Return S1 from the blocks A, AB_i and B: Saltelli et al. (2010), Table 2 (b)."""
+    return _share(float(np.mean(b * (ab - a))), a, b)
+
+
+def total_order(a: Floats, ab: Floats, b: Floats) -> float:
+    """Return ST from the blocks A, AB_i and B: Jansen (1999), Table 2 (f) there."""
+    return _share(0.5 * float(np.mean((a - ab) ** 2)), a, b)
+
+
+def second_order(a: Floats, ab: Floats, ab_other: Floats, ba: Floats, b: Floats) -> float:
+    """Return S2 from the blocks A, AB_i, AB_j, BA_i and B: Saltelli (2002)."""
+    both = _share(float(np.mean(ba * ab_other - a * b)), a, b)
+    return both - first_order(a, ab, b) - first_order(a, ab_other, b)
+
+
+def _share(part: float, a: Floats, b: Floats) -> float:
+    """Return a part of the variance over all of it; 0 where there is none but by rounding."""
+    variance = np.var(np.r_[a, b])
+    return float(part / variance) if variance > np.finfo(float).eps else 0.0
 
 
 def pilot(sample: Sample) -> dict[IndexKind, float]:

@@ -96,7 +96,7 @@ def _method(findings: Findings, name: str, drawn: Drawn) -> Method:
 def _subject(
     ds: xr.Dataset, method: str, found: TargetIndices, drawn: Sequence[Picture]
 ) -> Subject:
-    name, indices = found.target.name, found.indices
+    name, indices = found.name, found.indices
     words = " ".join(subject(ds, name).split())
     if found.refused:
         return Subject(name, words, refused=found.refused)

@@ -69,6 +69,8 @@ def failed_rows(status: NDArray[np.int8], required: Iterable[tuple[Output, NDArr
     -------
     ndarray of bool, shape (n,)
     """
+    if not np.any(status == Status.OUT_OF_BUDGET):  # no output needs to be read
+        return np.asarray(status != Status.OK)
     incomplete = np.zeros(len(status), dtype=np.bool_)
     for output, values in required:
         incomplete |= output.is_absent(values).any(axis=tuple(range(1, values.ndim)))

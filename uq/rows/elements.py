@@ -1,107 +1,23 @@
-"""The elements of a result's outputs: one plain array each, with the outcome of every row."""
+"""The elements of a result's outputs, and what the result says of its rows."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from uq.contract import Floats, Mask, Output
+from uq.contract import Floats as Floats
+from uq.contract import Mask as Mask
 from uq.designs.layouts import CURVES, NOISE
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
 from uq.rows.columns import censored_name
-from uq.rows.results import elements, failed
+from uq.rows.element import Element as Element
+from uq.rows.element import elements_in
+from uq.rows.results import failed
 from uq.rows.variables import outputs_of
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
-
-
-@dataclass(frozen=True)
-class Element:
-    """One number per row: an output, or one element of an output that has dimensions.
-
-    Attributes
-    ----------
-    name : str
-        ``work_rate[site=left]``.
-    output : str
-        ``work_rate``.
-    declared : Output
-        The declaration of the output; not a category.
-    place : dict of str to object
-        Dimension -> coordinate; empty for an output without dimensions.
-    values : ndarray, shape (n,)
-        NaN where there is no value; +inf for a life that never ends.
-    censored : ndarray of bool, shape (n,)
-        Where the value is only a lower bound.
-    failed : ndarray of bool, shape (n,)
-        Where the value is missing because the row failed.
-    """
-
-    name: str
-    output: str
-    declared: Output
-    place: dict[str, Any]
-    values: Floats
-    censored: Mask
-    failed: Mask
-
-    @property
-    def units(self) -> str:
-        """CF unit string."""
-        return self.declared.unit
-
-    @property
-    def meaning(self) -> str:
-        """One line that describes the output."""
-        return self.declared.meaning
-
-    @property
-    def is_lifetime(self) -> bool:
-        """Whether it is the time until an event."""
-        return self.declared.is_lifetime
-
-    @property
-    def is_angle(self) -> bool:
-        """Whether its sign is a direction."""
-        return self.declared.is_angle
-
-    @property
-    def for_thresholds(self) -> Floats:
-        """The values, or of an angle their magnitudes, shape (n,)."""
-        return self.declared.for_thresholds(self.values)
-
-    @property
-    def undefined(self) -> Mask:
-        """Where the row is sound but the value is undefined."""
-        return np.isnan(self.values) & ~self.failed
-
-    @property
-    def never(self) -> Mask:
-        """Where a life is known never to end."""
-        return np.isposinf(self.values) & ~self.censored
-
-    @property
-    def present(self) -> Mask:
-        """Where there is a value."""
-        return ~np.isnan(self.values)
-
-    def unknown_sides(self, threshold: float) -> Mask:
-        """Return where rows were censored below a threshold, so that their side is unknown."""
-        return self.censored & (self.values < threshold)
-
-    @property
-    def at_least(self) -> Floats:
-        """The values, shape (present,), with censored ones at their lower bound."""
-        return self.values[self.present]
-
-    @property
-    def at_most(self) -> Floats:
-        """The values, shape (present,), with censored ones at infinity."""
-        return np.where(self.censored, np.inf, self.values)[self.present]
 
 
 def analysis_of(ds: xr.Dataset) -> AnalysisTable:
@@ -216,19 +132,12 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
             raise InputError(
                 f"no such output '{output}'{nearest(output, known)} (allowed: {choices(known)})"
             )
-        variable, declared = ds[output], known[output]
-        if declared.is_category:
-            continue
-        flag = censored_name(output)
-        for name, column in elements(variable):
-            place = {str(dim): column[dim].item() for dim in variable.dims if dim != "sample"}
-            values = column.values
-            absent = declared.is_absent(values)
-            censored = np.zeros(len(values), dtype=bool)
-            if flag in ds:
-                censored = ds[flag].sel(place).values.astype(bool) & ~absent
-            known_values = np.where(absent, np.nan, values)
-            yield Element(name, output, declared, place, known_values, censored, absent & unsound)
+        declared, flag = known[output], censored_name(output)
+        if not declared.is_category:
+            censored = ds.variables[flag] if flag in ds else None
+            axes = {dim: ds[dim].values for dim in declared.dims}
+            values = ds.variables[output]
+            yield from elements_in(output, declared, values, censored, axes, unsound)
 
 
 def named_elements(ds: xr.Dataset, name: str) -> list[Element]:

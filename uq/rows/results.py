@@ -191,7 +191,8 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
 
 def _opened(path: Path) -> xr.Dataset:
     try:
-        ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False)
+        # Not cached: of a large result, what has been read is not kept in memory.
+        ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False, cache=False)
         if ds.nbytes > _INFLATED_BYTES + _INFLATION * path.stat().st_size:
             ds.close()
             raise InputError(

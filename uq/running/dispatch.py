@@ -21,12 +21,17 @@ if TYPE_CHECKING:
     from uq.running.workers import Workers
 
 CHUNK_SECONDS = 0.5
-"""Work in a chunk, unless the number of rows is given."""
+"""Work in a chunk, unless the number of rows is given or there are many workers."""
+
+# A chunk costs scheduler and driver some 5 ms each, so those of many workers must be longer.
+_CHUNKS_PER_SECOND = 50
 
 # Longest chunk that is a whole block of the kernel: half a block may take as long.
 _BLOCK_SECONDS = 5.0
 _FIRST_ROWS = 16
 _SENT_CHUNKS = 4  # at least, also while workers start
+_SENT_PER_THREAD = 2  # one under way, the next at hand
+_SENT_BYTES = 2_000_000_000  # inputs of all chunks sent: the scheduler keeps them, too
 _LAST_SHARE = 1 / 8  # of a chunk: smaller chunks at the end would waste work
 _GROWTH = 4  # of the first chunks
 _LIMIT_SHARE = 0.25  # of the time limit of a row, for a whole chunk
@@ -55,17 +60,28 @@ class ChunkSizes(NamedTuple):
         """Return the rows of the chunk after one of `size` rows, while chunks grow."""
         return min(_GROWTH * size, self.good(row_seconds))
 
-    def good(self, row_seconds: float) -> int:
-        """Return the rows of a good chunk, given the cost of a row [s], 0 if unknown."""
+    def good(self, row_seconds: float, threads: int = 1) -> int:
+        """Return the rows of a good chunk.
+
+        Parameters
+        ----------
+        row_seconds : float
+            Cost of a row [s], 0 if unknown.
+        threads : int, optional
+            How many chunks are computed at the same time.
+        """
         limit, wish = self.options.row_limit, self.options.chunk_rows
-        most = _CHUNK_BYTES // row_bytes(self.workload)
+        inputs = 8 * len(self.workload.model.parameter_names)
+        sent = _SENT_BYTES // (_SENT_PER_THREAD * threads * inputs)
+        most = max(1, min(_CHUNK_BYTES // row_bytes(self.workload), sent))
         if limit and row_seconds:  # chunks of sound rows must not be stopped
             most = max(1, min(most, int(_LIMIT_SHARE * limit / row_seconds)))
         if wish:
             return self.whole_groups(min(wish, most) if limit else wish)
         if row_seconds:
             block = min(self.workload.model.block, ceil(_BLOCK_SECONDS / row_seconds))
-            most = min(most, block * max(1, round(CHUNK_SECONDS / (row_seconds * block))))
+            seconds = max(CHUNK_SECONDS, threads / _CHUNKS_PER_SECOND)
+            most = min(most, block * max(1, round(seconds / (row_seconds * block))))
         return self.whole_groups(most)
 
     def whole_groups(self, rows: int) -> int:
@@ -144,7 +160,7 @@ class Dispatcher:
             threads = crew.threads
             sharing = max(1, threads or crew.own)
             # Only as many chunks are sent as keep the workers busy.
-            while self._untaken and len(sent) < max(_SENT_CHUNKS, 2 * sharing):
+            while self._untaken and len(sent) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
                 sent.send(*self._take(self._shared(sharing)))
             if crew.own and not threads and self._untaken:
                 self._here(self._shared(sharing))
@@ -193,6 +209,9 @@ class Dispatcher:
 
     def _shared(self, threads: int) -> int:
         """Return the rows of the next chunk, so that all threads finish together."""
-        size = self._sizes.good(self.row_seconds)
-        share = max(ceil(self._untaken / threads), int(_LAST_SHARE * size))
+        size = self._sizes.good(self.row_seconds, threads)
+        least = int(_LAST_SHARE * size)
+        share = max(ceil(self._untaken / threads), least)
+        if self._untaken - share < least:  # too few for another chunk
+            share = self._untaken
         return min(size, self._sizes.whole_groups(share))

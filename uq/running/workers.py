@@ -2,11 +2,14 @@
 
 import gc
 import logging
+import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 
 from distributed import Client
 from distributed.utils import silence_logging_cmgr
+
+_COUNT_SECONDS = 1.0
 
 
 class Workers:
@@ -23,6 +26,7 @@ class Workers:
         self.client = client
         self.own = own
         self._watch = watch
+        self._threads, self._counted = 0, 0.0
 
     @property
     def connected(self) -> bool:
@@ -41,11 +45,19 @@ class Workers:
 
     @property
     def threads(self) -> int:
-        """Tasks that can run at the same time: none until a worker connects."""
-        try:
-            return sum(self.client.nthreads().values()) if self.connected else 0
-        except OSError:  # the scheduler has just gone
+        """Tasks that can run at the same time: none until a worker connects.
+
+        They are counted at most once a second, once there are any: the scheduler lists all workers.
+        """
+        if not self.connected:
             return 0
+        if not self._threads or time.monotonic() > self._counted + _COUNT_SECONDS:
+            try:
+                self._threads = sum(self.client.nthreads().values())
+            except OSError:  # the scheduler has just gone
+                return 0
+            self._counted = time.monotonic()
+        return self._threads
 
     def watch(self, progress: bool = False) -> None:
         """Replace dead workers if this process started them; to be called regularly.

@@ -45,33 +45,47 @@ def pack(
     return data
 
 
+def columns_in(data: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """Return the outputs of packed rows, not copied."""
+    return {name: data["columns"][name] for name in data.dtype["columns"].names or ()}
+
+
 def unpack(data: NDArray[Any]) -> tuple[Rows, dict[str, NDArray[Any]], NDArray[np.int8]]:
     """Return the parts that `pack` put together."""
     rows = Rows(*(np.ascontiguousarray(data["rows"][field]) for field in Rows._fields))
-    names = data.dtype["columns"].names or ()
-    columns = {name: np.ascontiguousarray(data["columns"][name]) for name in names}
+    columns = {name: np.ascontiguousarray(part) for name, part in columns_in(data).items()}
     return rows, columns, np.ascontiguousarray(data["status"])
 
 
-def save(path: Path, data: NDArray[Any]) -> str:
+def save(path: Path, *pieces: NDArray[Any]) -> str:
     """Write a chunk file, completely or not at all, and return its SHA-256.
+
+    Parameters
+    ----------
+    path : Path
+    *pieces : ndarray
+        Rows, one piece after the other; they are not copied.
 
     Raises
     ------
     OSError
         Nothing is left behind then.
     """
-    content = data.tobytes()
+    checksum = hashlib.sha256()
     temporary = path.with_suffix(".part")
     try:
-        temporary.write_bytes(content)
+        with temporary.open("wb") as file:
+            for piece in pieces:
+                content = piece.view(np.uint8).data
+                checksum.update(content)
+                file.write(content)
         flush(temporary)
         os.replace(temporary, path)
         flush(path.parent)
     except OSError:
         temporary.unlink(missing_ok=True)
         raise
-    return hashlib.sha256(content).hexdigest()
+    return checksum.hexdigest()
 
 
 def load(path: Path, kind: np.dtype[Any], rows: int, sha256: str) -> NDArray[Any] | None:
@@ -94,8 +108,10 @@ def blocks_of(numbers: NDArray[np.int64]) -> list[Block]:
     return [(int(a), int(b) + 1) for a, b in zip(firsts, lasts, strict=True)]
 
 
-def joined(pieces: Sequence[tuple[int, NDArray[Any]]]) -> tuple[list[Block], NDArray[Any]]:
-    """Sort pieces, each its first row number and its rows; return their blocks and all rows."""
+def in_order(
+    pieces: Sequence[tuple[int, NDArray[Any]]],
+) -> tuple[list[Block], list[NDArray[Any]]]:
+    """Sort pieces, each its first row number and its rows; return their blocks and their rows."""
     ordered = sorted(pieces, key=lambda piece: piece[0])
     numbers = [np.arange(start, start + len(data)) for start, data in ordered]
-    return blocks_of(np.concatenate(numbers)), np.concatenate([data for _, data in ordered])
+    return blocks_of(np.concatenate(numbers)), [data for _, data in ordered]

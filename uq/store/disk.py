@@ -1,6 +1,7 @@
 """Rows kept on disk as they arrive, whatever happens to the process."""
 
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -15,7 +16,7 @@ from uq.rows import results
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, rows
 from uq.rows.workload import workload_of
-from uq.store.chunk_file import Block, joined, load, pack, save, unpack
+from uq.store.chunk_file import Block, columns_in, in_order, load, pack, save, unpack
 from uq.store.files import reason
 from uq.store.folder import JOURNAL, clear, folder_of
 from uq.store.journal import Journal
@@ -143,7 +144,7 @@ class DiskStore(Tally):
         """Write rows that were computed earlier; they count as found."""
         with self._explained():
             data = pack(self.row_type, rows, chunk.columns, chunk.status)
-            self._take(self._save(blocks, data, chunk.failures, origin))
+            self._take(self._save(blocks, [data], chunk.failures, origin))
         self.found = self.done
 
     def dataset(self) -> xr.Dataset:
@@ -182,29 +183,33 @@ class DiskStore(Tally):
             return
         began = time.monotonic()
         with self._explained():
-            blocks, data = joined(self._pending)
+            blocks, pieces = in_order(self._pending)
             origin = self._made, self.settings
-            self._records.append(self._save(blocks, data, self._pending_failures, origin))
+            self._records.append(self._save(blocks, pieces, self._pending_failures, origin))
         self._pending, self._pending_failures = [], {}
         self._written = time.monotonic()
         self._cost = self._written - began
 
     def _save(
-        self, blocks: list[Block], data: NDArray[Any], failures: Failures, origin: Origin
+        self, blocks: list[Block], pieces: list[NDArray[Any]], failures: Failures, origin: Origin
     ) -> RowsRecord:
         """Write a chunk file, then its line in the journal."""
-        _, failed, status = self.counts(*unpack(data)[1:])
+        failed, status = 0, Counter[str]()
+        for data in pieces:
+            _, some, by_label = self.counts(columns_in(data), data["status"])
+            failed += some
+            status.update(by_label)
         record = RowsRecord(
             time=time.time(),
             blocks=tuple(blocks),
             sha256="",
             failed=failed,
-            status=status,
+            status=dict(status),
             failures=failures,
             made=origin[0],
             settings=origin[1],
         )
-        record = record.model_copy(update={"sha256": save(self._file(record), data)})
+        record = record.model_copy(update={"sha256": save(self._file(record), *pieces)})
         self._journal.append(record.model_dump(mode="json"))
         return record
 

@@ -117,7 +117,7 @@ def _move(w, head, groups):
 
 
 @inlined
-def _within(x, low, high):
+def within(x, low, high):
     """Return the nearest point between two stops."""
     x = x if x < high else high
     return x if x > low else low
@@ -131,10 +131,10 @@ def _meet(head, drive, s):
         free = head[_SUM * LANES + lane] + drive[s * LANES + lane]
         free = fma(head[_GAIN * LANES + lane], head[P * LANES + lane], free)
         # The contact force over the stop's stiffness: penetration to the right less to the left.
-        p = (free - _within(free, left, right)) * head[_STIFF * LANES + lane]
+        p = (free - within(free, left, right)) * head[_STIFF * LANES + lane]
         x, x1 = fma(head[_SIGMA * LANES + lane], p, free), head[X1 * LANES + lane]
         # The corrections below make p non-zero just after contact: p does not indicate contact.
-        d1 = x1 - _within(x1, left, right)
+        d1 = x1 - within(x1, left, right)
         before, after = x1 - head[X2 * LANES + lane], x - x1
         bend = after - before
         was_in, is_in = d1 != 0.0, p != 0.0

@@ -5,9 +5,12 @@ Reading order; a module imports only those above it:
     packed         constants and states of machines in lanes
     machines       n machines, prepared and started
     dynamics       their accelerations, with the fewest operations
+    steps          steps of fixed length, of order 5 and 8
     notes          what is recorded of a step
     fixed_steps    n machines advanced: the hot loop
+    following      n machines followed step by step
     tangents       a revolution with its derivatives with respect to the start
+    chords         Newton's method with derivatives that are kept
     multiplier     the largest Floquet multiplier of many orbits
     orbit          the synchronous motion as a periodic orbit, by Newton's method
 

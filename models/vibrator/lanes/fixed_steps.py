@@ -1,16 +1,9 @@
-"""The fast propagator: sixteen rigid machines at a time, Runge-Kutta steps of fixed length.
-
-Loops over lanes are straight-line code, so lanes never diverge and a row's bits do not depend on
-its neighbours. See `models.numerics.nystrom`.
-"""
+"""The fast propagator: n rigid machines advanced by steps of fixed length, with notes of them."""
 
 import numpy as np
 
 from models.numerics.blocks import LANES, aligned
 from models.numerics.jit import kernel
-from models.numerics.nystrom import STAGES, layout, stepper
-from models.numerics.tableaux import DORMAND_PRINCE_8, TSITOURAS_5
-from models.vibrator.lanes import dynamics
 from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.notes import (
     CONSTANTS_ROOM,
@@ -22,15 +15,8 @@ from models.vibrator.lanes.notes import (
     note_entries,
     note_step,
 )
-from models.vibrator.lanes.packed import STATE, Array, load, machine, store
-
-_AT = layout(dynamics.DEGREES)
-_SIZE = dynamics.END + STAGES * dynamics.DEGREES * LANES
-_step_5 = stepper(dynamics.DEGREES, dynamics.END, TSITOURAS_5, dynamics.accelerate)
-_step_8 = stepper(dynamics.DEGREES, dynamics.END, DORMAND_PRINCE_8, dynamics.accelerate)
-
-STABLE = 0.8
-"""Step times the fastest rate of a machine; the method is stable with a margin."""
+from models.vibrator.lanes.packed import STATE, Array, load, store
+from models.vibrator.lanes.steps import AT, SIZE, prepare, step_5, step_8
 
 _DEAD = 1e-140
 
@@ -38,7 +24,7 @@ _DEAD = 1e-140
 @kernel
 def _advance(constants, h, state, target, steps, accurate, band, notes, work):
     c, w, note, step_size, aim = work
-    y = w[_AT.position : _AT.position + STATE * LANES]
+    y = w[AT.position : AT.position + STATE * LANES]
     for first in range(0, state.shape[0], LANES):
         load(constants, first, c)
         load(state, first, y)
@@ -50,15 +36,13 @@ def _advance(constants, h, state, target, steps, accurate, band, notes, work):
         for lane in range(LANES):
             angle = c[4 * LANES + lane]
             c[COS * LANES + lane], c[SIN * LANES + lane] = np.cos(angle), np.sin(angle)
-            dynamics.prepare(machine(c, lane), step_size[lane], w, lane)
-            for i in range(dynamics.DEGREES):
-                w[_AT.step + i * LANES + lane] = step_size[lane]
+        prepare(c, step_size, w)
         begin(w, aim, note)
         for step in range(steps):
             if accurate:
-                _step_8(w)
+                step_8(w)
             else:
-                _step_5(w)
+                step_5(w)
             note_step(c, w, note)
             note_entries(w, aim, float(step), band, note)
         store(y, first, state)
@@ -103,7 +87,7 @@ def advance(
     notes = np.empty((len(state), NOTES))
     work = (
         aligned(CONSTANTS_ROOM * LANES),
-        aligned(_SIZE),
+        aligned(SIZE),
         aligned(NOTES_ROOM * LANES),
         aligned(LANES),
         aligned(LANES),

@@ -2,9 +2,14 @@
 
 The machine is autonomous, so the period T is an unknown and psi_1 = 0 anchors the start of the
 revolution: the other nine components of the state and T are such that after T the body is where it
-was and both vibrators have turned once. The derivatives of the end with respect to the start also
-give the Floquet multipliers. They cost several times the motion itself, and only the last ones must
-be accurate: to come close, derivatives from a third as many steps suffice, kept between iterations.
+was and both vibrators have turned once. The equations are the same for the opposite displacement of
+the body and vibrators turned by pi, so after T/2 the motion is its own mirror image: half a turn is
+enough. An orbit without this symmetry, and one whose body turns so fast that a bearing loss may
+change its sign, is sought in a whole turn.
+
+The derivatives of the end with respect to the start also give the Floquet multipliers. They cost
+several times the motion itself, and only the last ones must be accurate: to come close, derivatives
+from a third as many steps suffice, kept between iterations.
 """
 
 from typing import NamedTuple
@@ -12,29 +17,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.numerics.blocks import LANES, aligned, layout
-from models.numerics.jit import kernel
 from models.numerics.linear import product, solve
-from models.numerics.tsit5 import STAGES, combiner
+from models.vibrator.lanes.chords import CLOSE_ENOUGH, approach
+from models.vibrator.lanes.following import disphasing
 from models.vibrator.lanes.multiplier import largest_multiplier
-from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, slopes, store
+from models.vibrator.lanes.packed import STATE, Array
 from models.vibrator.lanes.tangents import FREE, revolve
 
 ITERATIONS = 10
 _CLOSE = 1e-6  # of a revolution: after a step this small only rounding errors are left
 _BOLDEST = 0.5  # longest step of psi_2 [rad]
 
-# While the derivatives are kept, convergence is only linear.
-_NEAR = 0.05  # longest first step made with coarse derivatives
-_SHRINKING = 0.25  # factor per step; slower convergence is given up
-_CHORDS = 8
-_CLOSE_ENOUGH = 1e-7  # for one step with accurate derivatives to leave only rounding errors
-
+_QUIET = 0.5  # angular velocity of the body over that of the vibrators: bearing losses keep sign
 _TURN = np.where(np.isin(np.arange(STATE), (3, 4)), 2 * np.pi, 0.0)
-_combine = combiner(STATE)
-_Y, _NEW, _K, _SIZE = layout(STATE, STAGES)
-_WHOLE = STATE * LANES
-_K_2, _K_3, _K_4, _K_5, _K_6 = (_K + i * _WHOLE for i in range(1, 6))
+_MIRROR = np.where(np.isin(np.arange(STATE), (0, 1, 2, 5, 6, 7)), -1.0, 1.0)  # half a turn later
 
 
 class Orbits(NamedTuple):
@@ -50,68 +46,16 @@ class Orbits(NamedTuple):
         [s]
     multiplier : ndarray, shape (n,)
         Largest modulus of the Floquet multipliers except the trivial 1.
+    angle, ripple : ndarray, shape (n,)
+        Mean disphasing angle, not wrapped, and the largest deviation from it [rad].
     """
 
     found: NDArray[np.bool_]
     state: Array
     period: Array
     multiplier: Array
-
-
-@kernel
-def _follow(constants, start, h, each, trace, work):
-    """Set `trace`, shape (n, samples, 10), to the states after every `each` steps."""
-    c, w, step_size = work
-    y, new = w[_Y : _Y + _WHOLE], w[_NEW : _NEW + _WHOLE]
-    k_1, k_2, k_3 = w[_K : _K + _WHOLE], w[_K_2 : _K_2 + _WHOLE], w[_K_3 : _K_3 + _WHOLE]
-    k_4, k_5, k_6 = w[_K_4 : _K_4 + _WHOLE], w[_K_5 : _K_5 + _WHOLE], w[_K_6 : _K_6 + _WHOLE]
-    for first in range(0, start.shape[0], LANES):
-        load(constants, first, c)
-        load(h, first, step_size)
-        load(start, first, y)
-        for sample in range(trace.shape[1]):
-            for _ in range(each):
-                slopes(c, step_size, y, k_1)
-                _combine(1, w)
-                slopes(c, step_size, new, k_2)
-                _combine(2, w)
-                slopes(c, step_size, new, k_3)
-                _combine(3, w)
-                slopes(c, step_size, new, k_4)
-                _combine(4, w)
-                slopes(c, step_size, new, k_5)
-                _combine(5, w)
-                slopes(c, step_size, new, k_6)
-                _combine(6, w)
-                y[:] = new
-            store(y, first, trace[:, sample])
-
-
-def _sampled(constants: Array, state: Array, period: Array, samples: int, each: int) -> Array:
-    """Return the states over a period at equal times, `each` steps apart."""
-    trace = np.empty((len(state), samples, STATE))
-    work = aligned(CONSTANTS * LANES), aligned(_SIZE), aligned(LANES)
-    _follow(constants, state, (period / (samples * each))[:, None], each, trace, work)
-    return trace
-
-
-def follow(constants: Array, state: Array, period: Array, steps: int) -> Array:
-    """Return the states of n machines at equal steps through one period.
-
-    Parameters
-    ----------
-    constants : ndarray, shape (n, CONSTANTS)
-    state : ndarray, shape (n, 10)
-    period : ndarray, shape (n,)
-        [s]
-    steps : int
-
-    Returns
-    -------
-    ndarray, shape (n, steps, 10)
-        The last one a period after `state`.
-    """
-    return _sampled(constants, state, period, steps, 1)
+    angle: Array
+    ripple: Array
 
 
 def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Orbits:
@@ -132,69 +76,86 @@ def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Or
     -------
     Orbits
     """
-    n = len(state)
-    out = Orbits(np.zeros(n, bool), state.copy(), period.copy(), np.full(n, np.nan))
-    _approach(constants, out.state, out.period, steps)
+    out = _find(constants, state, period, steps, 2)
+    speed = 2 * np.pi / out.period
+    spin = np.hypot(out.state[:, 7], out.state[:, 2] * speed)
+    rest = np.flatnonzero(~(out.found & (spin < _QUIET * speed)))
+    if len(rest):
+        whole = _find(constants[rest], state[rest], period[rest], steps, 1)
+        for field, found in zip(out, whole, strict=True):
+            field[rest] = found
+    return out
+
+
+def _find(constants: Array, state: Array, period: Array, steps: int, parts: int) -> Orbits:
+    """Find orbits that consist of one or two equal parts."""
+    n, steps = len(state), -(-steps // parts)
+    out = Orbits(np.zeros(n, bool), state.copy(), period / parts, *np.full((3, n), np.nan))
+    shortest = 0.2 * out.period
+    kept, close = _approach(constants, out, steps, parts)
     left = np.arange(n)
     for _ in range(ITERATIONS):
         start, time = out.state[left], out.period[left]
-        end = revolve(constants[left], start, time, steps)
+        end = _returned(revolve(constants[left], start, time, steps), parts)
         sound = _is_sound(end)
         left, start, time, end = left[sound], start[sound], time[sound], end[sound]
         if not len(left):
             break
-        step, regular = solve(_matrix(end), _miss(start, end[:, :, 0]))
+        step, regular = _steps(start, end, kept, close, left)
         size = _size(step, time)
         step *= np.minimum(1.0, _BOLDEST / np.maximum(size, 1e-300))[:, None, None]
         out.state[left[:, None], FREE] += step[:, :-1, 0]
         out.period[left] += step[:, -1, 0]
         # The next error of Newton's method is of the order of this step squared.
-        done = regular & (size < _CLOSE) & (out.period[left] > 0)
+        done = regular & (size < np.where(close[left], CLOSE_ENOUGH, _CLOSE))
+        done &= out.period[left] > 0
         out.found[left[done]] = True
-        out.multiplier[left[done]] = largest_multiplier(end[done])
-        left = left[regular & ~done & (out.period[left] > 0.2 * period[left])]
+        out.multiplier[left[done]] = largest_multiplier(end[done]) ** parts
+        close[left] = False
+        left = left[regular & ~done & (out.period[left] > shortest[left])]
         if not len(left):
             break
-    return out
+    angle, ripple = disphasing(constants, out.state, out.period, steps)
+    return out._replace(period=parts * out.period, angle=angle, ripple=ripple)
 
 
-def _approach(constants: Array, state: Array, period: Array, steps: int) -> None:
-    """Improve guesses near an orbit in place; leave the others unchanged.
+def _approach(
+    constants: Array, out: Orbits, steps: int, parts: int
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Improve guesses near an orbit; return the inverses used, and where they have served."""
+    end = _returned(revolve(constants, out.state, out.period, max(steps // 3, 1)), parts)
+    inverse, regular = solve(_matrix(end), np.tile(np.eye(STATE), (len(end), 1, 1)))
+    inverse[~(regular & _is_sound(end))] = np.nan
+    mirror = _MIRROR if parts == 2 else np.ones(STATE)
+    turn = 2 * np.pi / parts
+    image = end[:, :, 0]
+    close = approach(constants, out.state, out.period, image, inverse, steps, mirror, turn)
+    return inverse, close
 
-    The derivatives are those at the guess, with a third of the steps: convergence is linear, and
-    where it is slow the guess was not near an orbit.
-    """
-    end = revolve(constants, state, period, max(steps // 3, 1))
-    inverse, regular = solve(_matrix(end), np.tile(np.eye(STATE), (len(state), 1, 1)))
-    rows = np.flatnonzero(regular & _is_sound(end))
-    c, start, time, inverse = constants[rows], state[rows], period[rows], inverse[rows]
-    arrived, last = end[rows, :, 0], np.full(len(rows), _NEAR / _SHRINKING)
-    for _ in range(1 + _CHORDS):
-        step = product(inverse, _miss(start, arrived))
-        size = _size(step, time) + np.abs(step[:, 7:9, 0]).sum(axis=1) * time / (2 * np.pi)
-        start[:, FREE] += step[:, :-1, 0]
-        time += step[:, -1, 0]
-        going = (size < _SHRINKING * last) & (time > 0)
-        close = going & (size < _CLOSE_ENOUGH)
-        state[rows[close]], period[rows[close]] = start[close], time[close]
-        going &= ~close
-        if not going.any():
-            break
-        if not going.all():
-            rows, c, inverse = rows[going], c[going], inverse[going]
-            start, time, size = start[going], time[going], size[going]
-        last = size
-        arrived = _sampled(c, start, time, 1, steps)[:, 0]
+
+def _steps(
+    start: Array, end: Array, kept: Array, close: NDArray[np.bool_], rows: NDArray[np.intp]
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Return Newton's steps, where the orbit is close with the derivatives kept."""
+    miss = (start - end[:, :, 0])[:, :, None]
+    step, regular = product(kept[rows], miss), np.ones(len(rows), bool)
+    far = np.flatnonzero(~close[rows])
+    if len(far):
+        step[far], regular[far] = solve(_matrix(end[far]), miss[far])
+    return step, regular
+
+
+def _returned(end: Array, parts: int) -> Array:
+    """Return states after a part, and their derivatives, turned back by it."""
+    if parts == 2:
+        end *= _MIRROR[:, None]
+    end[:, :, 0] -= _TURN / parts
+    return end
 
 
 def _is_sound(end: Array) -> NDArray[np.bool_]:
     """Return which motions and derivatives are finite and within bounds."""
     return np.abs(end).max(axis=(1, 2)) < 1e12
-
-
-def _miss(start: Array, end: Array) -> Array:
-    """Return the start plus one turn less the end, as columns."""
-    return (start + _TURN - end)[:, :, None]
 
 
 def _matrix(end: Array) -> Array:

@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.vibrator.equations.time_scales import slowest_period
-from models.vibrator.lanes.fixed_steps import STABLE, advance
+from models.vibrator.lanes.fixed_steps import advance
 from models.vibrator.lanes.machines import Machines, prepared, start
 from models.vibrator.lanes.notes import ANGLE_HIGH, ANGLE_LOW, EXCURSION, LAST_ENTRY
 from models.vibrator.lanes.packed import Array
+from models.vibrator.lanes.steps import STABLE
 from models.vibrator.parameters import Rows, Settings
 from models.vibrator.start.last_second import LAST, NEAR, STEPS, Live, learn, run_last_second
 from models.vibrator.start.regimes import (
@@ -166,7 +167,7 @@ def _is_near(known: Known, rows: Any, low: Array, high: Array, speed: Array) -> 
         turns = 2 * np.pi * np.round(((low + high) / 2 - target) / (2 * np.pi))
         off = np.maximum(np.abs(low - turns - target), np.abs(high - turns - target))
         ratio = speed * known.orbits.period[rows, None] / (2 * np.pi)
-        near = off < NEAR + known.ripple[rows]
+        near = off < NEAR + known.orbits.ripple[rows]
         return known.found[rows] & near & (np.abs(ratio - 1) < 0.01).all(axis=1)
 
 
@@ -174,6 +175,6 @@ def _note_locked(known: Known, live: Live, out: Outcome) -> None:
     rows = live.rows
     describe(live.machines, known.take(rows), out, rows)
     # An angle that leaves the band in one revolution leaves it in every one.
-    out.synchronisation_time[rows] = np.where(known.ripple[rows] < BAND, live.came, np.inf)
+    out.synchronisation_time[rows] = np.where(known.orbits.ripple[rows] < BAND, live.came, np.inf)
     out.max_excursion[rows] = np.sqrt(live.far)
     out.regime[rows] = locked_regime(known.disphasing[rows])

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.vibrator.lanes.fixed_steps import STABLE, advance
+from models.vibrator.lanes.fixed_steps import advance
 from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.notes import (
     ALPHA_LOW,
@@ -21,6 +21,7 @@ from models.vibrator.lanes.notes import (
     SUMS,
 )
 from models.vibrator.lanes.packed import Array
+from models.vibrator.lanes.steps import STABLE
 from models.vibrator.parameters import Settings
 from models.vibrator.start.regimes import (
     BAND,

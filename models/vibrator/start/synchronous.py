@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from models.numerics import elementary
 from models.vibrator.equations.rigid import Rigid
 from models.vibrator.exact.measures import kloss
-from models.vibrator.lanes import fixed_steps
+from models.vibrator.lanes.following import follow
 from models.vibrator.lanes.machines import Machines
-from models.vibrator.lanes.orbit import Orbits, find_orbits, follow
+from models.vibrator.lanes.orbit import Orbits, find_orbits
 from models.vibrator.lanes.packed import STATE, Array
+from models.vibrator.lanes.steps import STABLE
 from models.vibrator.parameters import Rows
 from models.vibrator.start.regimes import CAPTURED_BELOW, Outcome, wrapped
 from models.vibrator.theory import averaged
@@ -33,28 +34,24 @@ class Known(NamedTuple):
         Per revolution, with which they were found.
     disphasing : ndarray, shape (n,)
         Mean disphasing angle in (-pi, pi] [rad], NaN if none is known.
-    ripple : ndarray, shape (n,)
-        Largest deviation of the disphasing angle from its mean in a revolution [rad].
     """
 
     found: NDArray[np.bool_]
     orbits: Orbits
     steps: NDArray[np.int64]
     disphasing: Array
-    ripple: Array
 
     def learn(self, rows: Any, other: "Known") -> None:
         """Copy what is known of the machines in `rows`."""
         self.found[rows], self.steps[rows] = other.found, other.steps
-        self.disphasing[rows], self.ripple[rows] = other.disphasing, other.ripple
+        self.disphasing[rows] = other.disphasing
         for mine, new in zip(self.orbits, other.orbits, strict=True):
             mine[rows] = new
 
     def take(self, rows: Any) -> "Known":
         """Return what is known of the machines in `rows`."""
         orbits = Orbits._make(field[rows] for field in self.orbits)
-        others = (field[rows] for field in (self.steps, self.disphasing, self.ripple))
-        return Known(self.found[rows], orbits, *others)
+        return Known(self.found[rows], orbits, self.steps[rows], self.disphasing[rows])
 
 
 def propose(machines: Machines, steps: int) -> Known:
@@ -94,25 +91,20 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
     n = len(speed)
     speed, angle = np.where(wanted, speed, 1.0), np.where(wanted, angle, 0.0)
     state, period = _harmonic(machines.p, speed, angle), 2 * np.pi / speed
-    none = Orbits(np.zeros(n, bool), state, period, np.full(n, np.nan))
-    unknown = np.full((2, n), np.nan)
-    known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), *unknown)
-    needed = np.maximum(period * machines.fastest / fixed_steps.STABLE, max(steps, STEPS))
+    none = Orbits(np.zeros(n, bool), state, period, *np.full((3, n), np.nan))
+    known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), np.full(n, np.nan))
+    needed = np.maximum(period * machines.fastest / STABLE, max(steps, STEPS))
     rung = np.array([*LADDER, 0])[np.searchsorted(LADDER, needed)]
     rung = np.where((rung > 0) & (steps > 0) & (needed <= steps), steps, rung)
     for count in np.unique(rung[wanted & (rung > 0)]).tolist():
         rows = np.flatnonzero(wanted & (rung == count))
         constants = machines.constants[rows]
         orbits = find_orbits(constants, state[rows], period[rows], count)
-        trace = follow(constants, orbits.state, orbits.period, count)
-        angle = trace[:, :, 3] - trace[:, :, 4]
-        mean = angle.mean(axis=1)
-        ripple = np.abs(angle - mean[:, None]).max(axis=1)
         slowest = CAPTURED_BELOW * machines.synchronous_speed[rows].max(axis=1)
         fast = 2 * np.pi / orbits.period >= slowest
         found = orbits.found & (orbits.multiplier < 1) & fast
-        disphasing = np.where(found, wrapped(mean), np.nan)
-        known.learn(rows, Known(found, orbits, np.full(len(rows), count), disphasing, ripple))
+        disphasing = np.where(found, wrapped(orbits.angle), np.nan)
+        known.learn(rows, Known(found, orbits, np.full(len(rows), count), disphasing))
     return known
 
 

@@ -9,6 +9,7 @@ from models.vibrator.equations import rigid_motion
 from models.vibrator.equations.system import systems
 from models.vibrator.exact import propagator
 from models.vibrator.lanes import orbit, tangents
+from models.vibrator.lanes.following import follow
 from models.vibrator.lanes.packed import pack
 from models.vibrator.parameters import Params
 from models.vibrator.theory.averaged import disphasing, steady_motion
@@ -35,7 +36,7 @@ def find(p, steps, off=0.0):
 
 
 def mean_angle(p, orbits, steps):
-    trace = orbit.follow(pack(systems(p).rigid), orbits.state, orbits.period, steps)
+    trace = follow(pack(systems(p).rigid), orbits.state, orbits.period, steps)
     return (trace[:, :, 3] - trace[:, :, 4]).mean(axis=1)
 
 
@@ -94,14 +95,12 @@ def test_derivatives_of_a_revolution_are_those_of_nearby_ones():
     (state, period), constants = guess(MACHINES), pack(systems(MACHINES).rigid)
     end = tangents.revolve(constants, state, period, 24)
     np.testing.assert_allclose(
-        end[:, :, 0], orbit.follow(constants, state, period, 24)[:, -1], rtol=1e-12, atol=1e-13
+        end[:, :, 0], follow(constants, state, period, 24)[:, -1], rtol=1e-12, atol=1e-13
     )
     sizes = np.repeat([1e-6, 1e-4], 5)
     for column, i in enumerate(tangents.FREE):
         change = sizes * (np.arange(orbit.STATE) == i)
-        above, below = (
-            orbit.follow(constants, state + s * change, period, 24)[:, -1] for s in (1, -1)
-        )
+        above, below = (follow(constants, state + s * change, period, 24)[:, -1] for s in (1, -1))
         expected = (above - below) / (2 * sizes[i])
         scale = np.abs(expected).max(axis=0)
         assert np.all(np.abs(end[:, :, 1 + column] - expected) < 1e-5 * scale)
@@ -111,7 +110,8 @@ def test_derivatives_of_a_revolution_are_those_of_nearby_ones():
 def test_coming_close_with_old_derivatives_leads_to_the_same_orbits(off, monkeypatch):
     """Near guesses, and those too far for it."""
     quick = find(MACHINES, 24, off)
-    monkeypatch.setattr(orbit, "_approach", lambda *_: None)
+    nothing = np.zeros((10, orbit.STATE, orbit.STATE)), np.zeros(10, bool)
+    monkeypatch.setattr(orbit, "_approach", lambda *_: nothing)
     newton = find(MACHINES, 24, off)
     assert newton.found.all()
     np.testing.assert_array_equal(quick.found, newton.found)
@@ -121,7 +121,7 @@ def test_coming_close_with_old_derivatives_leads_to_the_same_orbits(off, monkeyp
 
 
 def test_coming_close_spares_derivatives(monkeypatch):
-    """One revolution with coarse ones, and one with true ones, from the theory's proposal."""
+    """Half a turn with coarse ones, and one with true ones, from the theory's proposal."""
     calls = []
 
     def counted(constants, state, period, steps):
@@ -130,18 +130,37 @@ def test_coming_close_spares_derivatives(monkeypatch):
 
     monkeypatch.setattr(orbit, "revolve", counted)
     assert find(MACHINES, 24).found.all()
-    assert calls == [8, 24]
+    assert calls == [4, 12]
 
 
 def test_following_ends_where_the_orbit_does():
     orbits = find(MACHINES, 48)
-    trace = orbit.follow(pack(systems(MACHINES).rigid), orbits.state, orbits.period, 48)
+    trace = follow(pack(systems(MACHINES).rigid), orbits.state, orbits.period, 48)
     np.testing.assert_allclose(trace[:, -1] - TURN, orbits.state, rtol=0, atol=1e-9)
     for i in (0, 7):
         m, times = systems(MACHINES).row(i), orbits.period[i] * np.arange(1, 49) / 48
         motion = propagator.propagate(m, orbits.state[i], times[-1], 1e-13, times=times)
         errors = (trace[i] - motion.samples) / propagator.scales_of(m, rigid_motion.DEGREES)
         assert abs(errors).max() < 1e-8
+
+
+def test_half_a_turn_later_the_body_is_at_the_opposite_displacement():
+    orbits = find(MACHINES, 192)
+    mirror = np.where(np.isin(np.arange(orbit.STATE), (0, 1, 2, 5, 6, 7)), -1.0, 1.0)
+    for i in range(10):
+        m = systems(MACHINES).row(i)
+        motion = propagator.propagate(m, orbits.state[i], orbits.period[i] / 2, 1e-13)
+        errors = motion.state - TURN / 2 - mirror * orbits.state[i]
+        assert abs(errors / propagator.scales_of(m, rigid_motion.DEGREES)).max() < 1e-9
+
+
+def test_half_a_turn_leads_to_the_same_orbits_as_a_whole_one(monkeypatch):
+    half = find(MACHINES, 24)
+    monkeypatch.setattr(orbit, "_QUIET", 0.0)
+    whole = find(MACHINES, 24)
+    for got, expected in zip(half, whole, strict=True):
+        np.testing.assert_allclose(got, expected, rtol=1e-9, atol=1e-9)
+    assert not np.array_equal(half.state, whole.state)
 
 
 def assert_found_or_said(p, state, period):

@@ -5,12 +5,13 @@ from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special
 
 from uq.analysis.statistics.statistic import Context, Kind, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
 from uq.indices.targets import number_of
 from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Replicates, scatter_interval
+from uq.quantile_functions import normal
 from uq.rows.elements import Element, output_names
 from uq.tails import lacks_variance
 from uq.wording import number
@@ -90,11 +91,12 @@ def _independent(
     value = 1 - (1 - ratio) * (n - 1) / (n - regimes) if n > regimes else np.nan
     total = deviation + residual
     influence = deviation**2 + 2 * deviation * residual - ratio * total**2
-    half = stats.norm.ppf(0.5 + CONFIDENCE / 2) * influence.std() / total.var() / np.sqrt(n)
+    half = normal(0.5 + CONFIDENCE / 2) * influence.std() / total.var() / np.sqrt(n)
     freedom = regimes - 1, n - regimes
     with np.errstate(divide="ignore", invalid="ignore"):
         statistic = ratio / freedom[0] / ((1 - ratio) / freedom[1])
-    if not half > 0 or not 0 < value < 1 or stats.f.sf(statistic, *freedom) > 1 - CONFIDENCE:
+    same = special.fdtrc(*freedom, statistic) > 1 - CONFIDENCE
+    if not half > 0 or not 0 < value < 1 or same:
         return value, np.nan, np.nan
     # Fisher's transformation of the root, in which the estimate is nearly normal.
     root = np.sqrt(value)

@@ -1,0 +1,145 @@
+"""One element of an output: one plain array, with the outcome of every row."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from uq.contract import Floats, Mask, Output
+
+
+@dataclass(frozen=True)
+class Element:
+    """One number per row: an output, or one element of an output that has dimensions.
+
+    Attributes
+    ----------
+    name : str
+        ``work_rate[site=left]``.
+    output : str
+        ``work_rate``.
+    declared : Output
+        The declaration of the output; not a category.
+    place : dict of str to object
+        Dimension -> coordinate; empty for an output without dimensions.
+    values : ndarray, shape (n,)
+        NaN where there is no value; +inf for a life that never ends.
+    censored : ndarray of bool, shape (n,)
+        Where the value is only a lower bound.
+    failed : ndarray of bool, shape (n,)
+        Where the value is missing because the row failed.
+    """
+
+    name: str
+    output: str
+    declared: Output
+    place: dict[str, Any]
+    values: Floats
+    censored: Mask
+    failed: Mask
+
+    @property
+    def units(self) -> str:
+        """CF unit string."""
+        return self.declared.unit
+
+    @property
+    def meaning(self) -> str:
+        """One line that describes the output."""
+        return self.declared.meaning
+
+    @property
+    def is_lifetime(self) -> bool:
+        """Whether it is the time until an event."""
+        return self.declared.is_lifetime
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether its sign is a direction."""
+        return self.declared.is_angle
+
+    @property
+    def for_thresholds(self) -> Floats:
+        """The values, or of an angle their magnitudes, shape (n,)."""
+        return self.declared.for_thresholds(self.values)
+
+    @property
+    def undefined(self) -> Mask:
+        """Where the row is sound but the value is undefined."""
+        return np.isnan(self.values) & ~self.failed
+
+    @property
+    def never(self) -> Mask:
+        """Where a life is known never to end."""
+        return np.isposinf(self.values) & ~self.censored
+
+    @property
+    def present(self) -> Mask:
+        """Where there is a value."""
+        return ~np.isnan(self.values)
+
+    def unknown_sides(self, threshold: float) -> Mask:
+        """Return where rows were censored below a threshold, so that their side is unknown."""
+        return self.censored & (self.values < threshold)
+
+    @property
+    def at_least(self) -> Floats:
+        """The values, shape (present,), with censored ones at their lower bound."""
+        return self.values[self.present]
+
+    @property
+    def at_most(self) -> Floats:
+        """The values, shape (present,), with censored ones at infinity."""
+        return np.where(self.censored, np.inf, self.values)[self.present]
+
+
+def elements_in(
+    name: str,
+    declared: Output,
+    values: Any,
+    censored: Any,
+    coordinates: Mapping[str, Any],
+    failed: Mask,
+) -> Iterator[Element]:
+    """Yield the elements of one output, in order.
+
+    Parameters
+    ----------
+    name : str
+    declared : Output
+        Not a category.
+    values : array, shape (n, *dims)
+        Read one element at a time.
+    censored : array of bool or int, shape (n, *dims), or None
+        None if no life can be censored.
+    coordinates : dict of str to array
+        Of each dimension.
+    failed : ndarray of bool, shape (n,)
+        The rows that failed.
+
+    Yields
+    ------
+    Element
+        Coordinates in names are written like Python's repr, without quotes.
+    """
+    axes = [np.asarray(coordinates[dim]) for dim in declared.dims]
+    for index in np.ndindex(*map(len, axes)):
+        place = {
+            dim: axis[i].item() for dim, axis, i in zip(declared.dims, axes, index, strict=True)
+        }
+        label = ",".join(f"{dim}={value}" for dim, value in place.items())
+        column = np.asarray(values[(slice(None), *index)])
+        absent = declared.is_absent(column)
+        cut = np.zeros(len(column), dtype=bool)
+        if censored is not None:
+            cut = np.asarray(censored[(slice(None), *index)]).astype(bool) & ~absent
+        yield Element(
+            f"{name}[{label}]" if label else name,
+            name,
+            declared,
+            place,
+            np.where(absent, np.nan, column),
+            cut,
+            absent & failed,
+        )
