@@ -9,6 +9,7 @@ restarted from the exact phase in each period. At the end of an epoch the steady
 the modes take the opposite jump, so that the motion of the beam is continuous.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -97,11 +98,11 @@ def _draw_lane(load, n, epoch, steps, lines, lane):
     for j in range(COUNT):
         k = j * _LINE * LANES + lane
         half = np.pi * drawn[j, SPEED] / steps
-        sine = np.sin(half)
+        sine = math.sin(half)
         slots[k + _SLOW * LANES] = 4 * sine * sine
         slots[k + _SIZE * LANES] = drawn[j, AMPLITUDE]
         slots[k + _SINE * LANES] = sine
-        slots[k + _COSINE * LANES] = np.cos(half)
+        slots[k + _COSINE * LANES] = math.cos(half)
         slots[k + _SPEED * LANES] = drawn[j, SPEED]
         slots[k + _TURN * LANES] = drawn[j, TURN]
 

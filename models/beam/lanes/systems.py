@@ -1,5 +1,6 @@
 """Beams prepared for the fast propagator, in groups that share a step size."""
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -88,7 +89,7 @@ def _prepare(forcing, frequency, decay, gain, moving, steps, modes, begin, sigma
                 sigma[n] += b / (w * w)
                 continue
             p11, p12, p21, p22, a1, a2, b1, b2 = mode_step(w, d, h)
-            determinant = np.exp(-2 * d * h)
+            determinant = math.exp(-2 * d * h)
             sigma[n] += b * b1
             modes[n, 0, i] = p11 + p22
             modes[n, 1, i] = determinant
