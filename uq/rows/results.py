@@ -8,7 +8,7 @@ clock, the host, chunks or workers.
 """
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -122,26 +122,6 @@ def build_rows(
     attrs = {"title": model.title} | model_attributes(model) | provenance()
     outputs = output_variables(model, settings, columns, status, failures)
     return xr.Dataset(inputs | outputs, coordinates(model, settings), attrs)
-
-
-def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
-    """Yield name and values of each element of an output: ``work_rate[site=left]``.
-
-    Parameters
-    ----------
-    variable : xarray.DataArray
-        With or without the dimension ``sample``.
-
-    Yields
-    ------
-    tuple of str and xarray.DataArray
-        Coordinates are written like Python's repr, without quotes.
-    """
-    dims = [str(dim) for dim in variable.dims if dim != "sample"]
-    for index in np.ndindex(*(variable.sizes[dim] for dim in dims)):
-        place = dict(zip(dims, index, strict=True))
-        label = ",".join(f"{dim}={variable[dim].values[i].item()}" for dim, i in place.items())
-        yield f"{variable.name}[{label}]" if label else str(variable.name), variable.isel(place)
 
 
 def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") -> xr.Dataset:

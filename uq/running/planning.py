@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy import special
 
+from uq.intervals import upper_probability
+from uq.quantile_functions import student
 from uq.rows import results
 from uq.rows.evaluate import Chunk, joined
 from uq.rows.sampling import Rows
@@ -198,4 +199,4 @@ def _row_cost(seconds: Sequence[float], rows: Sequence[int], chunks: int) -> tup
         return mean, 0.0
     each = np.divide(seconds, rows)
     deviation = each.std(ddof=1) / np.sqrt(m) * np.sqrt(1 - m / chunks)
-    return mean, float(special.stdtrit(m - 1, 0.975) * deviation / mean)
+    return mean, float(student(upper_probability(), m - 1) * deviation / mean)
