@@ -83,17 +83,18 @@ def judge(left, life, out, here, work, strobe, accuracy, largest, spacing, verdi
     for j in range(left.size):
         i = left[j]
         verdict[j] = ONWARD
+        period, nearing = watch(strobe[j], life.apart[i])
+        begin = ROUND % period if period > 0 else 0  # the mean of an orbit is that of whole turns
         for s in range(2):
             total = 0.0
-            for period in range(ROUND):
-                total += work[j, period, s]
-            now[s] = total / ROUND * life.share[i, s]
+            for t in range(begin, ROUND):
+                total += work[j, t, s]
+            now[s] = total / (ROUND - begin) * life.share[i, s]
             grown[s] = here[j, s] - life.initial[i, s] - life.grown[i, s]
         if not np.isfinite(now[0] + now[1]):
             life.mode[i] = OVER
             continue
         life.silence[i] = 0 if now[0] + now[1] > 0 else life.silence[i] + ROUND
-        period, nearing = watch(strobe[j], life.apart[i])
         regime = regime_of(period, now[0] / life.share[i, 0], now[1] / life.share[i, 1])
         if life.mode[i] == STEPPING:
             begin_hold(i, life, now)

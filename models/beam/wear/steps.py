@@ -29,7 +29,8 @@ _GENEROUS = 0.125  # of it, below which the next step is twice as long
 _SMOOTH = 1 / 6  # error of a step without a change of branch, over the one with it
 _JUMP = 0.2  # change of a rate, other than expected, that may be one of branch
 _FEWEST, _LEFT, _MOST = 3, 8, 16  # rounds held: near an orbit, away from any, at most
-_CALM, _QUIET = 0.02, 1e-3  # change of work from round to round when settled; need not shrink
+_CALM, _QUIET = 1e-3, 1e-5  # change of work from round to round when settled; need not shrink
+_SHRINKING = 0.8  # factor of that change from one round to the next
 
 
 @lean
@@ -94,7 +95,7 @@ def _is_calm(i, life, now):
         sign = 1 - 2 * s
         change = abs(now[0] - life.last[i, 0] + sign * (now[1] - life.last[i, 1]))
         change = change / whole if whole > 0 else 0.0
-        calm &= change < _CALM and (change <= life.change[i, s] or change < _QUIET)
+        calm &= change < _CALM and (change <= _SHRINKING * life.change[i, s] or change < _QUIET)
         life.change[i, s] = change
     return calm
 
