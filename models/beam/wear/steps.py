@@ -29,7 +29,7 @@ _GENEROUS = 0.125  # of it, below which the next step is twice as long
 _SMOOTH = 1 / 6  # error of a step without a change of branch, over the one with it
 _JUMP = 0.2  # change of a rate, other than expected, that may be one of branch
 _FEWEST, _LEFT, _MOST = 3, 8, 16  # rounds held: near an orbit, away from any, at most
-_CALM, _QUIET = 1e-3, 1e-5  # change of work from round to round when settled; need not shrink
+_CALM, _QUIET = 1e-4, 1e-8  # change of work from round to round when settled; need not shrink
 _SHRINKING = 0.8  # factor of that change from one round to the next
 
 

@@ -26,7 +26,7 @@ LONGEST_STEP = 0.22  # relative growth of a gap
 OVERTIME = 4  # a flow may last this many times its intended periods
 _ENOUGH = 8192  # further periods
 _SILENCE = 64  # periods without contact, at least, after which a beam that can avoid contact will
-_PUSH = 3e-3  # of the first mode [X0]: an orbit made unstable by wear is left; less in short steps
+_PUSH = 3e-4  # of the first mode [X0]: an orbit that wear has made unstable is left
 
 
 def wear_down(
@@ -95,9 +95,7 @@ def wear_down(
     for _ in range((OVERTIME * periods + _ENOUGH) // ROUND):
         growth, verdict = np.empty((len(left), 2)), np.empty(len(left), np.int8)
         plan(left, life, out, here, pace, growth)
-        stepping = life.mode[left] == STEPPING
-        push = _PUSH * np.minimum(1.0, life.step[left[stepping]] / FIRST_STEP)
-        now[stepping, FIRST_MODE] += push
+        now[life.mode[left] == STEPPING, FIRST_MODE] += _PUSH
         record = propagator.advance(system, now, here, growth, ROUND)
         judge(
             left, life, out, here, record.work, record.strobe, accuracy, largest, spacing, verdict
