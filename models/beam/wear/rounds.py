@@ -5,6 +5,7 @@ import numpy as np
 from models.beam.wear.endings import has_ended, note_end
 from models.beam.wear.flows import flow
 from models.beam.wear.progress import (
+    FIRST_STEP,
     FLOWING,
     HOLDING,
     ONWARD,
@@ -18,11 +19,12 @@ from models.beam.wear.regimes import ROUND, regime_of, watch
 from models.beam.wear.steps import begin_hold, hold
 from models.numerics.jit import kernel
 
+_PUSH = 3e-3  # of the first mode in the first step [X0]
 _WIDEST = 4.0  # growth of the faster gap over that of the one that matters
 
 
 @kernel
-def plan(left, life, out, here, pace, growth):
+def plan(left, life, out, here, pace, growth, push):
     """Set the growth of the gaps per work of the beams left, for the next round.
 
     Parameters
@@ -36,9 +38,13 @@ def plan(left, life, out, here, pace, growth):
         Relative growth of the gaps in a round of a flow.
     growth : ndarray, shape (m, 2)
         Set.
+    push : ndarray, shape (m,)
+        Set to the displacement of the first mode with which a step begins [X0], so that an orbit
+        that wear has made unstable is left; the shorter the step, the smaller.
     """
     for j in range(left.size):
         i = left[j]
+        push[j] = 0.0
         rate = life.rate[i]
         site = control(i, life, out)
         fastest = max(rate[0], rate[1])
@@ -48,6 +54,7 @@ def plan(left, life, out, here, pace, growth):
             # A change of branch ahead is approached by halves.
             wide = min(wide, (life.change_at[i] - life.grown[i, site]) / 2)
             wide = max(wide, SMALLEST_STEP * scale(i, life))
+            push[j] = _PUSH * min(1.0, wide / (FIRST_STEP * scale(i, life)))
         time = min(wide / rate[site], _WIDEST * wide / fastest) if rate[site] > 0 else 0.0
         if life.mode[i] != HOLDING:
             life.span[i] = time

@@ -26,7 +26,6 @@ LONGEST_STEP = 0.22  # relative growth of a gap
 OVERTIME = 4  # a flow may last this many times its intended periods
 _ENOUGH = 8192  # further periods
 _SILENCE = 64  # periods without contact, at least, after which a beam that can avoid contact will
-_PUSH = 3e-4  # of the first mode [X0]: an orbit that wear has made unstable is left
 
 
 def wear_down(
@@ -93,9 +92,10 @@ def wear_down(
     left, now, here = np.arange(n), state.copy(), gaps.copy()
     kept, kept_gaps = state.copy(), gaps.copy()
     for _ in range((OVERTIME * periods + _ENOUGH) // ROUND):
-        growth, verdict = np.empty((len(left), 2)), np.empty(len(left), np.int8)
-        plan(left, life, out, here, pace, growth)
-        now[life.mode[left] == STEPPING, FIRST_MODE] += _PUSH
+        growth, push = np.empty((len(left), 2)), np.empty(len(left))
+        verdict = np.empty(len(left), np.int8)
+        plan(left, life, out, here, pace, growth, push)
+        now[:, FIRST_MODE] += push
         record = propagator.advance(system, now, here, growth, ROUND)
         judge(
             left, life, out, here, record.work, record.strobe, accuracy, largest, spacing, verdict
