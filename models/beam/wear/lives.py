@@ -10,7 +10,7 @@ from models.beam.structure.propagation import Propagator, System
 from models.beam.wear.regimes import changes_of, confirmed_regimes
 from models.beam.wear.worn_beams import wear_down
 
-PERIODS = 144  # over the accuracy: periods of a flow
+PERIODS = 240  # over the accuracy: periods of a flow
 
 
 class Lives(NamedTuple):

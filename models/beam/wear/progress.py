@@ -9,7 +9,7 @@ from models.beam.structure.modal import Array
 from models.beam.wear.regimes import LONGEST_PERIOD, History
 from models.numerics.jit import lean
 
-STEP_FACTOR, FLOW_FACTOR = 3.0, 8.5  # half-width of the 90 % interval over the errors: measured
+STEP_FACTOR, FLOW_FACTOR = 3.0, 11.0  # half-width of the 90 % interval over the errors: measured
 
 STEPPING, HOLDING, FLOWING, OVER = range(4)
 ONWARD, KEEP, BACK = range(3)  # verdicts, see `models.beam.wear.rounds.judge`
