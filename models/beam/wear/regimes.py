@@ -19,6 +19,7 @@ LONGEST_PERIOD = ROUND // 2
 CONFIRMED = 3  # looks in a row that a regime must last to count
 UNKNOWN = -1
 _NEAR = 2e-2  # distance from the point k periods before, relative to the response
+_ALIKE = 4.0  # ratio of distances that do not tell periods apart: a spiral onto an orbit of one
 _SHRINKING = 0.9  # factor of that distance from one round to the next
 _STILL = 1e-7  # distance that need not shrink
 _SYMMETRIC = 1e-2  # difference of the sites' work, relative to their sum: looser because of wear
@@ -72,7 +73,7 @@ def watch(strobe, apart):
     size = 0.0
     for t in range(ROUND):
         size = max(size, abs(strobe[t, 0]), abs(strobe[t, 1]))
-    period, nearing = 0, False
+    period, nearing, nearest = 0, False, np.inf
     for k in range(LONGEST_PERIOD, 0, -1):
         distance = 0.0
         for t in range(LONGEST_PERIOD, ROUND):
@@ -80,10 +81,14 @@ def watch(strobe, apart):
             v = abs(strobe[t, 1] - strobe[t - k, 1])
             distance = max(distance, x, v)
         distance /= size
+        nearest = min(nearest, distance)
         if distance <= _NEAR:
-            period = k
             nearing |= distance <= _STILL or distance < _SHRINKING * apart[k - 1]
         apart[k - 1] = distance
+    if nearest <= _NEAR:
+        for k in range(LONGEST_PERIOD, 0, -1):
+            if apart[k - 1] <= max(_NEAR, _ALIKE * nearest):
+                period = k
     return period, nearing
 
 
