@@ -7,6 +7,7 @@ import pytest
 
 from models.beam.response.response import APERIODIC, SYMMETRIC
 from models.beam.structure.propagation import Record
+from models.beam.wear.lives import PERIODS
 from models.beam.wear.worn_beams import wear_down
 
 
@@ -44,7 +45,7 @@ def lives(law, growths, n=1, regime=SYMMETRIC, accuracy=0.1):
         np.full(n, regime, np.int8),
         np.ones((n, 2)),
         np.tile(growths, (n, 1)),
-        round(144 / accuracy),
+        round(PERIODS / accuracy),
         accuracy,
     )
 
