@@ -3,6 +3,7 @@
 Reading order; a module imports only those above it:
 
     propagator      the interface of everything that advances machines in time
+    environment     the instruction set for which kernels are compiled
     cache           where compiled code is kept
     jit             how kernels are compiled
     fma             fused multiply-add where the source says so
@@ -16,7 +17,6 @@ Reading order; a module imports only those above it:
     batch_means     time means with their errors
     events          event location within a step
     tableaux        coefficients of the Runge-Kutta methods
-    tsit5           order 5, many systems, fixed steps
     nystrom         any tableau for q'' = f(q, q'), many systems, fixed steps
     dop8            order 8, many systems, with an error estimate
     dop853_step     order 8(5,3), one system: a step
@@ -24,3 +24,7 @@ Reading order; a module imports only those above it:
     newton          damped Newton's method
     continuation    branches of solutions, through folds
 """
+
+from models.numerics.environment import prepare
+
+prepare()  # numba, which the modules import, reads it only once

@@ -1,7 +1,8 @@
 """Runge-Kutta steps of many systems at a time: Dormand and Prince's method of order 8.
 
-Like `models.numerics.tsit5`, with an error estimate for each lane, after E. Hairer, S. P. Norsett,
-G. Wanner, "Solving Ordinary Differential Equations I", Sec. II.5 and II.10.
+With an error estimate for each lane, after E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary
+Differential Equations I", Sec. II.5 and II.10. A block of lanes is one flat array with offsets
+known to the compiler: otherwise sums over many arrays are not vectorised.
 """
 
 import math
@@ -45,7 +46,18 @@ WEIGHTS = DORMAND_PRINCE_8.b
 
 
 def combiner(quantities: int) -> Callable[[int, Any], None]:
-    """Return the kernel that prepares the next stage; see `models.numerics.tsit5.combiner`."""
+    """Return the kernel that prepares the next stage.
+
+    Parameters
+    ----------
+    quantities : int
+        In a state.
+
+    Returns
+    -------
+    kernel
+        ``combine(stage, block)``, given the slopes of the first `stage` stages.
+    """
     y, out, k, _ = layout(quantities, STAGES)
     n = quantities * LANES
     k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11, k12 = (k + i * n for i in range(STAGES))

@@ -95,9 +95,9 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, monkeypatch, injec
 
     def kill_thrice():
         for _ in range(3):
-            # A worker whose child is there is about to compute.
-            wait_for(lambda: [w for w in workers() if processes(CHILD, w)])
-            time.sleep(0.5)
+            # A worker that the scheduler knows is about to compute.
+            wait_for(lambda: [w for w in workers() if w.net_connections(kind="tcp")])
+            time.sleep(1.0)
             for worker in workers():
                 worker.kill()
                 worker.wait(PATIENCE)

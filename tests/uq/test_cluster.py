@@ -14,14 +14,17 @@ import numpy as np
 import process_models
 import psutil
 import pytest
+from distributed import LocalCluster
 from in_memory import compute
 
 import uq
 from uq import provenance
 from uq.errors import InputError
-from uq.running import dispatch, local_cluster, remote_cluster
+from uq.rows.workload import workload_of
+from uq.running import dask_task, dispatch, local_cluster, remote_cluster
 from uq.running.child import ModelSpec
 from uq.running.dask_task import evaluate_rows
+from uq.running.isolation import spec_of
 from uq.running.workers import Workers
 from uq.study.definition import load_study
 
@@ -142,7 +145,7 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
         for address in ("tcp://127.0.0.1:9", "nonsense://x"):
             with pytest.raises(InputError, match=rf"^scheduler {address}: cannot connect: .+$"):
                 compute(study, scheduler=address)
-    with local_cluster.LocalCluster(n_workers=0, dashboard_address=None) as empty:
+    with LocalCluster(n_workers=0, dashboard_address=None) as empty:
         address = empty.scheduler_address
         with pytest.raises(InputError, match=rf"^scheduler {address}: .* no workers; "):
             compute(study, scheduler=address)
@@ -177,6 +180,21 @@ def test_a_worker_that_differs_is_refused_with_its_first_rows():
     later = provenance.versions() | {"vibrolife": "99"}
     with pytest.raises(InputError, match=r"^a worker has vibrolife \S+; this process has .* 99"):
         evaluate_rows(ModelSpec("ishigami", "1", ()), later, None, x, seed, 0)
+
+
+@pytest.mark.slow
+def test_rows_go_to_the_child_that_started_before_them(write_study, tidy):
+    study = load_study(write_study(uncertain=("x1",)), "process_models:PROCESS")
+    work = workload_of(study)
+    rows, spec = work.block(0, 4), spec_of(work)
+    dask_task.begin_child(spec, None)
+    (child,) = workers()
+    try:
+        data = rows.x, rows.seed, 0
+        chunk, _ = evaluate_rows(spec, provenance.versions(), None, *data)
+    finally:
+        dask_task.end_children()
+    assert set(chunk.columns["y"]) == {float(child.pid)}
 
 
 @pytest.mark.slow

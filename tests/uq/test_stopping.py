@@ -160,7 +160,9 @@ def test_workers_stay_from_look_to_look(folder, monkeypatch):
     started = []
     local = local_cluster.local_workers
     monkeypatch.setattr(
-        local_cluster, "local_workers", lambda count: started.append(count) or local(count)
+        local_cluster,
+        "local_workers",
+        lambda count, *more: started.append(count) or local(count, *more),
     )
     ds = runner.run(study(0.1), "out.nc", workers=2)
     assert started == [2]

@@ -79,8 +79,11 @@ def build(
     """
     model = study.model
     varied = dict(study.uncertain) | dict(study.tied)
+    nested = study.design.rows_of_a_sample > 1
     inputs = {
-        name: parameter_variable(model, name, rows.x[:, i], varied[name].source)
+        name: parameter_variable(
+            model, name, rows.x[:, i], varied[name].source, study.level(name) if nested else ""
+        )
         if name in varied
         else parameter_variable(model, name, study.fixed.get(name, model.nominal[name]))
         for i, name in enumerate(model.parameter_names)
@@ -171,7 +174,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
 
 def _opened(path: Path) -> xr.Dataset:
     try:
-        # Not cached: of a large result, what has been read is not kept in memory.
+        # No cache: a large result, read on use, does not come to be in memory bit by bit.
         ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False, cache=False)
         if ds.nbytes > _INFLATED_BYTES + _INFLATION * path.stat().st_size:
             ds.close()

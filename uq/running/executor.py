@@ -13,7 +13,7 @@ from uq.interrupts import in_background
 from uq.rows.evaluate import Chunk, evaluate
 from uq.rows.workload import Workload
 from uq.running.dispatch import Dispatcher
-from uq.running.isolation import Action, Evaluate, isolated
+from uq.running.isolation import Action, Evaluate, isolated, spec_of
 from uq.running.options import RunOptions
 
 if TYPE_CHECKING:
@@ -107,13 +107,16 @@ class Executor:
 
     def _started(self, dispatcher: Dispatcher) -> "Workers":
         from uq.running.local_cluster import local_workers
-        from uq.running.remote_cluster import remote_workers
 
         if self._crew is None:
             if self._options.scheduler is not None:
+                from uq.running.remote_cluster import remote_workers
+
                 crew = remote_workers(self._options.scheduler)
             else:
-                crew = local_workers(processes(dispatcher.workload, self._options.workers))
+                wanted = spec_of(self._workload), self._options.row_limit
+                count = processes(dispatcher.workload, self._options.workers)
+                crew = local_workers(count, wanted)
             self._crew = self._stack.enter_context(crew)
         return self._crew
 

@@ -5,23 +5,27 @@ no ``__main__`` guard; dask's scheduler runs in a thread of this process.
 """
 
 import logging
+import pickle
 import shutil
 import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import dask
 from dask.system import CPU_COUNT
-from distributed import Client, LocalCluster
 
 from uq.errors import RunError
 from uq.interrupts import undone
+from uq.running.child import ModelSpec
+from uq.running.dask_worker import WANTED
 from uq.running.environment import command, inherited
 from uq.running.isolation import TRIES
-from uq.running.workers import Workers, quiet
+
+if TYPE_CHECKING:
+    from uq.running.workers import Workers
 
 CORES = CPU_COUNT
 """Cores that this process may use, within affinity and container limits."""
@@ -35,12 +39,16 @@ _WORKER_SETTINGS = {
 
 
 @contextmanager
-def local_workers(count: int) -> Iterator[Workers]:
+def local_workers(
+    count: int, wanted: tuple[ModelSpec, float | None] | None = None
+) -> "Iterator[Workers]":
     """Start `count` worker processes with one thread each, and end them.
 
     Parameters
     ----------
     count : int
+    wanted : tuple of ModelSpec and float or None, optional
+        The model whose rows they will compute, and the time limit of a row [s].
 
     Yields
     ------
@@ -50,6 +58,17 @@ def local_workers(count: int) -> Iterator[Workers]:
     with ExitStack() as stack:
         folder = Path(tempfile.mkdtemp(prefix="uq-"))
         stack.enter_context(undone(lambda: shutil.rmtree(folder, ignore_errors=True)))
+        if wanted:
+            (folder / WANTED).write_bytes(pickle.dumps(wanted))
+        processes = _Processes(folder)
+        stack.enter_context(undone(processes.kill))
+        for _ in range(count):
+            processes.start()
+        import dask  # while they start
+        from distributed import Client, LocalCluster
+
+        from uq.running.workers import Workers, quiet
+
         settings = {
             "temporary-directory": str(folder),
             "distributed.scheduler.http.routes": [],
@@ -66,19 +85,16 @@ def local_workers(count: int) -> Iterator[Workers]:
         )
         stack.enter_context(cluster)
         client = stack.enter_context(Client(cluster, set_as_default=False, direct_to_workers=True))
-        processes = _Processes(cluster.scheduler_address, folder)
-        stack.enter_context(undone(processes.kill))
-        for _ in range(count):
-            processes.start()
+        processes.connect(cluster.scheduler_address)
         yield Workers(client, processes.watch, own=count)
 
 
 class _Processes:
     """The worker processes of one local cluster."""
 
-    def __init__(self, address: str, folder: Path) -> None:
-        self._address = address
+    def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._address = ""
         self._running: dict[subprocess.Popen[bytes], Path] = {}
         self._started = 0
         self._deaths = 0
@@ -90,13 +106,21 @@ class _Processes:
         self._started += 1
         with log.open("wb") as stream:
             process = subprocess.Popen(
-                command("uq.running.dask_worker", self._address, str(self._folder)),
+                command("uq.running.dask_worker", str(self._folder)),
                 stdin=subprocess.PIPE,
                 stdout=stream,
                 stderr=stream,
                 env=inherited() | _WORKER_SETTINGS,
             )
         self._running[process] = log
+        if self._address:
+            _tell(process, self._address)
+
+    def connect(self, address: str) -> None:
+        """Tell the processes, also those still to be started, where the scheduler is."""
+        self._address = address
+        for process in self._running:
+            _tell(process, address)
 
     def watch(self, threads: int, progress: bool) -> None:
         """Replace dead processes; give up if they keep dying, or none ever connects."""
@@ -125,3 +149,11 @@ class _Processes:
             process.kill()
         for process in self._running:
             process.communicate()
+
+
+def _tell(process: subprocess.Popen[bytes], address: str) -> None:
+    """Write the address of the scheduler to a process; one that has died is replaced later."""
+    with suppress(OSError):
+        assert process.stdin
+        process.stdin.write(address.encode())
+        process.stdin.flush()
