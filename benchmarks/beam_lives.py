@@ -80,13 +80,13 @@ def regimes(name, periods=4096):
         gaps, x0 = initial_gaps(q), q.initial_gap
         state = lanes.start(system, q.initial_displacement / x0, q.initial_velocity / x0)
         settled = settle(lanes, system, state, gaps)
-        told, rounds = [], count()
+        seen, rounds = [], count()
 
-        def advance(system, state, gaps, growth, periods, told=told, rounds=rounds):
+        def advance(system, state, gaps, growth, periods, seen=seen, rounds=rounds):
             record = lanes.advance(system, state, gaps, growth, periods)
             if next(rounds) % EVERY == 0:
                 regime = settle(lanes, system, state.copy(), gaps.copy()).regime
-                told.append((system.beams.stiffness, gaps.copy(), regime))
+                seen.append((system.beams.stiffness, gaps.copy(), regime))
             return record
 
         share = np.stack([np.ones_like(x0), q.wear_coefficient_ratio], axis=1)
@@ -94,7 +94,7 @@ def regimes(name, periods=4096):
         spy = SimpleNamespace(advance=advance)
         start = (spy, system, state, gaps, settled.work, settled.regime)
         life = wear_down(*start, share, growths, periods, settings.accuracy).history
-        row, at, regime = (np.concatenate(some) for some in zip(*told, strict=True))
+        row, at, regime = (np.concatenate(some) for some in zip(*seen, strict=True))
         truth = np.full_like(life.regime, -1)
         for i, k in enumerate(system.beams.stiffness):  # no two rows have the same
             mine = np.flatnonzero(row == k)
