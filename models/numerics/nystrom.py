@@ -9,6 +9,7 @@ This is the method of the same tableau with half the memory and half the loads.
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -139,6 +140,7 @@ def weights(method: Tableau) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return rows, _product(rows, stages)
 
 
+@cache
 def combiner(quantities: int, slopes: int, method: Tableau) -> Callable[[int, Any], None]:
     """Compile what follows a stage of one method.
 

@@ -100,7 +100,7 @@ def pilot(
         row_seconds, first_seconds = _warm_up(workload, evaluators)
         size = ChunkSizes(workload).good(row_seconds)
         done, chunks = _spread_chunks(workload, evaluators, size)
-    some, found, seconds = zip(*done, strict=True)
+    starts, some, found, seconds = zip(*done, strict=True)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
     row_seconds, error = _row_cost(seconds, [len(part.x) for part in some], chunks)
 
@@ -120,7 +120,9 @@ def pilot(
     cost = Cost(total, count, len(rows.x), *times, result_bytes, kept + result_bytes)
     chunk = joined(found)
     failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
-    return cost, results.build(study, rows, chunk.columns, chunk.status, failures)
+    parts = zip(starts, some, strict=True)
+    numbers = np.concatenate([np.arange(start, start + len(part.x)) for start, part in parts])
+    return cost, results.build(study, rows, chunk.columns, chunk.status, failures, numbers)
 
 
 def _load_seconds() -> float:
@@ -161,8 +163,8 @@ def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> tuple[float,
 
 def _spread_chunks(
     workload: Workload, evaluators: Sequence[Evaluate], size: int
-) -> tuple[list[tuple[Rows, Chunk, float]], int]:
-    """Return chunks spread over the study, with the time of each, and how many it has in all.
+) -> tuple[list[tuple[int, Rows, Chunk, float]], int]:
+    """Return chunks spread over the study, with their first row and time, and how many it has.
 
     They are cut as in a run: rows that are computed together may share work.
     """
@@ -183,7 +185,7 @@ def _spread_chunks(
 
     with ThreadPoolExecutor(len(evaluators)) as pool:
         list(pool.map(compute, evaluators))
-    return [done[start] for start in sorted(done)], chunks
+    return [(start, *done[start]) for start in sorted(done)], chunks
 
 
 def _spread(count: int) -> list[int]:
