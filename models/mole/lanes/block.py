@@ -61,6 +61,8 @@ ROWS = 71
 
 LONGEST_PERIOD = 64
 """Number of common periods among which a repetition is sought."""
+TO_REPEAT = 2 * LONGEST_PERIOD
+"""Number of common periods in which a motion with the longest period is seen to repeat."""
 
 
 class Block(NamedTuple):
@@ -78,7 +80,7 @@ class Block(NamedTuple):
         Everything else; see the rows above.
     share, error : ndarray
         See `models.numerics.dop8.estimator`.
-    ring : ndarray, shape (LANES, LONGEST_PERIOD, MEASURED)
+    ring : ndarray, shape (LANES, TO_REPEAT, MEASURED)
         (u, v, x, |i|, |p|) at the last common periods.
     """
 
@@ -106,7 +108,7 @@ class Block(NamedTuple):
             aligned(ROWS * LANES),
             aligned(MEASURED * LANES),
             aligned((1 + 2 * MEASURED) * LANES),
-            np.empty((LANES, LONGEST_PERIOD, MEASURED)),
+            np.empty((LANES, TO_REPEAT, MEASURED)),
         )
 
 

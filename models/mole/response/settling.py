@@ -6,7 +6,7 @@ common period, it ends when the tangent flow has contracted the start to a milli
 
 import numpy as np
 
-from models.mole.lanes.block import LONGEST_PERIOD, MEASURED
+from models.mole.lanes.block import LONGEST_PERIOD, MEASURED, TO_REPEAT
 from models.mole.lanes.rows import GROWTH, OUTCOME, REPEATING
 from models.mole.response.machines import Machines
 from models.mole.response.measured import Counts, Response
@@ -40,6 +40,7 @@ def settle(machines: Machines, transient: int) -> tuple[Counts, Counts]:
     alone = common == 0
     if transient:
         reached = machines.run(rows, np.full(len(rows), transient))
+        # This shows periods up to half of these; `settle_late` finds the longer ones.
         longest = transient + (LONGEST_PERIOD + 1) * common
         other = reached[alone[reached]]
         rows = reached[~alone[reached]]
@@ -68,8 +69,8 @@ def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
     return np.concatenate(done)
 
 
-def settle_late(machines: Machines, rows: Counts, known: Response) -> Counts:
-    """Continue moles whose motion does not repeat yet but converges to one that does.
+def settle_late(machines: Machines, rows: Counts, known: Response, latest: float) -> Counts:
+    """Look again at moles whose motion did not repeat before its averages were taken.
 
     Parameters
     ----------
@@ -79,6 +80,8 @@ def settle_late(machines: Machines, rows: Counts, known: Response) -> Counts:
         Moles whose motion does not repeat.
     known : Response
         Their responses so far; reset to unknown where the motion now repeats.
+    latest : float
+        How long a motion that converges to one that repeats is continued at most [s].
 
     Returns
     -------
@@ -87,9 +90,11 @@ def settle_late(machines: Machines, rows: Counts, known: Response) -> Counts:
     """
     mean, error = mean_and_error(known.growth[rows])
     system = machines.system
-    rows = rows[(system.common[rows] > 0) & (mean < -SURE * error)]
-    limit = machines.periods(rows) + np.ceil(LATEST * system.control_frequency[rows]).astype(int)
-    rows = rows[machines.run(rows, limit, repeat=True)]
+    some = (system.common[rows] > 0) & (mean <= SURE * error) & np.isfinite(known.time[rows])
+    rows, converges = rows[some], (mean < -SURE * error)[some]
+    more = np.ceil(latest * system.control_frequency[rows]).astype(np.int64)
+    more = np.maximum(np.where(converges, more, 0), TO_REPEAT * system.common[rows])
+    rows = rows[machines.run(rows, machines.periods(rows) + more, repeat=True)]
     rows = rows[machines.record[rows, OUTCOME] == REPEATING]
     known.forget(rows)
     return rows
