@@ -35,7 +35,7 @@ def layout(quantities: int, stages: int) -> Layout:
 def aligned(size: int) -> NDArray[np.float64]:
     """Return float64 zeros that start on a cache line, so that no vector straddles two lines."""
     raw = np.zeros(size + 8)
-    skip = (-raw.ctypes.data // 8) % 8
+    skip = (-raw.__array_interface__["data"][0] // 8) % 8
     return raw[skip : skip + size]
 
 
