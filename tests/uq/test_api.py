@@ -21,6 +21,7 @@ def test_everything_promised_is_there():
         == {
             "basins",
             "labels",
+            "fleet",
             "levels",
             "life_fits",
             "load_study",

@@ -16,6 +16,7 @@ from uq.literals import plain
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
 from uq.report.embedded import embedded
+from uq.report.fleets import fleet_table
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
@@ -123,6 +124,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "lives": list(result_tables(found, of_lives=True)),
         "lives_drawn": [one for one in drawn if one.of.name in lives],
         "levels": levels_of(findings),
+        "fleets": fleet_table(findings),
         "methods": methods,
         "rows_inside": embedded(findings, file),
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
