@@ -1,39 +1,17 @@
 """The inputs in a report: laws, sources, and how well each number is known."""
 
-import re
 from collections.abc import Iterator
 
 import xarray as xr
 
 from uq.analysis.sampled_inputs import compare, laws_and_values
+from uq.conclusions.sources import mark
 from uq.drawing.words import unbroken
 from uq.inputs.law import Law
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of
 from uq.study.file import Tied
 from uq.wording import law, number
-
-_MARK = re.compile(
-    r"(?:^|[:;,] )(given|inferred|fitted|assumed)\b|(?<!\bnot )\b(given|inferred|fitted|assumed)$"
-)
-
-
-def mark(source: str) -> str:
-    """Return how well a number is known according to its source, or "".
-
-    Parameters
-    ----------
-    source : str
-        Such as ``"Knudsen & Massih 2002, Table 1: given, its exponent inferred"``.
-
-    Returns
-    -------
-    str
-        ``given``, ``inferred``, ``fitted`` or ``assumed``: the first that begins the sentence or
-        one of its parts, or ends it.
-    """
-    found = _MARK.search(source)
-    return (found[1] or found[2]) if found else ""
 
 
 def input_tables(ds: xr.Dataset) -> Iterator[Table]:

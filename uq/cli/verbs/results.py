@@ -80,12 +80,16 @@ def summary(
 ) -> None:
     """Show how rows ended, and statistics of each output."""
     from uq.analysis.as_json import summary_json
+    from uq.analysis.findings import Findings
     from uq.analysis.summary import summarise
     from uq.cli import tables
     from uq.cli.printing import print_json
     from uq.rows.results import open_result
 
     ds = open_result(result)
+    if regime is None and not fits and not json:
+        tables.show_findings(Findings(ds))
+        return
     found = summarise(ds, regime=regime, fits=fits)
     print_json(summary_json(found)) if json else tables.show_summary(ds, found)
 
