@@ -7,7 +7,14 @@ import numpy as np
 
 from uq.contract import Floats
 from uq.estimate import Estimate
-from uq.intervals import Replicates, by_replicate, is_constant, scatter_interval
+from uq.intervals import (
+    CONFIDENCE,
+    Ends,
+    Replicates,
+    by_replicate,
+    is_constant,
+    scatter_interval,
+)
 
 ROWS_PER_INPUT = 10
 """With fewer rows for each input there are no effects."""
@@ -104,9 +111,9 @@ def effects(
     found = {}
     for i, name in enumerate(columns):
         slope = float(slopes[i + 1])
-        rows = slope + influence[:, i + 1]
-        low, high = scatter_interval(slope, rows if part is None else by_replicate(rows, part))
-        of_input = Estimate(*(float(end) / sizes[name] for end in (slope, low, high)))
+        low, high = _interval(slope, slope + influence[:, i + 1], part)
+        size = sizes[name]
+        of_input = Estimate(slope / size, float(low) / size, float(high) / size)
         turns = _turns(residual + slope * x[:, i], x[:, i], np.sign(slope), part)
         found[name] = Effect(of_input, logarithmic[name], sizes[name], turns)
     return found
@@ -132,10 +139,15 @@ def _turns(partial: Floats, x: Floats, sign: float, part: Replicates) -> bool:
     for first in range(PIECES - 1):
         step = means[first + 1] - means[first]
         side = np.where(piece == first + 1, 1.0, np.where(piece == first, -1.0, 0.0))
-        rows = step + side * around
-        found = scatter_interval(
-            step, rows if part is None else by_replicate(rows, part), confidence=_SURE
-        )
+        found = _interval(step, step + side * around, part, _SURE)
         if (sign > 0 and found[1] < 0) or (sign < 0 and found[0] > 0):
             return True
     return False
+
+
+def _interval(value: float, rows: Floats, part: Replicates, confidence: float = CONFIDENCE) -> Ends:
+    """Return the interval of an estimate from what each row says of it."""
+    estimates = rows if part is None else by_replicate(rows, part)
+    if len(estimates) > 1 and is_constant(estimates):  # no row deviates
+        return value, value
+    return scatter_interval(value, estimates, confidence)

@@ -60,8 +60,10 @@ def show_answer(found: Answer) -> None:
     if lead is not None:
         for line in lead.head:
             paragraph(line, indent=0)
-    for one in (lead.events if lead else ()) + found.main_regimes:
-        paragraph(one.with_cause, indent=0)
+        for one in lead.events:
+            paragraph(one.with_cause, indent=0)
+    if found.regimes:
+        paragraph(found.regimes_sentence, indent=0)
     if lead is not None and (ranking := lead.ranking) is not None:
         paragraph(ranking.sentence, indent=0)
         for contribution in ranking.contributions[:_MOST_EFFECTS]:

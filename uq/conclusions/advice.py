@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from uq.analysis.findings import Findings
 from uq.conclusions.parts import Advice, Contribution, Quantity
-from uq.conclusions.settling import rows_in_words, unsettled
+from uq.conclusions.settling import MOST, rows_in_words, unsettled
 from uq.conclusions.sources import ASSUMED, mark
 from uq.conclusions.words import called_together
 from uq.rows.elements import analysis_of
@@ -81,10 +81,11 @@ def _add_rows(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Ad
     if not open_ones or not rows:
         return
     worst = max(open_ones, key=lambda one: one.factor)
-    needed = worst.factor * rows
+    needed = min(worst.factor, MOST) * rows
+    many = "more than" if worst.factor > MOST else "about"
     more = f"; {len(open_ones) - 1} more are not settled" if len(open_ones) > 1 else ""
     yield Advice(
         "rows",
-        f"Compute about {rows_in_words(needed)} rows instead of {rows}: {worst.what}{more}.",
+        f"Compute {many} {rows_in_words(needed)} rows instead of {rows}: {worst.what}{more}.",
         rows=int(needed) + 1,
     )

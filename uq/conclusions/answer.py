@@ -58,4 +58,4 @@ def _regimes(findings: Findings) -> Iterator[Event]:
     """Yield the regimes that occur, the most frequent first; one alone needs no words."""
     shares = [one for one in findings.summary.regimes.values() if one.facts["count"]]
     for one in sorted(shares, key=lambda one: -one.facts["count"]) * (len(shares) > 1):
-        yield event(findings, f"P(regime={one.label})", f"are {one.label}", one)
+        yield event(findings, f"P(regime={one.label})", one.label, one)

@@ -5,7 +5,7 @@ from math import isfinite
 
 from markupsafe import Markup
 
-from uq.conclusions.parts import Answer, Contribution, Quantity, Ranking
+from uq.conclusions.parts import Answer, Contribution, Quantity, Ranking, sentence
 from uq.literals import plain
 
 STYLE = Markup("""
@@ -38,16 +38,16 @@ STYLE = Markup("""
 _MOST_BARS = 6
 
 
-def fragment(answer: Answer, picture: Markup = Markup()) -> Markup:
+def fragment(answer: Answer, picture: str = "") -> Markup:
     """Return the answer as one element of a page.
 
     Parameters
     ----------
     answer : Answer
-    picture : Markup, optional
-        Of the quantity that the study is about.
+    picture : str, optional
+        HTML: of the quantity that the study is about.
     """
-    blocks = [_verdict(answer), picture, _ranking(answer), _to_do(answer)]
+    blocks = [_verdict(answer), Markup(picture), _ranking(answer), _to_do(answer)]
     return Markup('<div class="answer">{}</div>').format(Markup("").join(filter(None, blocks)))
 
 
@@ -56,10 +56,30 @@ def notebook(answer: Answer) -> str:
     return str(Markup("<style>{}</style>{}").format(STYLE, fragment(answer)))
 
 
+def others(answer: Answer) -> Markup:
+    """Return what is known of the quantities that the head leaves out."""
+    found = []
+    for one in answer.quantities[1:]:
+        lines = [line for line in one.head if line != sentence(one.words)]
+        lines += [event.with_cause for event in one.events if event.sentence]
+        lines += [one.ranking.with_effect] if one.ranking is not None else []
+        items = Markup("").join(Markup("<li>{}</li>").format(plain(line)) for line in lines if line)
+        title = f"{one.words[:1].upper()}{one.words[1:]}"
+        found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(title), items))
+    return Markup("").join(found)
+
+
+def regimes(answer: Answer) -> Markup:
+    """Return the shares of the regimes, and what decides them."""
+    items = (Markup("<li>{}</li>").format(plain(one.with_cause)) for one in answer.regimes)
+    return Markup("<ul>{}</ul>").format(Markup("").join(items)) if answer.regimes else Markup()
+
+
 def _verdict(answer: Answer) -> Markup:
     lead = answer.lead
     parts = [] if lead is None else list(_of_lead(lead, answer))
-    parts += [_line(one.with_cause) for one in answer.main_regimes]
+    if answer.regimes_sentence:
+        parts.append(_line(answer.regimes_sentence))
     if answer.failed or lead is None:
         parts.insert(0, _line(answer.rows_sentence))
     return _block("verdict", parts)
@@ -91,7 +111,7 @@ def _ranking(answer: Answer) -> Markup:
     title = Markup("<h3>What it depends on</h3>")
     if ranking.leader is None:
         return _block("ranking", [title, _line(ranking.sentence)])
-    note = Markup('<p class="why">{}</p>').format(plain(f"{ranking.what}."))
+    note = Markup('<p class="why">{}</p>').format(plain(sentence(ranking.what)))
     bars = (bar(one, ranking) for one in ranking.contributions[:_MOST_BARS])
     return _block("ranking", [title, *bars, note])
 

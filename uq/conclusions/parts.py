@@ -277,6 +277,12 @@ class Ranking:
         verb = "contribute" if len(leader.inputs) > 1 else "contributes"
         return f"{leader.words[:1].upper()}{leader.words[1:]} {verb} most: {leader.size}."
 
+    @property
+    def with_effect(self) -> str:
+        """What contributes most, with direction and size."""
+        effect = self.leader.effect if self.leader is not None and self.leads else ""
+        return " ".join(filter(None, (self.sentence, effect and sentence(effect))))
+
 
 @dataclass(frozen=True)
 class Event:
@@ -499,6 +505,12 @@ class Answer:
         return tuple(one for one in self.regimes if one.share.value >= RARE)[:MOST_REGIMES]
 
     @property
+    def regimes_sentence(self) -> str:
+        """The shares of the main regimes; "" where there is one at most."""
+        shares = [f"{share_text(one.share)} {one.said}" for one in self.main_regimes]
+        return f"{', '.join(shares)}." if shares else ""
+
+    @property
     def lines(self) -> list[str]:
         """The answer in a few sentences."""
         lead = self.lead
@@ -506,10 +518,7 @@ class Answer:
         found += [] if lead is None else lead.head
         events = (() if lead is None else lead.events) + self.main_regimes
         found += [one.with_cause for one in events]
-        if lead is not None and lead.ranking is not None:
-            found.append(lead.ranking.sentence)
-            if lead.ranking.leads and lead.ranking.leader and lead.ranking.leader.effect:
-                found.append(sentence(lead.ranking.leader.effect))
+        found += [lead.ranking.with_effect] if lead is not None and lead.ranking else []
         return [*filter(None, found), *(one.text for one in self.advice)]
 
     def __repr__(self) -> str:

@@ -139,7 +139,8 @@ def _promise(
     return Promise(
         coverage,
         confidence,
-        *bounds,
+        bounds[0],
+        bounds[1],
         unit,
         (ends[0], ends[1]),
         reason,

@@ -18,7 +18,7 @@ from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs, why_dependent
 from uq.indices.samples import sample_of
 from uq.indices.sensitivities import TargetIndices, methods
-from uq.indices.targets import Target, split_name
+from uq.indices.targets import FORMS, Target, split_name
 from uq.intervals import scatter_interval
 from uq.methods.given_data import MIN_ROWS
 from uq.methods.indices import IndexKind, Null, RefusedError
@@ -94,9 +94,10 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
     kinds = found.kinds()
     kind = list(kinds)[-1]
     measured = list(_measured(findings.ds, method, name, kind, found))
-    what = f"{kind.words}, by {method}"
-    if split_name(name)[0] in ("log", "rank"):
-        what += f", of {name}"
+    form = FORMS.get(split_name(name)[0])
+    of = f" of the {form}" if form else ""
+    share = f"share of the variance{of}, " if kind.unit == "variance" else ""
+    what = f"{share}{kind.words}{'' if share else of}, by {method}"
     reason, factor = _unsettled(measured, kind)
     if reason:
         return Ranking(name, method, kind.key, what, reason=reason, rows_factor=factor)
@@ -248,10 +249,12 @@ def _change(effect: Effect, form: str, verbs: tuple[str, str]) -> Change:
         step, by = f"{100 * size:g} %", log1p(size)
     else:
         step, by = "one standard deviation", effect.sd
-    ends = [by * one for one in effect.slope.numbers]
+    value, low, high = (by * one for one in effect.slope.numbers)
     unit = Unit()
     if form == "log":
-        ends, unit = [100 * expm1(one) for one in ends], Unit("%")
+        value, low, high = (100 * expm1(one) for one in (value, low, high))
+        unit = Unit("%")
     elif form == "P":
-        ends, unit = [100 * one for one in ends], Unit("percentage points")
-    return Change(effect.direction, step, Estimate(*ends), unit, verbs)
+        value, low, high = 100 * value, 100 * low, 100 * high
+        unit = Unit("percentage points")
+    return Change(effect.direction, step, Estimate(value, low, high), unit, verbs)

@@ -17,6 +17,9 @@ BOUND = 0.1
 """A promise is settled if it is within this part of the quantile that it bounds (of a life), or of
 the likely range."""
 
+MOST = 100.0
+"""Beyond so many times the rows, the root of n is no forecast."""
+
 
 @dataclass(frozen=True)
 class Unsettled:
@@ -72,7 +75,8 @@ def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
         if not promise.is_life:
             scale = abs(likely.high.value - likely.low.value)
         away = abs(estimate.value - reached)
-        if isfinite(scale) and scale > 0 and away > BOUND * scale:
+        # Beyond, the quantile is where values jump, and nearly any number of rows bounds it badly.
+        if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
             text, best = promise.unit.text(reached), promise.unit.text(estimate.value)
             what = f"{text} is promised where {best} is likely ({quantity.words})"
             yield Unsettled(what, (away / (BOUND * scale)) ** 2)

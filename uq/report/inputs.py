@@ -15,7 +15,7 @@ from uq.wording import law, number
 
 
 def input_tables(ds: xr.Dataset) -> Iterator[Table]:
-    """Yield the tables of uncertain and fixed inputs, and of rank correlations.
+    """Yield the tables of uncertain inputs and of rank correlations.
 
     Parameters
     ----------
@@ -38,10 +38,15 @@ def input_tables(ds: xr.Dataset) -> Iterator[Table]:
         source = study.dependence.source
         caption = f"Rank correlations{': ' if source else ''}{source}"
         yield Table(caption, ("pair", "stated"), rows)
+
+
+def fixed_inputs(ds: xr.Dataset) -> Table | None:
+    """Return the table of fixed inputs, None where there are none."""
     fixed = [name for name in ds.data_vars if ds[name].attrs["role"] == "fixed"]
-    if fixed:
-        lines = [_fixed(ds, str(name), name in study.fixed) for name in fixed]
-        yield Table("Fixed inputs", ("input", "value", "known", "source"), lines)
+    by_study = study_file_of(ds).fixed
+    lines = [_fixed(ds, str(name), name in by_study) for name in fixed]
+    header = ("input", "value", "known", "source")
+    return Table("Fixed inputs", header, lines) if lines else None
 
 
 def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
