@@ -1,16 +1,18 @@
 """A result and what several tables and figures show of it, each computed once."""
 
 from functools import cached_property
+from typing import TYPE_CHECKING
 
-import pandas as pd
 import xarray as xr
 
-from uq.analysis.convergence import COLUMNS, running_estimates
 from uq.analysis.level_shares import ByLevel, by_level
 from uq.analysis.summary import Summary, summarise
 from uq.errors import InputError
 from uq.indices.sensitivities import Sensitivities, TargetIndices, sensitivities
 from uq.rows.elements import elements_of, independent_rows, output_names
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class Findings:
@@ -45,8 +47,12 @@ class Findings:
         return summarise(self.ds)
 
     @cached_property
-    def running(self) -> pd.DataFrame:
+    def running(self) -> "pd.DataFrame":
         """What `uq.running_estimates` returns; where it refuses, no lines, and why in ``attrs``."""
+        import pandas as pd
+
+        from uq.analysis.convergence import COLUMNS, running_estimates
+
         try:
             return running_estimates(self.ds)
         except InputError as refused:

@@ -1,6 +1,7 @@
 """The answer of a study, computed once from what is known of its result."""
 
 from collections.abc import Iterator
+from weakref import WeakKeyDictionary
 
 import xarray as xr
 
@@ -34,12 +35,21 @@ def answer(ds: xr.Dataset) -> Answer:
 
 
 def conclude(findings: Findings) -> Answer:
-    """Return the answer from what is known of a result.
+    """Return the answer from what is known of a result, computed once.
 
     Parameters
     ----------
     findings : Findings
     """
+    if findings not in _KNOWN:
+        _KNOWN[findings] = _concluded(findings)
+    return _KNOWN[findings]
+
+
+_KNOWN: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
+
+
+def _concluded(findings: Findings) -> Answer:
     ds = findings.ds
     found = tuple(quantities(findings)) if findings.rows.sizes["sample"] else ()
     regimes = tuple(_regimes(findings))

@@ -505,6 +505,11 @@ class Answer:
         return tuple(one for one in self.regimes if one.share.value >= RARE)[:MOST_REGIMES]
 
     @property
+    def events(self) -> list[Event]:
+        """All events, those of the regimes last."""
+        return [one for own in self.quantities for one in own.events] + [*self.regimes]
+
+    @property
     def regimes_sentence(self) -> str:
         """The shares of the main regimes; "" where there is one at most."""
         shares = [f"{share_text(one.share)} {one.said}" for one in self.main_regimes]
