@@ -2,10 +2,11 @@
 
 import re
 from math import floor, inf, isfinite, log10
-from typing import Any, NamedTuple
+from typing import Any
 
 from uq.estimate import Estimate
 from uq.literals import shown
+from uq.units import time_unit
 
 
 def number(value: float | None) -> str:
@@ -138,40 +139,3 @@ def law(stated: Any) -> str:
         given.pop("values", None)  # a result keeps the file's name alone
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
     return f"{stated.distribution}({arguments})"
-
-
-class TimeUnit(NamedTuple):
-    """A unit of time, its length [s], and the time [s] from which it is used."""
-
-    name: str
-    seconds: float
-    used_from: float
-
-
-_DAY = 86400.0
-_YEAR = 365.25 * _DAY
-_TIME_UNITS = (
-    TimeUnit("seconds", 1.0, 0.0),
-    TimeUnit("hours", 3600.0, 3600.0),
-    TimeUnit("days", _DAY, 2 * _DAY),
-    TimeUnit("years", _YEAR, 2 * _YEAR),
-)
-
-
-def time_unit(seconds: float) -> TimeUnit:
-    """Return the usual unit of a time [s] that is not negative."""
-    return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]
-
-
-def unit_of(units: str, typical: float) -> TimeUnit:
-    """Return the unit in which to show an output: a time in one that suits a typical value.
-
-    Parameters
-    ----------
-    units : str
-        CF unit string of the output.
-    typical : float
-        NaN if unknown.
-    """
-    is_time = units == "s" and isfinite(typical)
-    return time_unit(abs(typical)) if is_time else TimeUnit(units, 1.0, 0.0)
