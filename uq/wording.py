@@ -6,12 +6,23 @@ from typing import Any
 
 from uq.estimate import Estimate
 from uq.literals import shown
-from uq.units import time_unit
+from uq.units import DEGREES, Unit, time_unit, unit_of
 
 
 def number(value: float | None) -> str:
     """Return a number for a table; a dash if there is none."""
     return "-" if value is None else f"{value:.5g}"
+
+
+def quantity(value: float, units: str) -> str:
+    """Return a value [units, as in CF] with the unit in which it is read: ``13.75 kN m-1``."""
+    return in_unit(value, unit_of(units, value))
+
+
+def in_unit(value: float, unit: Unit) -> str:
+    """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
+    space = "" if unit.name == DEGREES else " "
+    return f"{number(value / unit.size)}{space}{unit.name}".removesuffix(" 1")
 
 
 def duration(seconds: float | None) -> str:

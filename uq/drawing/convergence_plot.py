@@ -119,7 +119,7 @@ def index_convergence(
     for name in leading:
         samples, _, low, high = _numbers(own[own["input"] == name])
         arrows(panel, samples, low, high, "y", color=INK)
-    title(panel, subject(ds, output), known)
+    title(panel, as_label(subject(ds, output), width=50), known)
     return finish(panel)
 
 

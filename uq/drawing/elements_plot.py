@@ -12,9 +12,10 @@ from matplotlib.axes import Axes
 from uq.drawing.panel import is_wide
 from uq.drawing.style import COLOURS, LIMIT, LINES, SHADES
 from uq.drawing.symbols import literal
-from uq.drawing.words import labelled, quantity, rows_in_words
+from uq.drawing.words import labelled, powers, rows_in_words
 from uq.rows.elements import Element, Floats, analysis_of, flags
 from uq.units import Unit, typical, unit_of
+from uq.wording import in_unit
 
 _MOST_BINS = 60
 
@@ -69,7 +70,7 @@ def mark_thresholds(
     for threshold in analysis_of(ds).thresholds.get(element.output, ()):
         at = threshold / unit.size
         sign = "±" if element.is_angle else ""
-        words = f"threshold {sign}{quantity(threshold, unit)}"
+        words = f"threshold {sign}{powers(in_unit(threshold, unit))}"
         low, high = ends()
         for place in (-at, at) if element.is_angle else (at,):
             style: Any = {"color": LIMIT, "label": words}

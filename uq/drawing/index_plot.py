@@ -7,14 +7,14 @@ from matplotlib.figure import Figure
 
 from uq.drawing.panel import arrows, column, finish, heading, roomy
 from uq.drawing.style import BARS, INK, styled
-from uq.drawing.words import as_label, element_in_words, labelled, quantity
+from uq.drawing.words import as_label, element_in_words, labelled, powers
 from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
 from uq.indices.targets import FORMS, split_name
 from uq.rows.elements import named_elements
 from uq.rows.variables import is_category
-from uq.units import unit_of
+from uq.wording import quantity
 
 
 @styled
@@ -87,7 +87,7 @@ def index_bars(
     unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect [unit of the output]"
     axis = "Sensitivity index" if shares else unit
     panel.set_xlabel(axis + known * ",\nwith 95 % interval")
-    heading(panel, subject(ds, name))
+    heading(panel, as_label(subject(ds, name), width=56))
     return finish(panel)
 
 
@@ -113,13 +113,12 @@ def subject(ds: xr.Dataset, name: str) -> str:
     category, _, label = inside.partition("=")
     if is_category(ds, category):
         meaning = ds[category].attrs["long_name"].removeprefix("the ")
-        return as_label(f"whether the {meaning} is {label}", width=56)
+        return f"whether the {meaning} is {label}"
     (element,) = named_elements(ds, inside)
     words = element_in_words(ds, element)
     if threshold:
-        unit = unit_of(element.units, float(threshold))
-        at = quantity(float(threshold), unit)
+        at = powers(quantity(float(threshold), element.units))
         words = f"whether the {words.removeprefix('the ')}{',' * bool(element.place)} is below {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
-    return as_label(words, width=56)
+    return words

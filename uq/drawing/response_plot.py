@@ -13,10 +13,10 @@ from uq.drawing.panel import column, finish
 from uq.drawing.quantities import families, find, label_axes, pair, scale_of
 from uq.drawing.style import COLOURS, LINES, are_many, point_size, styled
 from uq.drawing.symbols import literal
-from uq.drawing.words import as_label, quantity
+from uq.drawing.words import as_label, powers
 from uq.errors import InputError
 from uq.units import Unit
-from uq.wording import percent
+from uq.wording import in_unit, percent
 
 _MOST_CHANGES = 12  # of regime that are marked along a curve
 _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
@@ -188,5 +188,6 @@ def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
     for name in outputs:
         value = find(one, f"representative_{name}")
         scale = scale_of([value])
-        known.append(quantity(float(f"{value.item():.3g}"), Unit(scale.unit, 1 / scale.factor)))
+        rounded = float(f"{value.item():.3g}")
+        known.append(powers(in_unit(rounded, Unit(scale.unit, 1 / scale.factor))))
     return as_label(", ".join([*known, percent(float(one["share"]))]), width=60)

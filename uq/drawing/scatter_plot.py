@@ -65,8 +65,8 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     rows = independent_rows(ds)
     element = named_elements(rows, output)[0]
     inputs = independent_inputs(rows)
-    leading = _leading(inputs, element)[:_MOST_INPUTS]
-    panels = grid(axes, 0.6 + 1.4 * len(leading), len(leading), sharey=True)[:, 0]
+    first = leading(inputs, element)[:_MOST_INPUTS]
+    panels = grid(axes, 0.6 + 1.4 * len(first), len(first), sharey=True)[:, 0]
     unit = display_unit(element.units, element.values)
     shown = replace(
         element,
@@ -75,7 +75,7 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     wide = is_wide(shown.values[np.isfinite(shown.values)])
     parts = _parts(rows, len(element.values))
     medians = wide or any(_needs_median(shown, own) for own, _ in parts.values())
-    for panel, name in zip(panels, leading, strict=True):
+    for panel, name in zip(panels, first, strict=True):
         per = input_axis(panel, rows[name], inputs[name], width=46)
         x = inputs[name] / per
         _points(panel, x, shown)
@@ -165,7 +165,7 @@ def _conditional(
         axes.fill_between(middle, low, np.minimum(high, top), **band)
 
 
-def _leading(inputs: dict[str, Floats], element: Element) -> list[str]:
+def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
     """Return the inputs in order of how much the mean rank of the output varies over slices."""
     from scipy.stats import rankdata
 

@@ -10,8 +10,7 @@ import xarray as xr
 from uq.drawing.symbols import formula, literal, typeset
 from uq.literals import plain
 from uq.rows.elements import Element
-from uq.units import DEGREES, Unit, unit_of
-from uq.wording import number, percent
+from uq.wording import percent, quantity
 
 
 def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> str:
@@ -49,12 +48,6 @@ def unbroken(unit: str) -> str:
     return powers(unit).replace(" ", "\u00a0")
 
 
-def quantity(value: float, unit: Unit) -> str:
-    """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
-    space = "" if unit.name == DEGREES else " "
-    return f"{number(value / unit.size)}{space}{powers(unit.name)}".removesuffix(" 1")
-
-
 def place_in_words(ds: xr.Dataset, element: Element) -> str:
     """Return the place of an element within its output: ``left, 250 µm``."""
     words, variable = [], ds[element.output]
@@ -63,8 +56,7 @@ def place_in_words(ds: xr.Dataset, element: Element) -> str:
         if isinstance(value, str):
             words.append(value)
         elif attrs.get("units", "1") != "1":
-            unit = unit_of(attrs["units"], value)
-            words.append(quantity(value, unit))
+            words.append(powers(quantity(value, attrs["units"])))
         else:
             words.append(f"{dim} {value:g}")
     return ", ".join(words)

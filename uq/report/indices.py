@@ -9,7 +9,7 @@ import xarray as xr
 
 from uq.analysis.findings import Findings
 from uq.drawing.index_plot import subject
-from uq.drawing.words import as_label, in_words
+from uq.drawing.words import in_words
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.ranked import Values, lines, ranking, size
@@ -97,7 +97,8 @@ def _subject(
     ds: xr.Dataset, method: str, found: TargetIndices, drawn: Sequence[Picture]
 ) -> Subject:
     name, indices = found.name, found.indices
-    words = " ".join(subject(ds, name).split())
+    words = subject(ds, name)
+    words = words[:1].upper() + words[1:]
     if found.refused:
         return Subject(name, words, refused=found.refused)
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
@@ -130,7 +131,8 @@ def _leading(ds: xr.Dataset, method: str, words: str, found: TargetIndices) -> s
     if index.value < _LEAST:
         text = f"{name} = {kind.text(index.value)} at most"
         return f"No single input explains much of the variance of {what} ({text})."
-    leader = as_label(in_words(ds[first]), width=1000)
+    leader = in_words(ds[first])
+    leader = leader[:1].upper() + leader[1:]
     return f"{leader} explains {percent(index.value)} of the variance of {what} ({name})."
 
 
