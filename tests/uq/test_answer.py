@@ -73,13 +73,13 @@ def test_a_threshold_has_its_probability_and_what_decides_it(lifetime):
     ends = [100 * known[key] for key in ("value", "low", "high")]
     assert shown == pytest.approx(ends, abs=0.05)
     least, below, most, above = numbers(
-        r"Decided most by rate: from # % where it is below # m s-1"
-        r" to # % where it is above # m s-1\.",
+        r"Decided most by rate: from # % where it is below # pm s⁻¹"
+        r" to # % where it is above # pm s⁻¹\.",
         event.decided_by,
     )
     rate, life = ds["rate"].values, ds["life"].values
     low, high = event.curve.edges[1], event.curve.edges[-2]
-    assert (below, above) == pytest.approx((low, high), rel=5e-3)
+    assert (below, above) == pytest.approx((low * 1e12, high * 1e12), rel=5e-3)
     assert least == pytest.approx(100 * (life[rate < low] < 10 * DAY).mean(), abs=0.06)
     assert most == pytest.approx(100 * (life[rate >= high] < 10 * DAY).mean(), abs=0.06)
 
@@ -111,11 +111,11 @@ def test_an_angle_is_promised_by_its_magnitude_in_degrees():
     ds["turn"].attrs["units"] = "rad"
     found = answer(asking(ds, outputs=["turn"], thresholds={"turn": 0.4})).lead
     (bound,) = numbers(
-        "With 95 % confidence, at least 95 % stay within # degrees.", found.promise.sentence
+        "With 95 % confidence, at least 95 % stay within #°.", found.promise.sentence
     )
     assert np.degrees(found.promise.upper) == pytest.approx(bound, rel=5e-3) and bound > 27
     share, _, _, at = numbers(
-        r"# % \(# to # %\) exceed # degrees in magnitude\.", found.events[0].sentence
+        r"# % \(# to # %\) exceed #° in magnitude\.", found.events[0].sentence
     )
     assert share == pytest.approx(100 * (abs(turn) > 0.4).mean(), abs=0.05)
     assert at == pytest.approx(np.degrees(0.4), rel=5e-3)

@@ -106,8 +106,8 @@ def test_a_report_says_all_there_is_to_say(asked, text):
         "ask its authors what to cite",  # the model of this test is not installed
     ):
         assert expected in words, expected
-    summary = re.search(r"angle an angle rad ([0-9.]+)", words)
-    assert float(summary[1]) == pytest.approx(np.nanmean(ds["angle"]), rel=1e-4)
+    summary = re.search(r"angle an angle ° ([0-9.]+)", words)
+    assert float(summary[1]) == pytest.approx(np.degrees(np.nanmean(ds["angle"])), rel=1e-4)
     drawn = found.tags.count("svg")
     sections = {entry.section for entry in FIGURES.values()} - {""}
     shown = [one for name in sections for one in drawables(FIGURES, Findings(ds), name)]

@@ -99,7 +99,7 @@ def _quantity(findings: Findings, summary: Summary, context: Context, element: E
     middle = _quantile(described, MIDDLE)
     others = (_quantile(described, p).value for p in (LOW, HIGH))
     typical = next(filter(isfinite, (middle.value, *others)), nan)
-    unit = unit_for(element.units, abs(typical), element.is_angle)
+    unit = unit_for(element.units, abs(typical))
     return Quantity(
         element.name,
         element_called(findings.ds, element),
@@ -202,8 +202,8 @@ def _events(
     for one in described.parts["thresholds"]:
         if one.key[-1] != side or one.at is None:
             continue
-        own = unit_for(element.units, one.at, element.is_angle)
-        at = (own if element.is_lifetime else unit).text(one.at)
+        own = unit_for(element.units, one.at)
+        at = own.text(one.at)
         said = f"end within {at}" if element.is_lifetime else f"exceed {at}"
         said += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{one.at!r})"

@@ -2,16 +2,14 @@
 
 import re
 from collections.abc import Sequence
-from math import ceil, floor, isfinite, log10, pi
+from math import ceil, floor, isfinite, log10
 from typing import NamedTuple
 
 import xarray as xr
 
 from uq.rows.element import Element
-from uq.wording import unit_of
+from uq.units import DEGREES, powers, unit_of
 
-_DEGREES = 180 / pi
-_PREFIXES = {"m": 1e-3, "µ": 1e-6, "n": 1e-9}
 _TWIN = re.compile(r"(.+)_(\d+)")
 
 
@@ -37,13 +35,16 @@ class Unit(NamedTuple):
         """Return a number with its unit."""
         if not isfinite(value):
             return "never" if value > 0 else "-"
-        return f"{self.number(value, towards)} {self.name}".strip()
+        return self._with_name(self.number(value, towards))
 
     def between(self, low: float, high: float, joined: str = " to ") -> str:
         """Return two numbers with their unit once."""
         if not (isfinite(low) and isfinite(high)):
             return f"{self.text(low)}{joined}{self.text(high)}"
-        return f"{self.number(low)}{joined}{self.number(high)} {self.name}".strip()
+        return self._with_name(f"{self.number(low)}{joined}{self.number(high)}")
+
+    def _with_name(self, number: str) -> str:
+        return f"{number}{'' if self.name == DEGREES else ' '}{self.name}".strip()
 
     def bare_between(self, low: float, high: float) -> str:
         """Return the ends of an interval beside a number that has the unit."""
@@ -61,7 +62,7 @@ def rounded(value: float, towards: float = 0.0) -> str:
     return f"{places * digit:.3g}"
 
 
-def unit_for(units: str, typical: float, is_angle: bool = False) -> Unit:
+def unit_for(units: str, typical: float) -> Unit:
     """Return the unit for numbers of a typical size.
 
     Parameters
@@ -70,15 +71,9 @@ def unit_for(units: str, typical: float, is_angle: bool = False) -> Unit:
         CF unit string.
     typical : float
         NaN if unknown.
-    is_angle : bool, optional
-        Whether radians are shown as degrees.
     """
-    if is_angle and units == "rad":
-        return Unit("degrees", 1 / _DEGREES)
-    if units == "1":
-        return Unit()
-    time = unit_of(units, typical)
-    return Unit(time.name, time.seconds)
+    found = unit_of(units, typical)
+    return Unit() if found.name == "1" else Unit(powers(found.name), found.size)
 
 
 def called(name: str) -> str:
@@ -122,14 +117,7 @@ def element_called(ds: xr.Dataset, element: Element) -> str:
         if isinstance(value, str):
             words.append(value)
         elif attrs.get("units") in ("m", "s", "Hz"):
-            words.append(_prefixed(float(value), attrs["units"]))
+            words.append(unit_for(attrs["units"], float(value)).text(float(value)))
         else:
             words.append(f"{dim} {value:g}")
     return ", ".join(words)
-
-
-def _prefixed(value: float, unit: str) -> str:
-    for prefix, size in _PREFIXES.items():
-        if size <= abs(value) < 1000 * size <= 1 and abs(value) < 1:
-            return f"{value / size:g} {prefix}{unit}"
-    return f"{value:g} {unit}"

@@ -17,7 +17,7 @@ from uq.drawing.panel import is_wide
 from uq.drawing.quantities import scale_of
 from uq.drawing.scatter_plot import leading
 from uq.drawing.style import COLOURS
-from uq.drawing.words import element_in_words, in_words, unbroken
+from uq.drawing.words import element_in_words, in_words, powers, unbroken
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
 from uq.literals import plain
@@ -33,7 +33,8 @@ from uq.rows.elements import (
 )
 from uq.rows.results import failed
 from uq.study.file import AnalysisTable
-from uq.wording import number
+from uq.units import Unit
+from uq.wording import in_unit
 
 MOST_ROWS = 20_000
 """A page holds no more rows: a brush over them takes 0.1 s."""
@@ -136,9 +137,6 @@ def _input(rows: xr.Dataset, name: str) -> dict[str, Any]:
 
 def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict[str, Any]:
     unit, per = display_unit(element.units, element.values)
-    if element.units != "s":
-        scale = scale_of([rows[element.output]])
-        unit, per = scale.unit, 1 / scale.factor
     column = _column(element.name, element_in_words(rows, element), unit, per, element.values)
     return column | {
         "role": "output",
@@ -155,7 +153,7 @@ def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict
 
 def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
     """Return the event whose probability is asked for."""
-    at = f"{number(value / column['per'])} {column['unit']}".strip()
+    at = powers(in_unit(value, Unit(column["unit"] or "1", column["per"])))
     label = f"|{column['label']}|" if element.is_angle else column["label"]
     return f"P({label} {'<' if element.is_lifetime else '>'} {at})"
 

@@ -86,7 +86,8 @@ def _method(findings: Findings, name: str, drawn: Drawn) -> Method:
 
 def _subject(ds: xr.Dataset, found: TargetIndices, drawn: Sequence[Picture]) -> Subject:
     name, indices = found.name, found.indices
-    words = " ".join(subject(ds, name).split())
+    words = subject(ds, name)
+    words = words[:1].upper() + words[1:]
     if found.refused:
         return Subject(name, words, refused=found.refused)
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
