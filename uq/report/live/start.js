@@ -5,4 +5,9 @@ document.addEventListener("DOMContentLoaded", () => {
   const explorer = explorerOf(rows);
   document.getElementById("explorer").append(explorer.element);
   explorer.arrange();
+  const tolerances = document.getElementById("other-tolerances");
+  if (!tolerances) return;
+  const found = tolerancesOf(rows);
+  tolerances.append(found.element);
+  found.update();
 });
