@@ -71,13 +71,13 @@ def drag_handle(browser, name, end, steps):
 
 
 def place_of_a_point(browser):
-    """Return a place of the page where a point is drawn."""
+    """Return a place of the page where a point is drawn, in the colour of rows."""
     return browser.value(
         "(() => { const c = document.querySelector('.scatter canvas'); c.scrollIntoView();"
         " const box = c.getBoundingClientRect();"
         " const p = c.getContext('2d').getImageData(100, 20, c.width - 140, c.height - 60);"
-        " for (let i = 0; i < p.data.length; i += 4) if (p.data[i + 2] - p.data[i] > 90"
-        " && p.data[i + 3] > 200) return [box.left + 100.5 + (i / 4) % p.width,"
+        " for (let i = 0; i < p.data.length; i += 4) if (p.data[i] === 160 && p.data[i + 1] === 166"
+        " && p.data[i + 2] === 173) return [box.left + 100.5 + (i / 4) % p.width,"
         " box.top + 20.5 + Math.floor(i / 4 / p.width)] })()"
     )
 

@@ -13,7 +13,8 @@ from uq.drawing.elements_plot import display_unit, occurring_regimes
 from uq.drawing.panel import is_wide
 from uq.drawing.quantities import scale_of
 from uq.drawing.scatter_plot import leading
-from uq.drawing.style import COLOURS
+from uq.drawing.style import LIMIT, ROWS
+from uq.drawing.symbols import literal
 from uq.drawing.words import element_in_words, in_words, powers, unbroken
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
@@ -72,6 +73,13 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     columns += [_output(rows, one, analysis) for one in elements]
     drawn = _drawn(elements, analysis)
     first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
+    design = _design(rows)
+    laws = tolerances(rows, elements)
+    if laws is not None and laws["of"]:
+        design["intervals"] += (
+            " Shares here are those of lives as computed; tables above, and other tolerances below,"
+            " integrate what only scales a life."
+        )
     return {
         "file": shlex.quote(plain(file)),
         "total": whole.sizes["sample"],
@@ -79,10 +87,10 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
         "failed": encoded(failed(rows), "u1"),
         "columns": columns,
         "categories": list(_categories(rows)),
-        "colour": COLOURS[0],
+        "colours": {"rows": ROWS, "limit": LIMIT},
         "first": [first, len(inputs) + drawn],
-        "tolerances": tolerances(rows, elements),
-        **_design(rows),
+        "tolerances": laws,
+        **design,
     }
 
 
@@ -180,7 +188,7 @@ def _categories(rows: xr.Dataset) -> Iterator[dict[str, Any]]:
                         "code": code,
                         "label": plain(words),
                         "count": counts[code],
-                        "colour": colours.get(words, "gray") if name == "regime" else None,
+                        "colour": colours.get(literal(words), ROWS) if name == "regime" else None,
                     }
                     for code, words in flags(rows[name])
                     if counts[code]

@@ -2,6 +2,7 @@
 
 document.addEventListener("DOMContentLoaded", () => {
   const rows = new Rows(JSON.parse(document.getElementById("rows").textContent));
+  document.documentElement.style.setProperty("--limit", rows.colours.limit);
   const explorer = explorerOf(rows);
   document.getElementById("explorer").append(explorer.element);
   explorer.arrange();

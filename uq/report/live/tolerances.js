@@ -73,6 +73,7 @@ function toleranceOf(input, reweighting, moved) {
     const {args} = reweighting.laws.get(input.name);
     const pairs = Object.entries(args).map(([key, value]) =>
       `${key} ${["cv", "sigma"].includes(key) ? number(value) : column.words(value)}`);
+    shift.disabled = Boolean(bounded) && Number(factor.value) === 1; // there is no room
     words.textContent = pairs.join(", ");
     factor.setAttribute("aria-valuetext", `${percent(Number(factor.value))} of the width; ${words.textContent}`);
     shift.setAttribute("aria-valuetext", `${number(Number(shift.value))} standard deviations; ${words.textContent}`);
