@@ -1,5 +1,6 @@
 """The content of the page, which the template beside this file lays out."""
 
+import json
 import re
 import shlex
 from functools import cache
@@ -17,7 +18,7 @@ from uq.errors import InputError
 from uq.literals import plain
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
-from uq.report.embedded import embedded
+from uq.report.embedded import rows_inside
 from uq.report.headlines import headline
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import fixed_inputs, input_tables
@@ -88,13 +89,18 @@ def templates() -> Any:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"breakable": _breakable, "quoted": shlex.quote}
+    environment.filters |= {"breakable": _breakable, "inside": _inside, "quoted": shlex.quote}
     return environment
 
 
 def _breakable(text: str) -> Markup:
     """Return text with places where long names may be broken."""
     return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", str(escape(plain(text)))))
+
+
+def _inside(content: Any) -> Markup:
+    """Return plain data as JSON that can stand inside a page."""
+    return Markup(json.dumps(content, allow_nan=False).replace("<", "\\u003c"))
 
 
 def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
@@ -132,7 +138,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "lives_drawn": [one for one in drawn if one.of.name in lives],
         "levels": levels_of(findings),
         "methods": methods,
-        "rows_inside": embedded(findings, file),
+        "rows_inside": rows_inside(findings, file),
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
         "text_is_cut": len(ds.attrs["study"]) > _SHOWN_TEXT,
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
