@@ -3,9 +3,9 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import exp, expm1, isfinite, isnan, log, log1p
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 from scipy import special
 
@@ -28,6 +28,9 @@ from uq.rows.elements import (
 )
 from uq.rows.nesting import levels_that_vary, size_in_words
 from uq.rows.variables import outputs_of
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LOW, HIGH = 0.05, 0.95
 """Of worlds, at the ends of a band."""
@@ -96,7 +99,7 @@ def fleet(
     by: float | Sequence[float] = (),
     allow: int = 0,
     output: str | None = None,
-) -> pd.DataFrame:
+) -> "pd.DataFrame":
     """Estimate when the first unit of a fleet ends, and how many have ended by a time.
 
     Parameters
@@ -141,6 +144,8 @@ def fleet(
     lines = [("first", p, one) for p, one in found.first.items()]
     for time, (failed, at_most) in found.by.items():
         lines += [("failed", time, failed), ("at_most_allowed", time, at_most)]
+    import pandas as pd
+
     table = pd.DataFrame([_line(*line) for line in lines]).set_index("quantity")
     table.attrs = {"output": found.output, "size": size, "allow": allow, "samples": found.samples}
     return table

@@ -60,7 +60,7 @@ def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
 
 def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
     cells = (
-        Cell(number(error / one.unit.seconds), key=error) if error == error else Cell("-")
+        Cell(number(error / one.unit.size), key=error) if error == error else Cell("-")
         for error in map(float, errors[["sampling", "own"]])
     )
     return one.label, one.unit_cell, Cell(str(errors["estimate"])), *cells

@@ -7,7 +7,8 @@ from uq.analysis.findings import Findings
 from uq.analysis.fleet import Banded, Fleet
 from uq.estimate import Estimate
 from uq.report.cells import Cell, Table
-from uq.wording import TimeUnit, interval, known, number, time_unit
+from uq.units import TimeUnit, time_unit
+from uq.wording import interval, known, number
 
 HEADER = ("life", "quantity", "all samples", "5 % of samples", "95 % of samples")
 

@@ -68,6 +68,7 @@ class Rows {
     this.numbers = numbersOf(plain.numbers, Int32Array);
     this.failed = numbersOf(plain.failed, Uint8Array);
     this.replicate = plain.replicate ? numbersOf(plain.replicate, Int32Array) : null;
+    this.sample = plain.sample ? numbersOf(plain.sample, Int32Array) : null;
     this.columns = plain.columns.map(one => new Column(one, this.failed));
     this.categories = plain.categories.map(one => new Category(one));
   }
