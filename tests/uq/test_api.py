@@ -19,6 +19,7 @@ def test_everything_promised_is_there():
         set(uq.__all__)
         == set(dir(uq))
         == {
+            "answer",
             "basins",
             "labels",
             "levels",

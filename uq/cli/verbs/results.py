@@ -107,12 +107,16 @@ def summary(
 ) -> None:
     """Show how rows ended, and statistics of each output."""
     from uq.analysis.as_json import summary_json
+    from uq.analysis.findings import Findings
     from uq.analysis.summary import summarise
     from uq.cli import tables
     from uq.cli.printing import print_json
     from uq.rows.results import open_result
 
     ds = open_result(result)
+    if not (fits or json or plain) and regime is None:
+        tables.show_findings(Findings(ds))
+        return
     found = summarise(ds, regime=regime, fits=fits, plain=plain)
     print_json(summary_json(found)) if json else tables.show_summary(ds, found)
 
