@@ -9,6 +9,7 @@ from .analysis.level_table import levels as levels
 from .analysis.lifetime import survival as survival
 from .analysis.overview import summary as summary
 from .analysis.regime_table import regimes as regimes
+from .analysis.tracing.tracing import trace as trace
 from .analysis.twin import two_fidelities as two_fidelities
 from .errors import InputError as InputError
 from .errors import RunError as RunError

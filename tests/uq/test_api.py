@@ -30,6 +30,7 @@ def test_everything_promised_is_there():
             "open_result",
             "simulate",
             "summary",
+            "trace",
             "sensitivity",
             "survival",
             "rare_event",

@@ -15,7 +15,7 @@ from uq.analysis.statistics.statistic import Context, Kind, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.statistics.thresholds import share_of
 from uq.designs.registry import DESIGNS
-from uq.intervals import replicates_of_some
+from uq.intervals import replicates_of_some, share_interval
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
@@ -198,6 +198,7 @@ def regime_shares(rows: xr.Dataset) -> dict[str, Statistic]:
             failed=failed_share_bounds(hits, ~kept, replicate),
             facts={"count": int(hits[kept].sum())},
             estimator=share(),
+            by=(share_of, share_interval),
         )
         for label, (kept, numbers) in in_regimes(rows).items()
         for hits in [numbers > 0]

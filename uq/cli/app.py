@@ -25,6 +25,7 @@ VERBS = (
     results.convergence,
     results.compare,
     results.twin,
+    results.trace,
     studies.rare_event,
     results.plot,
     results.report,

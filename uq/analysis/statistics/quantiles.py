@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from uq import order_statistics
 from uq.analysis.estimators import quantile
 from uq.analysis.failed_rows import bounded
+from uq.analysis.kaplan_meier import kaplan_meier
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles, quantile_estimate, rows_needed
 from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
@@ -14,6 +16,8 @@ _LIVES = Listing(
     "B-lives: B10 is the time by which 10 % have ended", first="lifetime", of_lives=True
 )
 LIFE = Kind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
+_BY = (order_statistics.quantile, order_statistics.quantile_interval)
+_BY_KAPLAN_MEIER = (life_quantiles, kaplan_meier)
 _ROWS = replace(COUNT, listing=_LIVES, readers=Reader.REPORT)
 
 
@@ -34,9 +38,10 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
             rows_needed=rows_needed(element, p),
             sentence="Median {brief}." if p == 0.5 else "",
             estimator=quantile(p),
+            by=_BY,
         )
         guess = guesses.get(name, NOTHING)
-        otherwise = replace(one, label=f"{one.label}, if", estimate=guess)
+        otherwise = replace(one, label=f"{one.label}, if", estimate=guess, by=_BY_KAPLAN_MEIER)
         yield replace(one, otherwise=otherwise) if guess.assumes else one
 
 
@@ -55,6 +60,7 @@ def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
             LIFE,
             rows_needed=None if found.assumes else rows_needed(element, p),
             estimator=quantile(p),
+            by=_BY_KAPLAN_MEIER if found.assumes else _BY,
         )
     for label, rows in (("never ending", element.never), ("censored", element.censored)):
         label = f"rows {label}"

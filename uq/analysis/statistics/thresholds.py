@@ -9,7 +9,9 @@ import numpy as np
 from uq import json_form
 from uq.analysis.estimators import Sample, share
 from uq.analysis.failed_rows import bounded
+from uq.analysis.kaplan_meier import kaplan_meier
 from uq.analysis.life_quantiles import ended_by
+from uq.analysis.lifetime import survival
 from uq.analysis.statistics.statistic import Context, Kind, Listing, Statistic, entry
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some, share_interval
@@ -98,6 +100,7 @@ def _probabilities(
             sentence=_sentence(element, side),
             facts={"undefined": undefined},
             estimator=share(_hits(threshold, place)),
+            by=(share_of, share_interval),
         )
         if sides is None:
             yield _by_kaplan_meier(one, element, threshold, replicate)
@@ -117,7 +120,7 @@ def _by_kaplan_meier(
     return replace(
         one,
         estimate=Estimate(reason=reason),
-        otherwise=replace(one, label=label, estimate=guess),
+        otherwise=replace(one, label=label, estimate=guess, by=(ended_by, kaplan_meier, survival)),
         more="; ".join(filter(None, small)) if one.falls else "",
     )
 

@@ -50,6 +50,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
             column=f"tolerance_{name}",
             heading=name,
             sentence=sentence,
+            by=(tolerance_bounds,),
         )
     yield Statistic(
         ("tolerance", "rows_needed"),
@@ -58,4 +59,5 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         "rows",
         replace(COUNT, listing=listing, readers=COUNT.readers & ~Reader.TERMINAL),
         column="tolerance_rows_needed",
+        by=(rows_for_bound,),
     )
