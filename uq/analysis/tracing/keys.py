@@ -14,6 +14,8 @@ from uq.errors import InputError, nearest
 SUMMARY = "summary"
 
 Path = tuple[str, ...]
+Options = Mapping[str, str]
+Json = Mapping[str, Any]
 
 
 class Key(NamedTuple):

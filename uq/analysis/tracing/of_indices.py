@@ -1,6 +1,5 @@
 """The numbers of `uq sensitivity`, and where they come from."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -8,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from uq.analysis.tracing.citations import Citation, cited
-from uq.analysis.tracing.keys import Path
+from uq.analysis.tracing.keys import Json, Options, Path
 from uq.analysis.tracing.origin import Origin
 from uq.indices.as_json import sensitivity_json
 from uq.indices.chosen import chosen
@@ -19,24 +18,23 @@ from uq.rows.in_regime import within_regime
 from uq.rows.nesting import one_of_each_sample
 
 
-def says(ds: xr.Dataset, options: Mapping[str, str], path: Path) -> dict[str, Any]:
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of the indices: of the target alone that a path names, if it names one."""
     named = [path[1]] if path[:1] == ("outputs",) and path[1:] else None
     found = sensitivities(ds, options.get("method"), named, options.get("regime"))
     return sensitivity_json(found)
 
 
-def origin(ds: xr.Dataset, options: Mapping[str, str], path: Path) -> Origin:
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     """Return where an index comes from."""
-    found = says(ds, options, path)
     if regime := options.get("regime"):
         ds = within_regime(ds, regime)
     rows = one_of_each_sample(ds)
-    by = (estimator_of(found["method"], *path[2:3]),)
+    by = (estimator_of(said["method"], *path[2:3]),)
     if path[0] != "outputs":
         return Origin(by, rows)
-    entry = found["outputs"][path[1]]
-    (target,) = chosen(rows, found["method"], [path[1]])
+    entry = said["outputs"][path[1]]
+    (target,) = chosen(rows, said["method"], [path[1]])
     sample = replace(sample_of(rows), values=target.values)
     states = {"in groups with a value in each row": len(np.unique(sample.groups[sample.whole]))}
     dropped = len(np.unique(sample.groups[~sample.whole]))

@@ -1,6 +1,5 @@
 """The numbers of `uq convergence`, and where they come from."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import xarray as xr
@@ -12,7 +11,7 @@ from uq.analysis.converging import converging
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import summarise
 from uq.analysis.tracing.citations import cited
-from uq.analysis.tracing.keys import Path, value_at
+from uq.analysis.tracing.keys import Json, Options, Path, value_at
 from uq.analysis.tracing.of_indices import estimator_of
 from uq.analysis.tracing.origin import Origin
 from uq.estimate import Estimate
@@ -20,20 +19,19 @@ from uq.indices.targets import split_name
 from uq.rows.elements import independent_rows
 
 
-def says(ds: xr.Dataset, options: Mapping[str, str], path: Path) -> dict[str, Any]:
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of running estimates: of the element alone that a path names, if it does."""
     named = split_name(path[1])[1] if path[:1] == ("outputs",) and path[1:] else None
     return convergence_json(converging(ds, named))
 
 
-def origin(ds: xr.Dataset, options: Mapping[str, str], path: Path) -> Origin:
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     """Return where a running estimate comes from."""
     _, target, kind, *rest = path
     if kind != "estimates":
         return Origin((cited(enough),), independent_rows(ds))
     label, place = rest[0], int(rest[1])
-    sizes = converging(ds, split_name(target)[1])[target].estimates[label]
-    rows = first_samples(ds, sizes[place][0])
+    rows = first_samples(ds, said["outputs"][target]["estimates"][label][place]["samples"])
     of = summarise(rows).outputs.get(target)
     for name, statistics in of.parts.items() if of else ():
         for one in statistics:
@@ -45,7 +43,7 @@ def origin(ds: xr.Dataset, options: Mapping[str, str], path: Path) -> Origin:
     return Origin((estimator_of(method, label.split()[0]),), rows)
 
 
-def again(verb: Any, found: Origin, options: Mapping[str, str], path: Path) -> Any:
+def again(verb: Any, found: Origin, options: Options, path: Path) -> Any:
     """Return the entry at a path from the rows of its origin: the estimate of the last size."""
     if path[2] != "estimates":
         errors = enough(found.rows, path[1]).to_dict("index")[path[1]]

@@ -1,6 +1,6 @@
 """The numbers of `uq summary`, and where they come from."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import xarray as xr
@@ -11,7 +11,7 @@ from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary, status_counts, summarise
 from uq.analysis.tracing.citations import cited
-from uq.analysis.tracing.keys import Path
+from uq.analysis.tracing.keys import Json, Options, Path
 from uq.analysis.tracing.origin import Origin
 from uq.rows.elements import Element, analysis_of, independent_rows, named_elements, output_names
 from uq.rows.in_regime import within_regime
@@ -21,7 +21,7 @@ COUNTED = ("failed", "undefined", "censored", "never")
 Functions = tuple[Callable[..., Any], ...]
 
 
-def says(ds: xr.Dataset, options: Mapping[str, str], path: Path) -> dict[str, Any]:
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
     """Return the JSON of a summary, with the statistics that only the report shows.
 
     Parameters
@@ -46,7 +46,7 @@ def says(ds: xr.Dataset, options: Mapping[str, str], path: Path) -> dict[str, An
     return whole
 
 
-def origin(ds: xr.Dataset, options: Mapping[str, str], path: Path) -> Origin:
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     """Return where a number of a summary comes from."""
     if regime := options.get("regime"):
         ds = within_regime(ds, regime)
@@ -70,7 +70,7 @@ def states_of(element: Element) -> dict[str, int]:
     return {"with a value": int(element.present.sum())} | some
 
 
-def _found(ds: xr.Dataset, options: Mapping[str, str], path: Path) -> Summary:
+def _found(ds: xr.Dataset, options: Options, path: Path) -> Summary:
     analysis, output = analysis_of(ds), _output(path)
     if path and path[0] != "outputs":
         none = next(iter(output_names(ds)))  # counts and regimes need no output

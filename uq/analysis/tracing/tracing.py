@@ -113,13 +113,15 @@ def traced(ds: xr.Dataset, key: str, model: str | None = None) -> Trace:
     parts = taken_apart(key, {name: verb.options for name, verb in VERBS.items()})
     verb, path = VERBS[parts.verb], parts.path
     options = parts.options | ({"model": model} if model else {})
+    said, numbers = {}, {}
     try:
-        numbers = numbers_in(value_at(verb.says(ds, options, path), path))
+        said = verb.says(ds, options, path)
+        numbers = numbers_in(value_at(said, path))
     except (KeyError, InputError):  # no such output
-        numbers = {}
+        pass
     if not path or not numbers:
         raise no_such_key(parts, verb.says(ds, options, ()), VERBS)
-    origin = verb.origin(ds, options, path)
+    origin = verb.origin(ds, options, path, said)
     here = {name: now for name, now in provenance().items() if ds.attrs.get(name) != now}
     names = ("code", *provenance())
     return Trace(

@@ -1,15 +1,13 @@
 """The verbs whose numbers have keys. To add one, write what it says and where that comes from."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import xarray as xr
 
 from uq.analysis.tracing import of_indices, of_levels, of_running, of_summary, of_twin
-from uq.analysis.tracing.keys import SUMMARY, Path, value_at
+from uq.analysis.tracing.keys import SUMMARY, Json, Options, Path, value_at
 from uq.analysis.tracing.origin import Origin
-
-Options = Mapping[str, str]
 
 
 def from_the_rows(verb: "Verb", found: Origin, options: Options, path: Path) -> Any:
@@ -25,7 +23,7 @@ class Verb(NamedTuple):
     says : callable
         Result, options, path -> its JSON, as far as the path needs it.
     origin : callable
-        Result, options, path of a number -> `Origin`.
+        Result, options, path of a number, and the JSON it is in -> `Origin`.
     options : tuple of str
         Those of the command that change its numbers.
     again : callable
@@ -33,7 +31,7 @@ class Verb(NamedTuple):
     """
 
     says: Callable[[xr.Dataset, Options, Path], dict[str, Any]]
-    origin: Callable[[xr.Dataset, Options, Path], Origin]
+    origin: Callable[[xr.Dataset, Options, Path, Json], Origin]
     options: tuple[str, ...] = ()
     again: Callable[["Verb", Origin, Options, Path], Any] = from_the_rows
 
