@@ -2,10 +2,11 @@
 
 import re
 from math import floor, inf, isfinite, log10
-from typing import Any, NamedTuple
+from typing import Any
 
 from uq.estimate import Estimate
 from uq.literals import shown
+from uq.units import DEGREES, Unit, time_unit, unit_of
 
 
 def number(value: float | None) -> str:
@@ -13,37 +14,15 @@ def number(value: float | None) -> str:
     return "-" if value is None else f"{value:.5g}"
 
 
-_PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "rad", "Hz"}
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+def quantity(value: float, units: str) -> str:
+    """Return a value [units, as in CF] with the unit in which it is read: ``13.75 kN m-1``."""
+    return in_unit(value, unit_of(units, value))
 
 
-def prefixed(unit: str, size: float) -> tuple[float, str]:
-    """Return the power of ten and the unit in which to show a quantity of some size.
-
-    Parameters
-    ----------
-    unit : str
-        CF unit string.
-    size : float
-        Not negative.
-
-    Returns
-    -------
-    factor : float
-        Values are multiplied by it.
-    unit : str
-        With its prefix: 0.00025 m become 250 µm.
-    """
-    if unit.split(" ")[0] not in _PREFIXED or size == 0 or 0.1 <= size < 1e4 or not isfinite(size):
-        return 1.0, unit
-    power = min(max(3 * floor(log10(size) / 3), min(_PREFIXES)), max(_PREFIXES))
-    return 10.0**-power, _PREFIXES[power] + unit
-
-
-def quantity(value: float, unit: str) -> str:
-    """Return a value with its unit, prefixed where that is usual: ``13.75 kN m-1``."""
-    factor, unit = prefixed(unit, abs(value))
-    return number(value * factor) + ("" if unit == "1" else f" {unit}")
+def in_unit(value: float, unit: Unit) -> str:
+    """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
+    space = "" if unit.name == DEGREES else " "
+    return f"{number(value / unit.size)}{space}{unit.name}".removesuffix(" 1")
 
 
 def duration(seconds: float | None) -> str:
@@ -171,40 +150,3 @@ def law(stated: Any) -> str:
         given.pop("values", None)  # a result keeps the file's name alone
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
     return f"{stated.distribution}({arguments})"
-
-
-class TimeUnit(NamedTuple):
-    """A unit of time, its length [s], and the time [s] from which it is used."""
-
-    name: str
-    seconds: float
-    used_from: float
-
-
-_DAY = 86400.0
-_YEAR = 365.25 * _DAY
-_TIME_UNITS = (
-    TimeUnit("seconds", 1.0, 0.0),
-    TimeUnit("hours", 3600.0, 3600.0),
-    TimeUnit("days", _DAY, 2 * _DAY),
-    TimeUnit("years", _YEAR, 2 * _YEAR),
-)
-
-
-def time_unit(seconds: float) -> TimeUnit:
-    """Return the usual unit of a time [s] that is not negative."""
-    return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]
-
-
-def unit_of(units: str, typical: float) -> TimeUnit:
-    """Return the unit in which to show an output: a time in one that suits a typical value.
-
-    Parameters
-    ----------
-    units : str
-        CF unit string of the output.
-    typical : float
-        NaN if unknown.
-    """
-    is_time = units == "s" and isfinite(typical)
-    return time_unit(abs(typical)) if is_time else TimeUnit(units, 1.0, 0.0)

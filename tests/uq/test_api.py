@@ -19,6 +19,7 @@ def test_everything_promised_is_there():
         set(uq.__all__)
         == set(dir(uq))
         == {
+            "answer",
             "basins",
             "labels",
             "levels",
@@ -33,6 +34,7 @@ def test_everything_promised_is_there():
             "trace",
             "sensitivity",
             "survival",
+            "what_if",
             "rare_event",
             "two_fidelities",
             "running_estimates",

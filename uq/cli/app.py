@@ -24,6 +24,7 @@ VERBS = (
     results.levels,
     results.convergence,
     results.compare,
+    results.what_if,
     results.twin,
     results.trace,
     studies.rare_event,

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from uq.drawing.panel import above, column, figure_of, finish
 from uq.drawing.quantities import families, find, label_axes, pair, scale_of, with_quantities
 from uq.drawing.style import COLOURS, LINES, MARK, are_many, point_size, styled
-from uq.drawing.words import as_label, in_words, powers
+from uq.drawing.words import labelled, powers
 from uq.errors import InputError
 from uq.rows.elements import Floats
 
@@ -60,14 +60,14 @@ def history(
     for panel, group, scale in zip(panels, found, scales, strict=True):
         for i, one in enumerate(group):
             colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
-            series, text = one.values * scale.factor, as_label(in_words(one))
+            series, text = one.values * scale.factor, labelled(one)
             panel.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
         if len(group) > 1:
             panel.set_ylabel(f"[{powers(scale.unit)}]")
             panel.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
         else:
-            above(panel, as_label(in_words(group[0]), scale.unit))
-    panels[-1].set_xlabel(as_label(in_words(ds["time"]), clock.unit))
+            above(panel, labelled(group[0], scale.unit))
+    panels[-1].set_xlabel(labelled(ds["time"], clock.unit))
     return figure_of(panels[0])
 
 

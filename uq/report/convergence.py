@@ -61,7 +61,7 @@ def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
 
 def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
     cells = (
-        Cell(number(error / one.unit.seconds), key=error, traced=traced)
+        Cell(number(error / one.unit.size), key=error, traced=traced)
         if error == error
         else Cell("-")
         for name in ("sampling", "own")

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import isfinite, isnan
+from math import isnan
 
 import xarray as xr
 
@@ -15,7 +15,8 @@ from uq.drawing.words import element_in_words, unbroken
 from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
-from uq.wording import number, percent, percent_interval, unit_of
+from uq.units import typical, unit_of
+from uq.wording import number, percent, percent_interval
 
 
 def status_table(ds: xr.Dataset, summary: Summary) -> Table:
@@ -69,9 +70,7 @@ class Outcome:
         self.name, self.words, self.declared = name, words, declared
         self.parts = described.parts
         quantiles = (one.estimate.value for one in described.parts["quantiles"])
-        found = [value for value in quantiles if isfinite(value)]
-        typical = abs(found[len(found) // 2]) if found else 0.0
-        unit = unit_of(described.units, typical)
+        unit = unit_of(described.units, typical(quantiles))
         self.unit = unit._replace(name=unbroken(unit.name))
 
     @property
@@ -86,11 +85,11 @@ class Outcome:
 
     def in_its_unit(self, value: float) -> str:
         """Return a number of this element, and its unit."""
-        return f"{number(value / self.unit.seconds)} {self.unit_cell.text}".strip()
+        return f"{number(value / self.unit.size)} {self.unit_cell.text}".strip()
 
     def per(self, one: Statistic) -> float:
         """Return the length of the unit in which a statistic is shown."""
-        return self.unit.seconds if one.unit == "s" else 1.0
+        return self.unit.size if one.unit == self.declared.unit else 1.0
 
 
 def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
@@ -159,3 +158,18 @@ def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
     if one.estimate.reason and isnan(one.estimate.value) and one.rows_needed is None:
         return Cell("none", one.estimate.reason)
     return cell(one, outcome.per(one))._replace(traced=traced)
+
+
+_WORDS = {
+    "never": "Never: the life is known not to end.",
+    "censored": "Censored: the life exceeds the horizon.",
+    "undefined": "Undefined: the output is not defined in the regime of the row.",
+}
+
+
+def words_used(found: list[Outcome]) -> list[str]:
+    """Return what the counts mean that occur."""
+    counted = {
+        one.key[-1] for outcome in found for one in outcome.parts["counts"] if one.estimate.value
+    }
+    return [text for word, text in _WORDS.items() if word in counted]

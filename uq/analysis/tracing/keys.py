@@ -81,8 +81,10 @@ def taken_apart(key: str, verbs: Mapping[str, Iterable[str]]) -> Key:
     options = {}
     for text in re.split(r",(?![^\[]*\])", inside) if inside else []:
         name, equals, value = text.partition("=")
-        if name not in verbs[verb] or not equals:
-            known = ", ".join(f"{one}=..." for one in verbs[verb]) or "none"
+        names = tuple(verbs[verb])
+        begins = any(name.startswith(one) for one in names if one.endswith("."))
+        if not (name in names or begins) or not equals:
+            known = ", ".join(f"{one}{'NAME' * one.endswith('.')}=..." for one in names) or "none"
             raise InputError(f"key '{key}': no such option of {verb}: {text} (allowed: {known})")
         options[name] = value
     return Key(verb, options, tuple(_plain(part) for part in rest.split("/")) if rest else ())

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from uq.analysis.tracing import of_indices, of_levels, of_running, of_summary, of_twin
+from uq.analysis.tracing import of_indices, of_levels, of_running, of_summary, of_twin, of_what_if
 from uq.analysis.tracing.keys import SUMMARY, Json, Options, Path, value_at
 from uq.analysis.tracing.origin import Origin
 
@@ -25,7 +25,7 @@ class Verb(NamedTuple):
     origin : callable
         Result, options, path of a number, and the JSON it is in -> `Origin`.
     options : tuple of str
-        Those of the command that change its numbers.
+        Those of the command that change its numbers; of a name that ends with a dot, more follows.
     again : callable
         Verb, origin, options, path -> the entry at the path, from the rows of the origin.
     """
@@ -42,5 +42,6 @@ VERBS: dict[str, Verb] = {
     "levels": Verb(of_levels.says, of_levels.origin),
     "convergence": Verb(of_running.says, of_running.origin, (), of_running.again),
     "twin": Verb(of_twin.says, of_twin.origin),
+    "what-if": Verb(of_what_if.says, of_what_if.origin, ("uncertain.", "dependence.")),
 }
 """By name."""
