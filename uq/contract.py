@@ -7,9 +7,11 @@ settings), a dict of `Output` and two functions, ``batch`` and ``simulate``; put
 `Model` and name it in the entry-point group ``vibrolife.models``. Nothing in ``uq`` changes.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from enum import IntEnum
+from types import MappingProxyType
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 import numpy as np
@@ -91,6 +93,9 @@ class Output:
         Name of the setting that requests a relative accuracy of this output, if there is one. The
         output ``<name>_error``, with the same dims, then gives an absolute error of each
         value that nine in ten do not exceed.
+    success : str
+        For lifetimes only: what has happened when it ends, where that is wished for, such as ``the
+        motors have locked``; by default the end is a failure.
     never_known_at_once : bool
         For lifetimes only: whether a life that never ends is recognised before any row is
         censored, so that every censored row does end.
@@ -108,6 +113,7 @@ class Output:
     may_be_censored: bool = True
     categories: tuple[str, ...] = ()
     accuracy: str = ""
+    success: str = ""
     never_known_at_once: bool = True
     scales: Mapping[str, float] = field(default_factory=dict, hash=False)
 
@@ -186,10 +192,22 @@ class Trajectory(NamedTuple):
         [s]
     quantities : dict of str to tuple
         Name -> (unit, meaning, values of shape (k,)).
+    period : float
+        Of the drive at the end [s]; NaN if there is none.
+    shown : tuple of str
+        The quantities that a picture shows, at most six; by default the first ones.
+    stops : dict of str to tuple
+        Quantity -> (lower, upper) values at which it meets a stop, NaN where there is none.
+    angles : tuple of str
+        Quantities [rad] that turn round; a picture shows them between half a turn to each side.
     """
 
     time: Floats
     quantities: Mapping[str, tuple[str, str, Floats]]
+    period: float = math.nan
+    shown: tuple[str, ...] = ()
+    stops: Mapping[str, tuple[float, float]] = MappingProxyType({})
+    angles: tuple[str, ...] = ()
 
 
 Batch = Callable[

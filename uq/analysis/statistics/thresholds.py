@@ -149,4 +149,6 @@ def _sentence(element: Element, side: str) -> str:
         return ""
     if element.is_angle:
         return "{share} exceed {at} in magnitude."
+    if element.declared.success:
+        return f"By {{at}}, {element.declared.success} in {{share}}."
     return "{share} end within {at}." if element.is_lifetime else "{share} exceed {at}."

@@ -38,8 +38,10 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         keeps_empty=True,
     )
     bound = Kind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
-    headline = f"{coverage}/{confidence} lower bound: {{number}}." if element.is_lifetime else ""
-    for name, found, sentence in (("lower", lower, headline), ("upper", upper, "")):
+    asked_for = "upper" if element.declared.success else "lower"
+    for name, found in (("lower", lower), ("upper", upper)):
+        said = element.is_lifetime and name == asked_for
+        sentence = f"{coverage}/{confidence} {name} bound: {{number}}." if said else ""
         yield Statistic(
             ("tolerance", name),
             f"tolerance, {name}",
