@@ -11,7 +11,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from enum import IntEnum
-from types import MappingProxyType
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 import numpy as np
@@ -183,8 +182,13 @@ _STATUS_MEANING = {
 }
 
 
-class Trajectory(NamedTuple):
-    """One labelled time history, as ``simulate`` returns it.
+class _History(NamedTuple):
+    time: Floats
+    quantities: Mapping[str, tuple[str, str, Floats]]
+
+
+class Trajectory(_History):
+    """One labelled time history, as ``simulate`` returns it: a pair, with notes for its picture.
 
     Attributes
     ----------
@@ -202,12 +206,25 @@ class Trajectory(NamedTuple):
         Quantities [rad] that turn round; a picture shows them between half a turn to each side.
     """
 
-    time: Floats
-    quantities: Mapping[str, tuple[str, str, Floats]]
-    period: float = math.nan
-    shown: tuple[str, ...] = ()
-    stops: Mapping[str, tuple[float, float]] = MappingProxyType({})
-    angles: tuple[str, ...] = ()
+    period: float
+    shown: tuple[str, ...]
+    stops: Mapping[str, tuple[float, float]]
+    angles: tuple[str, ...]
+
+    def __new__(
+        cls,
+        time: Floats,
+        quantities: Mapping[str, tuple[str, str, Floats]],
+        *,
+        period: float = math.nan,
+        shown: tuple[str, ...] = (),
+        stops: Mapping[str, tuple[float, float]] | None = None,
+        angles: tuple[str, ...] = (),
+    ) -> "Trajectory":
+        """Return the pair (time, quantities), with its notes."""
+        self = super().__new__(cls, time, quantities)
+        self.period, self.shown, self.stops, self.angles = period, shown, stops or {}, angles
+        return self
 
 
 Batch = Callable[
