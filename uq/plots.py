@@ -18,6 +18,7 @@ from uq.drawing.distribution_plots import histogram as histogram
 from uq.drawing.distribution_plots import histogram_by_regime as histogram_by_regime
 from uq.drawing.distribution_plots import lifetime as lifetime
 from uq.drawing.distribution_plots import quantile_table as quantile_table
+from uq.drawing.event_plot import event_probability as event_probability
 from uq.drawing.figure import write
 from uq.drawing.index_plot import index_bars as index_bars
 from uq.drawing.input_plot import inputs as inputs
@@ -57,6 +58,11 @@ FIGURES: dict[str, Entry] = {
         "Rows by regime, against the inputs that best separate the regimes",
         section="rows",
         applies=(of.in_regimes, of.has_several_inputs),
+    ),
+    "events": Entry(
+        event_probability,
+        of.decided_events,
+        "{name} over the input that decides it",
     ),
     "indices": Entry(
         index_bars,

@@ -1,5 +1,6 @@
 """The unit in which a quantity is read: prefixed, an angle in degrees, a time in hours or years."""
 
+import re
 from collections.abc import Iterable
 from math import floor, inf, isfinite, log10, pi
 from typing import NamedTuple
@@ -81,3 +82,9 @@ def typical(values: Iterable[float]) -> float:
     sizes = np.abs(np.fromiter(values, float))
     known = sizes[np.isfinite(sizes) & (sizes > 0)]
     return float(np.partition(known, len(known) // 2)[len(known) // 2]) if len(known) else 0.0
+
+
+def powers(unit: str) -> str:
+    """Return a CF unit as it is printed: ``m2 N-1`` becomes ``m² N⁻¹``, ``ohm`` an omega."""
+    unit = re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(_RAISED), unit)
+    return re.sub(r"\bohm\b", "Ω", unit)

@@ -9,6 +9,7 @@ from benchmarks.coverage import (
     differences,
     few,
     fewer_rows,
+    fleets,
     indices,
     known_indices,
     lives,
@@ -82,4 +83,5 @@ PARTS = {
     "importance": Part(fewer_rows.importance),
     "scaled": Part(scaled.scaled, 1000),
     "what-if": Part(scaled.what_if, 1000),
+    **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
 }

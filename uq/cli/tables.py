@@ -7,11 +7,14 @@ from typing import NamedTuple
 
 import xarray as xr
 
+from uq.analysis.findings import Findings
 from uq.analysis.life_fit import Fit
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import Described, Summary
-from uq.cli.printing import grid, heading, note, paragraph
+from uq.cli.printing import console, grid, heading, note, paragraph
+from uq.conclusions.answer import conclude
+from uq.conclusions.parts import Answer
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
 from uq.rows.variables import outputs_of
@@ -19,6 +22,14 @@ from uq.units import Unit, typical, unit_of
 from uq.wording import estimated, failed_interval, interval, number
 
 _LONG = 3600.0  # s: times in this unit and longer ones are given in seconds, too
+
+_MOST_EFFECTS = 3
+
+
+def show_findings(findings: Findings) -> None:
+    """Print the answer of a study, then its summary."""
+    show_answer(conclude(findings))
+    show_summary(findings.ds, findings.summary)
 
 
 def show_summary(ds: xr.Dataset, summary: Summary) -> None:
@@ -46,6 +57,28 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
             _show_fits(output.fits, block)
     for text in summary.notes:
         note(text)
+
+
+def show_answer(found: Answer) -> None:
+    """Print the answer: what can be promised, what it depends on, and what to do."""
+    lead = found.lead
+    if found.failed or lead is None:
+        paragraph(found.rows_sentence, indent=0)
+    if lead is not None:
+        for line in lead.head:
+            paragraph(line, indent=0)
+        for one in lead.events:
+            paragraph(one.with_cause, indent=0)
+    if found.regimes:
+        paragraph(found.regimes_sentence, indent=0)
+    if lead is not None and (ranking := lead.ranking) is not None:
+        paragraph(ranking.sentence, indent=0)
+        for contribution in ranking.contributions[:_MOST_EFFECTS]:
+            if contribution.effect:
+                paragraph(f"{contribution.words}: {contribution.effect}", indent=2)
+    for advice in found.advice:
+        paragraph(f"To do: {advice.text[:1].lower()}{advice.text[1:]}", indent=0)
+    console.print()
 
 
 Line = tuple[str, str, str, str]

@@ -10,6 +10,7 @@ import xarray as xr
 from uq.drawing.symbols import formula, literal, typeset
 from uq.literals import plain
 from uq.rows.elements import Element
+from uq.units import powers as powers
 from uq.wording import percent, quantity
 
 
@@ -34,13 +35,6 @@ def _wrapped(text: str, width: int) -> str:
 
 _FORMULA = r"(?<!\\)\$.+?(?<!\\)\$"
 _MASK = "\ue000"
-
-
-def powers(unit: str) -> str:
-    """Return a CF unit as it is printed: ``m2 N-1`` becomes ``m² N⁻¹``, ``ohm`` an omega."""
-    raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-    unit = re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(raised), unit)
-    return re.sub(r"\bohm\b", "Ω", unit)
 
 
 def unbroken(unit: str) -> str:

@@ -9,18 +9,13 @@ import xarray as xr
 
 from uq.analysis.findings import Findings
 from uq.drawing.index_plot import subject
-from uq.drawing.words import in_words
 from uq.errors import InputError
 from uq.estimate import Estimate
-from uq.indices.ranked import Values, lines, ranking, size
+from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import TargetIndices, methods
 from uq.methods.indices import S1, IndexKind, Null
 from uq.report.cells import Cell, Table
 from uq.report.pictures import Picture, pictures
-from uq.wording import percent
-
-_LEAST = 0.05
-"""A smaller share of the variance is not reported as leading."""
 
 
 class Subject(NamedTuple):
@@ -35,8 +30,6 @@ class Subject(NamedTuple):
     tables : list of Table
     pictures : tuple of Picture
     notes : list of str
-    leading : str
-        A sentence on the input with the largest index; "" if no index exceeds the null.
     """
 
     name: str
@@ -45,7 +38,6 @@ class Subject(NamedTuple):
     tables: tuple[Table, ...] = ()
     pictures: tuple[Picture, ...] = ()
     notes: tuple[str, ...] = ()
-    leading: str = ""
 
 
 class Method(NamedTuple):
@@ -87,15 +79,12 @@ def _method(findings: Findings, name: str, drawn: Drawn) -> Method:
     if found.groups_dropped:
         used += f"; {found.groups_dropped} groups with missing values dropped"
     subjects = (
-        _subject(findings.ds, name, one, drawn[name, target])
-        for target, one in found.targets.items()
+        _subject(findings.ds, one, drawn[name, target]) for target, one in found.targets.items()
     )
     return Method(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(
-    ds: xr.Dataset, method: str, found: TargetIndices, drawn: Sequence[Picture]
-) -> Subject:
+def _subject(ds: xr.Dataset, found: TargetIndices, drawn: Sequence[Picture]) -> Subject:
     name, indices = found.name, found.indices
     words = subject(ds, name)
     words = words[:1].upper() + words[1:]
@@ -107,33 +96,7 @@ def _subject(
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise))]
         tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
-    leading = _leading(ds, method, f"{words[:1].lower()}{words[1:]}", found)
-    return Subject(name, words, "", tables, tuple(drawn), indices.notes, leading)
-
-
-def _leading(ds: xr.Dataset, method: str, words: str, found: TargetIndices) -> str:
-    kinds = found.kinds()
-    if not kinds:
-        return ""
-    kind, (first, *others) = list(kinds)[-1], ranking(kinds)
-    index, null = kinds[kind][first], found.indices.nulls.get(kind, Null(0.0))
-    if size(index) <= (null.largest if isfinite(null.largest) else null.one):
-        return ""
-    name = kind.key if kind.key == method else f"{method}: {kind.key}"
-    what = words if words.startswith(("the ", "whether ")) else f"the {words}"
-    if others and index.low < size(kinds[kind][others[0]]):
-        interval = f"{name} of {first} is {kind.interval(index)}"
-        return f"The leading input for {what} is not settled ({interval})."
-    if kind.unit != "variance" or what.startswith("whether "):
-        leader = in_words(ds[first]).removeprefix("the ")
-        what = what[:1].upper() + what[1:]
-        return f"{what} depends most on the {leader} ({name} = {kind.text(index.value)})."
-    if index.value < _LEAST:
-        text = f"{name} = {kind.text(index.value)} at most"
-        return f"No single input explains much of the variance of {what} ({text})."
-    leader = in_words(ds[first])
-    leader = leader[:1].upper() + leader[1:]
-    return f"{leader} explains {percent(index.value)} of the variance of {what} ({name})."
+    return Subject(name, words, "", tables, tuple(drawn), indices.notes)
 
 
 def _table(caption: str, values: Values, nulls: Mapping[IndexKind, Null]) -> Table:

@@ -152,3 +152,18 @@ def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
     if one.estimate.reason and isnan(one.estimate.value) and one.rows_needed is None:
         return Cell("none", one.estimate.reason)
     return cell(one, outcome.per(one))
+
+
+_WORDS = {
+    "never": "Never: the life is known not to end.",
+    "censored": "Censored: the life exceeds the horizon.",
+    "undefined": "Undefined: the output is not defined in the regime of the row.",
+}
+
+
+def words_used(found: list[Outcome]) -> list[str]:
+    """Return what the counts mean that occur."""
+    counted = {
+        one.key[-1] for outcome in found for one in outcome.parts["counts"] if one.estimate.value
+    }
+    return [text for word, text in _WORDS.items() if word in counted]

@@ -34,7 +34,6 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
             column=f"q{name}",
             heading=f"{100 * p:g} % quantile",
             rows_needed=rows_needed(element, p),
-            sentence="Median {brief}." if p == 0.5 else "",
             estimator=quantile_of(element, p),
         )
         guess = guesses.get(name, NOTHING)

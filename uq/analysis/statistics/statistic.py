@@ -184,9 +184,6 @@ class Statistic:
         The value of the output that it refers to.
     of : str
         The quantity that it describes, if not the output itself.
-    sentence : str
-        For the top of a report; ``{brief}``, ``{number}`` and ``{share}`` are its value, ``{at}``
-        as above.
     more : str
         Small print in a report.
     notes : tuple of str
@@ -211,7 +208,6 @@ class Statistic:
     falls: bool = False
     at: float | None = None
     of: str = ""
-    sentence: str = ""
     more: str = ""
     notes: tuple[str, ...] = ()
     facts: Mapping[str, Any] = field(default_factory=dict)

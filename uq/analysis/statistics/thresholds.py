@@ -96,7 +96,6 @@ def _probabilities(
             heading=f"P({side})",
             falls=side == "below",
             at=threshold,
-            sentence=_sentence(element, side),
             facts={"undefined": undefined},
             estimator=replace(share(_hits(threshold, place)), counts_hits=element.is_plain),
         )
@@ -141,14 +140,3 @@ def _hits(threshold: float, place: int) -> Callable[[Element], Sample | None]:
         return None if sides is None else Sample(~element.failed, sides[place].astype(float))
 
     return sample
-
-
-def _sentence(element: Element, side: str) -> str:
-    """Return the sentence of a report on a threshold: for lives, the share that has ended."""
-    if side != ("below" if element.is_lifetime else "above"):
-        return ""
-    if element.is_angle:
-        return "{share} exceed {at} in magnitude."
-    if element.declared.success:
-        return f"By {{at}}, {element.declared.success} in {{share}}."
-    return "{share} end within {at}." if element.is_lifetime else "{share} exceed {at}."

@@ -38,10 +38,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         keeps_empty=True,
     )
     bound = Kind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
-    asked_for = "upper" if element.declared.success else "lower"
     for name, found in (("lower", lower), ("upper", upper)):
-        said = element.is_lifetime and name == asked_for
-        sentence = f"{coverage}/{confidence} {name} bound: {{number}}." if said else ""
         yield Statistic(
             ("tolerance", name),
             f"tolerance, {name}",
@@ -51,7 +48,6 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
             rows_needed=needed if isnan(found.value) else None,
             column=f"tolerance_{name}",
             heading=name,
-            sentence=sentence,
         )
     yield Statistic(
         ("tolerance", "rows_needed"),

@@ -107,12 +107,16 @@ def summary(
 ) -> None:
     """Show how rows ended, and statistics of each output."""
     from uq.analysis.as_json import summary_json
+    from uq.analysis.findings import Findings
     from uq.analysis.summary import summarise
     from uq.cli import tables
     from uq.cli.printing import print_json
     from uq.rows.results import open_result
 
     ds = open_result(result)
+    if not (fits or json or plain) and regime is None:
+        tables.show_findings(Findings(ds))
+        return
     found = summarise(ds, regime=regime, fits=fits, plain=plain)
     print_json(summary_json(found)) if json else tables.show_summary(ds, found)
 
@@ -146,6 +150,23 @@ def levels(
     from uq.cli import levels
 
     levels.levels(result, output, json)
+
+
+def fleet(
+    result: given.ResultFile,
+    size: Annotated[int, typer.Option(min=1, metavar="N", help="Number of units.")],
+    by: Annotated[
+        list[float] | None,
+        typer.Option(metavar="T", help="A time [s]; default: the study's thresholds."),
+    ] = None,
+    allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,
+    output: Annotated[str | None, typer.Option(metavar="NAME", help="The life.")] = None,
+    json: given.Json = False,
+) -> None:
+    """Show when the first of many units ends."""
+    from uq.cli import fleet as fleets
+
+    fleets.fleet(result, size, by or [], allow, output, json)
 
 
 def convergence(

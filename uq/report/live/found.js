@@ -79,10 +79,10 @@ class Found {
   }
 }
 
-function cellOf({share, low, high, count, more}) {
-  const ends = isFinite(low) ? `${percent(low).replace(" %", "")} to ${percent(high)}` : "";
+function cellOf({share, low, high, more}) {
+  const ends = isFinite(low) ? `${percent(low).replace("\u00a0%", "")} to\u00a0${percent(high)}` : "";
   return make("td", {class: "number", "data-low": low, "data-high": high},
-    count ? data(share, percent(share)) : "\u2013", make("small", {}, [ends, more].filter(Boolean).join("; ")));
+    isNaN(share) ? "\u2013" : data(share, percent(share)), make("small", {}, [ends, more].filter(Boolean).join("; ")));
 }
 
 function medianOf(column, curve) {
