@@ -10,6 +10,7 @@ from benchmarks.coverage import (
     effects,
     few,
     fewer_rows,
+    fleets,
     indices,
     known_indices,
     lives,
@@ -84,4 +85,5 @@ PARTS = {
     "importance": Part(fewer_rows.importance),
     "scaled": Part(scaled.scaled, 1000),
     "what-if": Part(scaled.what_if, 1000),
+    **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
 }
