@@ -39,8 +39,9 @@ def test_a_report_is_shown_without_complaint_or_request(browser, report, width, 
     }
     assert picture.shape[0] > 2000 and width - 20 < picture.shape[1] <= width  # a scroll bar
     assert browser.value("document.documentElement.scrollWidth") <= width  # nothing sticks out
-    named = "[...document.querySelectorAll('#explore :is(button, input, canvas)')]"
-    assert browser.value(f"{named}.every(one => one.ariaLabel || one.innerText)")
+    controls = ":is(#explore, #tolerances) :is(button, input, select, canvas)"
+    is_named = "one => one.ariaLabel || one.innerText || one.labels.length"
+    assert browser.value(f"[...document.querySelectorAll('{controls}')].every({is_named})")
     ground = picture[5, 5, :3].mean()
     assert (ground < 0.2) == dark
     assert abs(picture[..., :3].mean(axis=2) - ground).max() > 0.7  # the text stands out
@@ -79,7 +80,7 @@ def test_the_table_of_contents_leads_to_every_section(browser, report):
 
 def test_all_is_there_without_script(browser, report):
     browser.open(report)
-    there = "main > section:not(#explore)"
+    there = "main > section:not(#explore, #tolerances)"
     words = (
         f"['table', 'svg', 'p'].map(n => document.querySelectorAll('{there} ' + n).length).join()"
     )

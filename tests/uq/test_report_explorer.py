@@ -251,7 +251,11 @@ def asked_of_python(browser, ds):
 
 @pytest.mark.parametrize(
     ("law", "design"),
-    [*((law, {}) for law in LAWS), ("sigma", {"method": "sobol", "samples": 128, "replicates": 8})],
+    [
+        *((law, {}) for law in LAWS),
+        ("sigma", {"method": "sobol", "samples": 128, "replicates": 8}),
+        ("normal", {"samples": 200, "units": 3}),
+    ],
 )
 def test_a_slider_finds_what_python_finds(shown, law, design):
     stated, name = LAWS[law]
@@ -269,6 +273,18 @@ def test_a_slider_finds_what_python_finds(shown, law, design):
         assert here[f"{output}/{at}"][0] != pytest.approx(here[f"{output}/{at}"][1])
     worth = browser.value("document.querySelector('#tolerances .said data').value")
     assert float(worth) == pytest.approx(found.effective_rows, rel=1e-7)
+
+
+def test_lives_that_two_inputs_scale_keep_the_law_of_their_product(shown):
+    ds = scaled({"b": {"distribution": "loguniform", "lower": 0.8, "upper": 1.2}})
+    browser = shown(ds)
+    move(browser, "z", 0.8, 0.3)
+    _, found = asked_of_python(browser, ds)
+    one = what_if_json(found)["outputs"]["life"]["thresholds"]["0.8"]["below"]
+    expected = [one[end] for end in ("value", "low", "high")]
+    assert cells(browser, "#tolerances")["life/0.8"][0] == pytest.approx(expected, rel=1e-7)
+    notes = browser.value("document.querySelector('#tolerances .note').innerText")
+    assert notes.count("it scales lives together with other inputs") == 2
 
 
 def test_too_few_rows_are_refused_as_in_python(shown):

@@ -57,11 +57,12 @@ def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
         p = B_LIVES[name]
         yield Statistic(
             ("b_lives", name),
-            name,
+            f"{100 * p:g} % by" if element.declared.success else name,
             found,
             element.units,
             LIFE,
             rows_needed=None if found.assumes else rows_needed(element, p),
+            column=name,
             estimator=quantile_of(element, p),
             by=(_BY_KAPLAN_MEIER if found.assumes else _BY) if element.is_plain else _LAWS,
         )

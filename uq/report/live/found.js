@@ -80,7 +80,7 @@ class Found {
 }
 
 function cellOf({share, low, high, more}) {
-  const ends = isFinite(low) ? `${percent(low).replace(" %", "")} to ${percent(high)}` : "";
+  const ends = isFinite(low) ? `${percent(low).replace("\u00a0%", "")} to\u00a0${percent(high)}` : "";
   return make("td", {class: "number", "data-low": low, "data-high": high},
     isNaN(share) ? "\u2013" : data(share, percent(share)), make("small", {}, [ends, more].filter(Boolean).join("; ")));
 }

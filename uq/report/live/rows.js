@@ -24,7 +24,8 @@ class Column {
 
   // A value in the unit shown, such as "12.3 kN".
   words(value, digits = 4) {
-    return `${number(value / this.per, digits)} ${this.unit}`.trim();
+    const between = this.unit.startsWith("10") ? "\u00b7" : " "; // a unit such as 10⁻¹⁵ m²
+    return `${number(value / this.per, digits)}${between}${this.unit}`.trim();
   }
 
   wordsOfRow(row) {

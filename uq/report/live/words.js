@@ -12,10 +12,10 @@ function number(value, digits = 4) {
 }
 
 function percent(share) {
-  if (share > 0 && share < 0.01) return `${Number((100 * share).toPrecision(2))} %`;
+  if (share > 0 && share < 0.01) return `${Number((100 * share).toPrecision(2))}\u00a0%`;
   const rest = Number((1 - share).toFixed(12));
   const digits = rest > 0 && rest < 0.001 ? -Math.floor(Math.log10(100 * rest)) : 1;
-  return `${(100 * share).toFixed(digits)} %`;
+  return `${(100 * share).toFixed(digits)}\u00a0%`;
 }
 
 // An element with attributes and contents; a name with ":" is an event.
