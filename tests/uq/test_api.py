@@ -22,6 +22,7 @@ def test_everything_promised_is_there():
             "answer",
             "basins",
             "labels",
+            "fleet",
             "levels",
             "life_fits",
             "load_study",

@@ -23,6 +23,7 @@ _READERS = (
     "summary",
     "sensitivity",
     "levels",
+    "fleet",
     "convergence",
     "compare",
     "what-if",

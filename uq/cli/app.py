@@ -22,6 +22,7 @@ VERBS = (
     results.summary,
     results.sensitivity,
     results.levels,
+    results.fleet,
     results.convergence,
     results.compare,
     results.what_if,

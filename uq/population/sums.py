@@ -17,6 +17,7 @@ _FARTHEST = 8.2  # standard normal quantile beyond which a probability is neglig
 _NODES = 96
 _DEGREE = 24
 _DEEPEST = 12
+_HALVINGS = 50
 
 
 class Term(Protocol):
@@ -33,6 +34,9 @@ class Term(Protocol):
 
     def below(self, value: Floats, /) -> Floats:
         """Return the probability of less than each value."""
+
+    def at(self, z: Floats, /) -> Floats:
+        """Return the quantiles at the probabilities of standard normal quantiles."""
 
 
 class LogTerm:
@@ -115,6 +119,15 @@ class Sum:
         found = chebyshev.chebval(x, coefficients, tensor=False)
         found = np.where(value <= self.ends[0], 0.0, found)
         return np.clip(np.where(value >= self.ends[-1], 1.0, found), 0.0, 1.0)
+
+    def at(self, z: Floats) -> Floats:
+        """Return the quantiles at the probabilities of standard normal quantiles, by bisection."""
+        low, high = (np.full(z.shape, end) for end in self.ends[[0, -1]])
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            above = self.below(middle) > special.ndtr(z)
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        return np.asarray((low + high) / 2)
 
     def _pieces(self, nodes: int) -> list[tuple[float, float, Floats]]:
         """Return ends and coefficients of polynomials, halved until each is accurate."""

@@ -152,6 +152,23 @@ def levels(
     levels.levels(result, output, json)
 
 
+def fleet(
+    result: given.ResultFile,
+    size: Annotated[int, typer.Option(min=1, metavar="N", help="Number of units.")],
+    by: Annotated[
+        list[float] | None,
+        typer.Option(metavar="T", help="A time [s]; default: the study's thresholds."),
+    ] = None,
+    allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,
+    output: Annotated[str | None, typer.Option(metavar="NAME", help="The life.")] = None,
+    json: given.Json = False,
+) -> None:
+    """Show when the first of many units ends."""
+    from uq.cli import fleet as fleets
+
+    fleets.fleet(result, size, by or [], allow, output, json)
+
+
 def convergence(
     result: given.ResultFile,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,

@@ -34,7 +34,9 @@ function weightedShare(numbers, weights, {part, sample, students, independent}) 
   const found = pulls(numbers, worth, mean, part), parts = found.length;
   if (parts < 2) return none();
   const least = found.reduce((a, b) => Math.min(a, b)), most = found.reduce((a, b) => Math.max(a, b));
-  if (mean > 0 && mean < 1 && numbers.every(one => Math.abs(one - numbers[0]) <= ROUNDING)) return none("exact");
+  const side = numbers.map(one => (mean <= 0.5 ? one : 1 - one)), largest = side.reduce((a, b) => Math.max(a, b), 0);
+  const alike = side.every(one => Math.abs(one - side[0]) <= ROUNDING * largest);
+  if (alike && mean > 0 && mean < 1) return none("exact");
   let low = mean, high = mean;
   if (mean > 0 && mean < 1) {
     const middle = total(found) / parts;
@@ -44,7 +46,7 @@ function weightedShare(numbers, weights, {part, sample, students, independent}) 
     low = Math.max(1 / (1 + Math.exp(half - logit)) + Math.min(outlier, 0), 0);
     high = Math.min(1 / (1 + Math.exp(-half - logit)) + Math.max(outlier, 0), 1);
   }
-  const rarer = numbers.map((one, row) => worth[row] * (mean <= 0.5 ? one : 1 - one));
+  const rarer = side.map((one, row) => worth[row] * one);
   if (effectiveRows(perSample(rarer, sample)) < FEW_HITS) {
     const [a, b] = binomial(mean, effectiveRows(perSample(worth, sample)));
     low = Math.min(low, a);
