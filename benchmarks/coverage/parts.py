@@ -7,6 +7,7 @@ from typing import NamedTuple
 from benchmarks.coverage import (
     curves,
     differences,
+    effects,
     few,
     fewer_rows,
     fleets,
@@ -69,6 +70,7 @@ PARTS = {
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
     "morris": Part(indices.morris),
     **{f"null-{name}": Part(partial(indices.nulls, name)) for name in NULLS},
+    "effects": Part(effects.average),
     "bootstraps": Part(indices.bootstraps, 200),
     "differences": Part(differences.differences),
     "twin": Part(fewer_rows.twin),

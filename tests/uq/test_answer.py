@@ -4,15 +4,27 @@ import re
 
 import numpy as np
 import pytest
-from computed import asking, computed, kinds, linear, study_of, summarised, with_output, with_status
+from computed import (
+    as_text,
+    asking,
+    computed,
+    kinds,
+    linear,
+    study_of,
+    summarised,
+    with_output,
+    with_status,
+)
 
 import uq
 from uq.conclusions.answer import answer
 from uq.conclusions.parts import Change, Event, Promise, Ranking
 from uq.conclusions.settling import rows_in_words
+from uq.conclusions.tightening import halved
 from uq.conclusions.words import Unit, called_together, rounded
 from uq.contract import Status
 from uq.estimate import Estimate
+from uq.study.reading import read_study_text
 
 DAY = 86400.0
 NUMBER = r"(-?[\d.]+(?:e-?\d+)?)"
@@ -97,12 +109,49 @@ def test_a_contribution_has_size_and_direction(lifetime):
 
 def test_an_assumed_law_that_matters_is_measured_first(lifetime):
     ds, found = lifetime
-    assert [one.rule for one in found.advice] == ["measure"]
+    assert [one.rule for one in found.advice] == ["measure", "tighten"]
     assert found.advice[0].text == ("Measure rate first: it matters most, and its law is assumed.")
     known = ds.copy()
     known["rate"].attrs["source"] = "measured"
-    (nothing,) = answer(known).advice
-    assert nothing.rule == "nothing"
+    assert [one.rule for one in answer(known).advice] == ["tighten", "nothing"]
+
+
+def test_half_the_scatter_is_what_the_weighted_rows_say(lifetime):
+    ds, found = lifetime
+    one = next(one.tightened for one in found.advice if one.rule == "tighten")
+    _, now, then, low, high = numbers(
+        r"Half the scatter of rate would move the share of rows that end within # days"
+        r" from # % to # % \(# to # %\)\.",
+        one.sentence,
+    )
+    column = f"P(<{10 * DAY!r})"
+    weighted = uq.what_if(ds, {"uncertain.rate.sigma": 0.25}).loc["life"]
+    known = [100 * weighted[f"{column}{end}"] for end in ("", "_low", "_high")]
+    assert [then, low, high] == pytest.approx(known, abs=0.05)
+    assert now == pytest.approx(100 * uq.summary(ds).loc["life", column], abs=0.05)
+    assert one.effective_rows < 1000
+
+
+def test_half_the_scatter_of_a_law():
+    laws = {
+        "uniform": ({"lower": 1.0, "upper": 3.0}, {"lower": 1.5, "upper": 2.5}),
+        "loguniform": ({"lower": 1.0, "upper": 16.0}, {"lower": 2.0, "upper": 8.0}),
+        "triangular": (
+            {"lower": 0.0, "mode": 1.0, "upper": 4.0},
+            {"lower": 0.5, "upper": 2.5},
+        ),
+        "lognormal": ({"mean": 2.0, "cv": 0.2}, {"cv": 0.1}),
+        "weibull": ({"shape": 2.0, "scale": 1.0}, {}),
+    }
+    for name, (arguments, expected) in laws.items():
+        uncertain = {"x1": {"distribution": name, **arguments}}
+        tables = {
+            "study": {"name": "laws", "model": "ishigami"},
+            "design": {"method": "monte-carlo", "samples": 8},
+            "uncertain": uncertain,
+        }
+        law = read_study_text(as_text(tables), "study").uncertain["x1"]
+        assert halved(law) == pytest.approx(expected)
 
 
 def test_an_angle_is_promised_by_its_magnitude_in_degrees():

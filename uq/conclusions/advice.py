@@ -6,6 +6,7 @@ from uq.analysis.findings import Findings
 from uq.conclusions.parts import Advice, Contribution, Quantity
 from uq.conclusions.settling import MOST, rows_in_words, unsettled
 from uq.conclusions.sources import ASSUMED, mark
+from uq.conclusions.tightening import tightened
 from uq.conclusions.words import called_together
 from uq.rows.elements import analysis_of
 from uq.rows.results import failed
@@ -23,10 +24,11 @@ def advise(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advic
     found = [
         *_mend(findings),
         *_measure(findings, quantities),
+        *_tighten(findings, quantities),
         *_add_rows(findings, quantities),
     ]
-    if not found and quantities:
-        found = [
+    if quantities and not any(one.rule != "tighten" for one in found):
+        found += [
             Advice(
                 "nothing",
                 "Nothing: what the study asks is settled, and no law that matters is"
@@ -73,6 +75,18 @@ def _measure(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Adv
             f" {'its law is' if one else 'their laws are'} assumed.",
             assumed,
         )
+
+
+def _tighten(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:
+    leader = leading(quantities)
+    if leader is None:
+        return
+    found = list(tightened(findings.ds, quantities[0], leader.inputs))
+    is_life = quantities[0].promise is not None and quantities[0].promise.is_life
+    told = [one for one in found if not one.reason and (one.lengthens or not is_life)]
+    refused = [one for one in found if one.reason]
+    for one in (told or refused)[:1]:
+        yield Advice("tighten", one.sentence, leader.inputs, tightened=one)
 
 
 def _add_rows(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:

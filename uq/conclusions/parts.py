@@ -430,6 +430,11 @@ class Tightened:
     effective_rows: float = float("nan")
 
     @property
+    def lengthens(self) -> bool:
+        """Whether lives are longer: fewer have ended, or a quantile is later."""
+        return (self.after.value < self.before.value) == self.is_share
+
+    @property
     def sentence(self) -> str:
         """What would change, or why the rows do not tell."""
         words = called_together(self.inputs)

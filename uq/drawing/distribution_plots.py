@@ -23,6 +23,7 @@ from uq.drawing.elements_plot import (
 from uq.drawing.figure import Drawing
 from uq.drawing.panel import arrows, column, figure_of, finish, is_wide, logarithmic, roomy
 from uq.drawing.style import INK, MARK, ROWS, WIDTH, styled, thinned
+from uq.drawing.symbols import literal, typeset
 from uq.drawing.words import as_label, label, rows_in_words
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
@@ -125,6 +126,8 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
 def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw the probability that a life has ended against time, with its 95 % bands.
 
+    If the end is a success, the axes say what has happened by then, and what has not yet.
+
     The dark band is pointwise; the light one, where there is one, is simultaneous: it covers the
     whole curve. Marks with intervals show B1, B10 and B50, the times by which 1, 10 and 50 % have
     ended. The right axis shows the survival probability.
@@ -160,7 +163,9 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
             if np.isfinite(low).any():
                 panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
                 bands[meaning] = True
-    panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
+    success = chosen[0].declared.success
+    event = typeset(literal(success)) if success else "the life has ended"
+    panel.set(ylim=(0, 1.02), ylabel=f"Probability that\n{event}")
     panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
     if is_wide(ends):
         logarithmic(panel)
@@ -169,7 +174,7 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     for i, element in enumerate(chosen):
         _mark(panel, element, replicates_of(rows), unit, curve_style(i, element, chosen)[0])
     other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
-    other.set_ylabel("Survival probability")
+    other.set_ylabel("Probability of not yet" if success else "Survival probability")
     entitle(panel, chosen, *bands)
     return finish(panel)
 
