@@ -1,14 +1,12 @@
-"""The fast propagator: thirty-two moles at a time.
+"""The fast propagator: sixteen moles at a time.
 
 Reading order; a module imports only those above it:
 
     block         the memory of the lanes
-    expand        the motion as a Taylor series
+    rates         their rates of change
     modes         constants and guards of each mode
     events        what an event changes
-    looks         how far a series reaches, and whether a guard falls through zero
-    locate        where it does
-    move          the state at the end of a step
+    steps         decisions after a trial step
     rows          how a row enters and leaves a lane
     strobe        whether the motion repeats, checked once per control period
     loop          each lane with its own step: the hot loop
