@@ -15,6 +15,7 @@ Reading order; a module imports only those above it:
     exponents       Lyapunov exponents
     batch_means     time means with their errors
     events          event location within a step
+    series          sums over power series of many systems
     tableaux        coefficients of the Runge-Kutta methods
     tsit5           order 5, many systems, fixed steps
     nystrom         any tableau for q'' = f(q, q'), many systems, fixed steps
