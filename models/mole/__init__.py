@@ -8,7 +8,7 @@ Reading order; each part imports only those above it:
     parameters    inputs, settings and outputs
     theory        the equations
     exact         one mole at a time: the reference
-    lanes         sixteen moles at a time: the propagator of studies
+    lanes         thirty-two moles at a time: the propagator of studies
     response      settled motion, its averages and its regime
     batch         from rows of a study to outputs
     trajectory    one time history
@@ -37,7 +37,7 @@ def _simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
 MODEL = Model(
     name="mole",
     title="electro-vibro-impact ground mole that creeps forward against dry friction",
-    version="3",
+    version="4",
     parameters=Params,
     settings=Settings,
     outputs=OUTPUTS,

@@ -19,7 +19,6 @@ Reading order; a module imports only those above it:
     tableaux        coefficients of the Runge-Kutta methods
     tsit5           order 5, many systems, fixed steps
     nystrom         any tableau for q'' = f(q, q'), many systems, fixed steps
-    dop8            order 8, many systems, with an error estimate
     dop853_step     order 8(5,3), one system: a step
     dop853          the same over any time, through guarded modes
     newton          damped Newton's method
