@@ -10,7 +10,7 @@ from models.mole.parameters import NO_IMPACT, PERIODIC, Params, Rows, Settings
 from models.mole.response.following import follow_other, follow_repeating
 from models.mole.response.machines import Machines
 from models.mole.response.measured import BATCHES, Response
-from models.mole.response.settling import settle, settle_late
+from models.mole.response.settling import LATEST, settle, settle_late
 from models.mole.response.verdict import verdicts
 from models.numerics.batch_means import mean_and_error
 from uq.contract import Status
@@ -42,10 +42,10 @@ def batch(
     unstable = follow_repeating(machines, repeating, settings.duration, response)
     other = np.concatenate([other, unstable])
     follow_other(machines, other, settings.duration, response)
-    if not settings.transient:
-        late = settle_late(machines, other, response)
-        unstable = follow_repeating(machines, late, settings.duration, response)
-        follow_other(machines, unstable, settings.duration, response)
+    latest = 0.0 if settings.transient else LATEST
+    late = settle_late(machines, other, response, latest)
+    unstable = follow_repeating(machines, late, settings.duration, response)
+    follow_other(machines, unstable, settings.duration, response)
     outputs = _outputs(p, machines, response)
     lost = np.isnan(response.time)
     over = machines.record[:, OUTCOME] == OUT_OF_BUDGET

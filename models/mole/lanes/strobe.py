@@ -8,8 +8,10 @@ from models.mole.lanes.modes import mole_of
 from models.mole.lanes.rows import GOING, PERIOD, REACHED_END, REPEATING, SCALES
 from models.numerics.jit import lean
 
-REPEAT = 1e-6  # of the scales of u, v, x, and of i and p by resistance and supply
-_ALIKE = 1e-4  # a divisor of the period at which the motion repeats this closely is the period
+REPEAT = 1e-8
+"""Of the scales of u, v, x, and of i and p by resistance and supply. Weak chaos may stay within 3e-5
+of a cycle, and pass within 1e-7 of where it was for hundreds of periods."""
+_ALIKE = 1e-6  # a divisor of the period at which the motion repeats this closely is the period
 
 
 @lean

@@ -68,8 +68,8 @@ def _forget(machines: Machines, rows: Counts, longest: Counts) -> Counts:
     return np.concatenate(done)
 
 
-def settle_late(machines: Machines, rows: Counts, known: Response) -> Counts:
-    """Continue moles whose motion does not repeat yet but converges to one that does.
+def settle_late(machines: Machines, rows: Counts, known: Response, latest: float) -> Counts:
+    """Look again at moles whose motion did not repeat before its averages were taken.
 
     Parameters
     ----------
@@ -79,6 +79,8 @@ def settle_late(machines: Machines, rows: Counts, known: Response) -> Counts:
         Moles whose motion does not repeat.
     known : Response
         Their responses so far; reset to unknown where the motion now repeats.
+    latest : float
+        How long a motion that converges to one that repeats is continued at most [s].
 
     Returns
     -------
@@ -87,9 +89,11 @@ def settle_late(machines: Machines, rows: Counts, known: Response) -> Counts:
     """
     mean, error = mean_and_error(known.growth[rows])
     system = machines.system
-    rows = rows[(system.common[rows] > 0) & (mean < -SURE * error)]
-    limit = machines.periods(rows) + np.ceil(LATEST * system.control_frequency[rows]).astype(int)
-    rows = rows[machines.run(rows, limit, repeat=True)]
+    some = (system.common[rows] > 0) & (mean < SURE * error)
+    rows, converges = rows[some], (mean < -SURE * error)[some]
+    more = np.ceil(latest * system.control_frequency[rows]).astype(np.int64)
+    more = np.maximum(np.where(converges, more, 0), (LONGEST_PERIOD + 1) * system.common[rows])
+    rows = rows[machines.run(rows, machines.periods(rows) + more, repeat=True)]
     rows = rows[machines.record[rows, OUTCOME] == REPEATING]
     known.forget(rows)
     return rows
