@@ -15,6 +15,9 @@ from numba.extending import intrinsic
 
 from models.numerics.fma import exact_fma
 
+_WIDE = 8
+"""Lanes whose two sums are formed side by side: with more, registers of 256 bits do not suffice."""
+
 
 class Sums(NamedTuple):
     """Sums over series, for kernels; all arguments but w are places in w, or counts.
@@ -64,16 +67,18 @@ def _plain(lanes: int) -> Sums:
 
 
 class _Vectors:
-    """Instructions for vectors of all lanes."""
+    """Instructions for vectors of some neighbouring lanes."""
 
-    def __init__(self, lanes: int, context: Any, builder: Any, kind: Any, array: Any) -> None:
+    def __init__(
+        self, lanes: int, wide: int, context: Any, builder: Any, kind: Any, array: Any
+    ) -> None:
         self.builder, self.lanes = builder, lanes
         self.data = context.make_array(kind)(context, builder, array).data
-        self.type = ir.VectorType(ir.DoubleType(), lanes)
-        self.zero = ir.Constant(self.type, [0.0] * lanes)
+        self.type = ir.VectorType(ir.DoubleType(), wide)
+        self.zero = ir.Constant(self.type, [0.0] * wide)
         function = ir.FunctionType(self.type, [self.type] * 3)
         self.instruction = cgutils.get_or_insert_function(
-            builder.module, function, f"llvm.fma.v{lanes}f64"
+            builder.module, function, f"llvm.fma.v{wide}f64"
         )
 
     def place(self, start: Any, count: Any = None, sign: int = 1) -> Any:
@@ -81,6 +86,9 @@ class _Vectors:
             shift = self.builder.mul(count, ir.Constant(count.type, sign * self.lanes))
             start = self.builder.add(start, shift)
         return self.builder.bitcast(self.builder.gep(self.data, [start]), self.type.as_pointer())
+
+    def beside(self, start: Any, lane: int) -> Any:
+        return self.builder.add(start, ir.Constant(start.type, lane))
 
     def load(self, start: Any, count: Any = None, sign: int = 1) -> Any:
         return self.builder.load(self.place(start, count, sign), align=8)
@@ -96,29 +104,32 @@ class _Vectors:
 
 
 def _compiled(lanes: int) -> Sums:
-    """Return the sums as instructions for vectors of all lanes."""
+    """Return the sums as instructions for vectors: of all lanes, or as fit into registers."""
+    wide = min(lanes, _WIDE)
 
     @intrinsic
     def products(
         typingctx: Any, w: Any, terms: Any, a: Any, b: Any, in_b: Any, c: Any, in_c: Any
     ) -> Any:
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            vectors = _Vectors(lanes, context, builder, w, values[0])
-            terms, a, b, in_b, c, in_c = values[1:]
-            first, second = vectors.total(), vectors.total()
-            with cgutils.for_range(builder, terms) as loop:
-                common = vectors.load(a, loop.index)
-                for total, other in (first, b), (second, c):
-                    factor = vectors.load(other, loop.index, -1)
-                    builder.store(vectors.fma(common, factor, builder.load(total)), total)
-            vectors.store(builder.load(first), in_b)
-            vectors.store(builder.load(second), in_c)
+            vectors = _Vectors(lanes, wide, context, builder, w, values[0])
+            terms = values[1]
+            for lane in range(0, lanes, wide):
+                a, b, in_b, c, in_c = (vectors.beside(place, lane) for place in values[2:])
+                first, second = vectors.total(), vectors.total()
+                with cgutils.for_range(builder, terms) as loop:
+                    common = vectors.load(a, loop.index)
+                    for total, other in (first, b), (second, c):
+                        factor = vectors.load(other, loop.index, -1)
+                        builder.store(vectors.fma(common, factor, builder.load(total)), total)
+                vectors.store(builder.load(first), in_b)
+                vectors.store(builder.load(second), in_c)
             return context.get_dummy_value()
 
         return types.void(w, *[types.intp] * 6), generate
 
     def horner(context: Any, builder: Any, w: Any, values: Any, with_slope: bool) -> Any:
-        vectors = _Vectors(lanes, context, builder, w, values[0])
+        vectors = _Vectors(lanes, lanes, context, builder, w, values[0])
         terms, a, at, out, *slope = values[1:]
         total, rate = vectors.total(), vectors.total()
         place = vectors.load(at)

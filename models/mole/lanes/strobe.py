@@ -9,8 +9,8 @@ from models.mole.lanes.rows import GOING, PERIOD, REACHED_END, REPEATING, SCALES
 from models.numerics.jit import lean
 
 REPEAT = 1e-8
-"""Of the scales of u, v, x, and of i and p by resistance and supply. Weak chaos may stay within 3e-5
-of a cycle, and pass within 1e-7 of where it was for hundreds of periods."""
+"""Of the scales of u, v, x, and of i and p by resistance and supply. Weak chaos may stay within
+3e-5 of a cycle and, for hundreds of periods, return to within 1e-7."""
 _ALIKE = 1e-6  # a divisor of the period at which the motion repeats this closely is the period
 
 

@@ -86,17 +86,17 @@ def test_a_look_does_not_depend_on_its_neighbours():
             np.testing.assert_array_equal(value[0], together[name][i], err_msg=name)
 
 
-def test_weak_chaos_is_not_called_quasi_periodic():
-    """At 2.5 Hz and this phase of the mains neighbours part by 0.016 a period, at 0.04 1/s.
+def test_weak_chaos_is_neither_quasi_periodic_nor_periodic():
+    """At 2.5 Hz and this phase of the mains neighbours part by 0.01 a period, at 0.03 1/s.
 
-    A periodic orbit captures some motions early; from one start, rounding decides.
+    It returns to within 1e-6 again and again, while tangents shrink: by the event-driven propagator
+    at 1e-13, in 40 % of all periods, and it never stays.
     """
     weak = Params(control_frequency=2.5, supply_phase=2 * np.pi * 5 / 32)
     starts = weak.initial_displacement - 1e-5 * np.arange(16)
     some = [weak._replace(initial_displacement=start) for start in starts]
-    regimes = compute(*some, transient=400, duration=20)["regime"]
-    assert np.isin(regimes, [UNDECIDED, PERIODIC]).all()
-    assert (regimes == UNDECIDED).sum() >= 3
+    o = compute(*some, transient=400, duration=20)
+    assert o["regime"].tolist() == [UNDECIDED] * 16
 
 
 def test_what_repeats_is_still_periodic():
