@@ -32,6 +32,7 @@ from uq.running.dispatch import Dispatcher
 from uq.running.environment import command, inherited
 from uq.running.options import RunOptions
 from uq.running.remote_cluster import remote_workers
+from uq.running.sent_chunks import SentChunks
 
 INPUTS, OUTPUTS = 10, 20
 CHUNKS = {250: 200_000, 4000: 1_600_000}
@@ -154,11 +155,11 @@ def costs(address, scheduler, crew, rows, chunk_rows, folder):
         remote_workers(address) as workers,
         store.keep(study, Path(folder) / "rates.nc", fresh=True) as kept,
     ):
-        options = RunOptions(chunk_rows=chunk_rows)
-        dispatcher = Dispatcher(workload_of(study), options, kept, None)
+        workload = workload_of(study)
+        dispatcher = Dispatcher(workload, RunOptions(chunk_rows=chunk_rows), kept)
         parts = [psutil.Process()], [scheduler], crew
         before, began = [used(*part) for part in parts], time.perf_counter()
-        dispatcher.finish_on(workers)
+        dispatcher.finish_on(SentChunks(workload, workers))
         seconds = time.perf_counter() - began
         return np.subtract([used(*part) for part in parts], before), seconds
 
@@ -207,10 +208,8 @@ def drive(rows, method, path):
     """Compute a study of free rows in this process, kept on disk as they arrive."""
     study = free_study(int(rows), method)
     with store.keep(study, Path(path), fresh=True) as kept:
-        dispatcher = Dispatcher(
-            workload_of(study), RunOptions(), kept, partial(evaluate, study.model, study.settings)
-        )
-        dispatcher.finish_here()
+        dispatcher = Dispatcher(workload_of(study), RunOptions(), kept)
+        dispatcher.finish_here(partial(evaluate, study.model, study.settings))
         print(f"{rows} rows kept: {time.process_time():.1f} s CPU", file=sys.stderr, flush=True)
         kept.dataset()
 

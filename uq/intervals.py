@@ -53,7 +53,7 @@ def scatter_interval(value: float, estimates: Floats, confidence: float = CONFID
     if count < 2 or is_constant(estimates):
         return UNKNOWN
     error = estimates.std(ddof=1) / count**0.5
-    half = student(upper_tail(confidence), count - 1) * error
+    half = student(upper_probability(confidence), count - 1) * error
     return float(value - half), float(value + half)
 
 
@@ -159,7 +159,7 @@ def binomial_interval(share: float, rows: float, confidence: float = CONFIDENCE)
 
 def wilson_interval(share: float, rows: float, confidence: float = CONFIDENCE) -> Ends:
     """Return Wilson's interval of a share from an effective number of independent rows."""
-    return _floats(_wilson(share, rows, normal(upper_tail(confidence))))
+    return _floats(_wilson(share, rows, normal(upper_probability(confidence))))
 
 
 def scattered_share_interval(
@@ -196,11 +196,11 @@ def scattered_share_interval(
     # A survival curve may reach 0 while that of a censored replicate does not.
     known = (np.ptp(estimates, axis=0) > 0) & (at > 0) & (at < 1)
     worth = at * (1 - at) / np.where(known, variance, np.nan)
-    wide = student(upper_tail(confidence), count - 1)
+    wide = student(upper_probability(confidence), count - 1)
     found = _wilson(share, worth, wide)
     if rows is None:
         return found
-    worth = np.fmin(worth * (normal(upper_tail(confidence)) / wide) ** 2, rows)
+    worth = np.fmin(worth * (normal(upper_probability(confidence)) / wide) ** 2, rows)
     few = are_few(share, rows)
     low, high = exact_interval(share, worth, confidence)
     return np.where(few, low, found[0]), np.where(few, high, found[1])
@@ -230,7 +230,7 @@ def _wilson(share: Floats | float, rows: Floats | float, z: float) -> Ends:
     return low, 1 - (1 - share) ** 2 / (1 + w) / (1 - low)
 
 
-def upper_tail(confidence: float) -> float:
+def upper_probability(confidence: float = CONFIDENCE) -> float:
     """Return the probability below the upper end of an interval with equal tails."""
     return 0.5 + confidence / 2
 

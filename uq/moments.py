@@ -15,6 +15,7 @@ from uq.intervals import (
     is_constant,
     mean_interval,
     scatter_interval,
+    upper_probability,
 )
 from uq.quantile_functions import normal
 from uq.tails import FEWEST_ROWS, Tail, heavier_tail
@@ -167,7 +168,7 @@ def sd_interval(
 def _bonett(values: Floats, squares: Floats, confidence: float) -> Floats:
     """Return the ends of the interval of the variance, over its estimate."""
     n = len(values)
-    z = normal(0.5 + confidence / 2)
+    z = normal(upper_probability(confidence))
     middle = _trimmed_mean(values, 1 / (2 * np.sqrt(n - 4)))
     kurtosis = n * np.sum((values - middle) ** 4) / squares.sum() ** 2
     c = n / (n - z)

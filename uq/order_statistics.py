@@ -11,7 +11,7 @@ from uq.intervals import (
     Replicates,
     by_replicate,
     scattered_share_interval,
-    upper_tail,
+    upper_probability,
 )
 from uq.quantile_functions import binomial, binomial_exceeded, negative_binomial
 
@@ -91,7 +91,7 @@ def quantile_interval(
     if n == 0:
         return UNKNOWN
     if replicate is None:
-        tail = 1 - upper_tail(confidence)
+        tail = 1 - upper_probability(confidence)
         return (
             order_statistic(values, binomial(tail, n, probability)),
             order_statistic(values, binomial_exceeded(tail, n, probability) + 1),
@@ -114,12 +114,6 @@ def order_statistic(values: Floats, rank: int) -> float:
     if not 1 <= rank <= len(values):
         return np.nan
     return float(np.partition(values, rank - 1)[rank - 1])
-
-
-def mean_ranks(values: Floats) -> Floats:
-    """Return ranks from 1, shape (n,); equal values share the mean of theirs."""
-    _, place, counts = np.unique(values, return_inverse=True, return_counts=True)
-    return (np.cumsum(counts) - (counts - 1) / 2)[place]
 
 
 def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: float) -> Ends:

@@ -94,11 +94,11 @@ def brief(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
     """
     value, low, high = estimate.numbers
     if not (isfinite(value) and estimate.has_interval and high > low):
-        told = f"{value / per:.3g}" if isfinite(value) else known(estimate, per=per)
-        return told, interval(estimate, per)
+        text = f"{value / per:.3g}" if isfinite(value) else known(estimate, per=per)
+        return text, interval(estimate, per)
     decimals = -floor(log10((high - low) / per / 3))
-    told, *ends = (_rounded(one / per, decimals) for one in estimate.numbers)
-    return told, " to ".join(ends)
+    text, *ends = (_rounded(one / per, decimals) for one in estimate.numbers)
+    return text, " to ".join(ends)
 
 
 def _rounded(value: float, decimals: int) -> str:
@@ -116,13 +116,13 @@ def percent(share: float) -> str:
 
 def percent_with_interval(estimate: Estimate, failed: Estimate | None = None) -> str:
     """Return a share in per cent, with its interval and the bounds with failed rows, if any."""
-    told = percent(estimate.value)
+    text = percent(estimate.value)
     if not estimate.has_interval:
-        return told
+        return text
     worst = ""
     if failed is not None and failed.has_interval:
         worst = f"; with failed rows {percent_interval(failed.low, failed.high)}"
-    return f"{told} (95 % interval {percent_interval(estimate.low, estimate.high)}{worst})"
+    return f"{text} (95 % interval {percent_interval(estimate.low, estimate.high)}{worst})"
 
 
 def percent_interval(low: float, high: float) -> str:

@@ -3,6 +3,7 @@
 Reading order; a module imports only those above it:
 
     propagator      the interface of everything that advances machines in time
+    environment     the instruction set for which kernels are compiled
     cache           where compiled code is kept
     jit             how kernels are compiled
     fma             fused multiply-add where the source says so
@@ -24,3 +25,7 @@ Reading order; a module imports only those above it:
     newton          damped Newton's method
     continuation    branches of solutions, through folds
 """
+
+from models.numerics.environment import prepare
+
+prepare()  # numba, which the modules import, reads it only once

@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics.jit import lean
+
 LANES = 16
 
 
@@ -35,3 +37,13 @@ def aligned(size: int) -> NDArray[np.float64]:
     raw = np.zeros(size + 8)
     skip = (-raw.ctypes.data // 8) % 8
     return raw[skip : skip + size]
+
+
+@lean
+def copy(source, into):
+    """Copy numbers to the start of an array, in a kernel.
+
+    A slice would do, but compiling what it says of arrays that do not fit takes five seconds.
+    """
+    for i in range(len(source)):
+        into[i] = source[i]

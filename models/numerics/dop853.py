@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from models.numerics.blocks import copy
 from models.numerics.dop853_step import ALL_STAGES, POWER, STAGES, interpolate, stepper
 from models.numerics.jit import kernel
 
@@ -154,7 +155,7 @@ def integrator(
         sampled = steps = 0
         status, which = OUT_OF_BUDGET, -1
         while sampled < len(times) and times[sampled] <= t:
-            samples[sampled] = y
+            copy(y, samples[sampled])
             sampled += 1
         rhs(t, y, p, k[0])
         guards(t, y, p, before)
@@ -211,8 +212,8 @@ def integrator(
                 if which >= 0:
                     break
                 left = right
-                before[:] = after
-            before[:] = after
+                copy(after, before)
+            copy(after, before)
 
             if which >= 0:
                 reached = t + leave * h
@@ -222,12 +223,12 @@ def integrator(
             if which >= 0:
                 interpolate(leave, y, dense, trial)
                 t = reached
-                y[:] = trial
+                copy(trial, y)
                 status = GUARDED
                 break
             t = reached
-            y[:] = new
-            k[0] = k[STAGES]
+            copy(new, y)
+            copy(k[STAGES], k[0])
         if status == OUT_OF_BUDGET and t >= end:
             status = REACHED_END
         return Outcome(status, t, which, step, steps, sampled)

@@ -9,41 +9,18 @@ before, nor on the vector width, nor on the caller.
 
 import inspect
 import itertools
-import os
 import secrets
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
+import numba
+from numba.core.bytecode import FunctionIdentity
+from numba.core.targetconfig import TargetConfig
+
 from models.numerics.cache import folder_of
-
-
-def _ask_for_full_width_vectors() -> None:
-    """Let LLVM use 512-bit vectors, before numba reads its environment.
-
-    LLVM prefers 256-bit vectors on CPUs that have both; with 512 bits our kernels are up to 1.8
-    times as fast. The target is kept in the environment, so that worker processes compile alike.
-    """
-    if "NUMBA_CPU_FEATURES" in os.environ or "NUMBA_CPU_NAME" in os.environ:
-        return
-    from llvmlite import binding
-
-    features: Any = binding.get_host_cpu_features()
-    flat = features.flatten()
-    if features.get("avx512f") and "numba" not in sys.modules:
-        flat += ",-prefer-256-bit"
-    os.environ["NUMBA_CPU_NAME"] = binding.get_host_cpu_name()
-    os.environ["NUMBA_CPU_FEATURES"] = flat
-
-
-_ask_for_full_width_vectors()
-os.environ.setdefault("NUMBA_DISABLE_INTEL_SVML", "1")  # where installed, its last bits differ
-
-import numba  # noqa: E402  (reads the environment set above)
-from numba.core.bytecode import FunctionIdentity  # noqa: E402
 
 
 def _name_functions_apart() -> None:
@@ -56,7 +33,27 @@ def _name_functions_apart() -> None:
     FunctionIdentity._unique_ids = itertools.count(secrets.randbits(64) << 32)
 
 
+def _compare_options_quickly() -> None:
+    """Prevent numba from spending a tenth of its time on comparing the options of kernels.
+
+    Each operator of a source is looked up under the options of its kernel, thirty properties, which
+    numba reads one by one.
+    """
+
+    @cache
+    def defaults(kind: Any) -> dict[str, Any]:
+        return {name: option.default for name, option in kind.options.items()}
+
+    def values(self: Any) -> dict[str, Any]:
+        kind: Any = type(self)
+        return defaults(kind) | self._values
+
+    patched: Any = TargetConfig
+    patched.values = values
+
+
 _name_functions_apart()
+_compare_options_quickly()
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -100,6 +97,7 @@ def inlined(function: Function) -> Function:
 
 
 def _compiled(function: Function, inline: Literal["never", "always"], **more: bool) -> Function:
+    more |= {"no_cfunc_wrapper": True}  # nobody calls a kernel from C
     decorate: Any = partial(numba.njit, nogil=True, error_model="numpy", inline=inline, **more)
     typed_in = not Path(inspect.getfile(function)).is_file()  # an edit would go unnoticed
     folder = None if typed_in else folder_of(function)

@@ -6,6 +6,7 @@ Compiled here, results have the same bits everywhere, which no LAPACK guarantees
 import numpy as np
 from numpy.typing import NDArray
 
+from models.numerics.blocks import copy
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
 
@@ -131,7 +132,8 @@ def _invert(matrix, out, rows, pivots):
     """Invert in place by Gauss-Jordan elimination with partial pivoting."""
     n, k, _ = matrix.shape
     for system in range(n):
-        rows[:, :k] = matrix[system]
+        for i in range(k):
+            copy(matrix[system, i], rows[i])
         for c in range(k):
             pivot = c
             for i in range(c + 1, k):
@@ -151,7 +153,8 @@ def _invert(matrix, out, rows, pivots):
                     rows[i, c] = 0.0
                     for j in range(rows.shape[1]):
                         rows[i, j] = fma(-factor, rows[c, j], rows[i, j])
-        out[system] = rows[:, :k]
+        for i in range(k):
+            copy(rows[i, :k], out[system, i])
         for c in range(k - 1, -1, -1):  # row exchanges become column exchanges of the inverse
             for i in range(k if pivots[c] != c else 0):
                 out[system, i, c], out[system, i, pivots[c]] = (

@@ -8,10 +8,10 @@ conjugate pair, or several multipliers of equal modulus, need no special treatme
 import numpy as np
 from numpy.typing import NDArray
 
-from models.numerics.blocks import aligned
+from models.numerics.blocks import aligned, copy
 from models.numerics.elementary import exp
 from models.numerics.fma import fma
-from models.numerics.jit import kernel
+from models.numerics.jit import kernel, lean
 
 Array = NDArray[np.float64]
 
@@ -37,9 +37,8 @@ def largest_multiplier(flow: Array) -> Array:
     n, k, _ = flow.shape
     width = -(-k // _VECTOR) * _VECTOR
     small, scale = np.zeros((n, _DIRECTIONS, _DIRECTIONS)), np.zeros(n)
-    _raise_to_power(
-        np.ascontiguousarray(flow), small, scale, aligned((2 * k + 1 + _DIRECTIONS) * width)
-    )
+    room = aligned((2 * k + 1 + _DIRECTIONS) * width).reshape(-1, width)
+    _raise_to_power(np.ascontiguousarray(flow), small, scale, room)
     largest = (log_radius(small) + scale) / 2**_DOUBLINGS
     rest = np.flatnonzero(np.isnan(scale) & np.isfinite(flow).all(axis=(1, 2)))
     largest[rest] = log_radius(flow[rest])
@@ -64,40 +63,41 @@ def log_radius(matrix: Array) -> Array:
     n, k, _ = matrix.shape
     out = np.empty(n)
     _take_logarithms(np.ascontiguousarray(matrix), out, np.empty((k, k)), np.empty((k, k)))
+    out[~np.isfinite(matrix).all(axis=(1, 2))] = np.nan
     return out
 
 
 @kernel
 def _take_logarithms(matrix, out, power, square):
     for row in range(len(out)):
-        power[:] = matrix[row]
-        total, weight = 0.0, 1.0
+        _copy_rows(matrix[row], power)
+        total, weight, largest = 0.0, 1.0, 0.0
         for _ in range(_SQUARINGS):
             total += weight * _square(power, square)
             weight *= 0.5
-            power[:] = square
-        out[row] = total if power.any() else -np.inf
-        if not np.isfinite(matrix[row]).all():
-            out[row] = np.nan
+            _copy_rows(square, power)
+        for i in range(len(power)):
+            for j in range(len(power)):
+                largest = max(largest, abs(power[i, j]))
+        out[row] = total if largest > 0 else -np.inf
 
 
 @kernel
-def _raise_to_power(flow, small, scale, room):
+def _raise_to_power(flow, small, scale, rows):
     """Set each small matrix, times exp(scale), to the power of the map on the directions it keeps.
 
     The scale is NaN if these are too many.
     """
     n, k, _ = flow.shape
-    width = room.size // (2 * k + 1 + _DIRECTIONS)
-    rows = room.reshape(-1, width)
     power, square, part, basis = rows[:k], rows[k : 2 * k], rows[2 * k], rows[2 * k + 1 :]
     for row in range(n):
-        power[:] = 0.0
-        power[:, :k] = flow[row]
+        for j in range(k):
+            power[j] = 0.0
+            copy(flow[row, j], power[j])
         log_scale = 0.0
         for _ in range(_DOUBLINGS):
             log_scale = 2 * (log_scale + _square(power, square))
-            power[:] = square
+            _copy_rows(square, power)
         rank = _span(power, basis, part)
         for s in range(max(rank, 0)):
             for j in range(k):
@@ -109,7 +109,13 @@ def _raise_to_power(flow, small, scale, room):
         scale[row] = log_scale if rank >= 0 else np.nan
 
 
-@kernel
+@lean
+def _copy_rows(source, into):
+    for row in range(len(source)):
+        copy(source[row], into[row])
+
+
+@lean
 def _square(power, square):
     """Square a matrix divided by its largest entry; return the logarithm of that entry."""
     k, width = power.shape
@@ -131,7 +137,7 @@ def _square(power, square):
     return -np.log(inverse)
 
 
-@kernel
+@lean
 def _span(columns, basis, part):
     """Set `basis` to orthonormal rows that span the columns; return how many, -1 if too many."""
     k, width = columns.shape

@@ -10,7 +10,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from models.numerics.jit import kernel
+from models.numerics.blocks import copy
+from models.numerics.jit import kernel, lean
 
 Array = NDArray[np.float64]
 
@@ -43,13 +44,14 @@ def eigenvalues(matrix: Array, row: Array) -> tuple[Array, Array]:
 def _solve(matrix, row, values, products, work, room):
     off, v, p = room
     for n in range(matrix.shape[0]):
-        work[:] = matrix[n]
-        products[n] = row
+        for i in range(len(work)):
+            copy(matrix[n, i], work[i])
+        copy(row, products[n])
         _tridiagonalise(work, products[n], values[n], off, v, p)
         _diagonalise(values[n], off, products[n])
 
 
-@kernel
+@lean
 def _tridiagonalise(a, row, diagonal, off, v, p):
     """Reflect column by column until only two diagonals are left; reflect the row, too."""
     k = len(diagonal)
@@ -92,7 +94,7 @@ def _tridiagonalise(a, row, diagonal, off, v, p):
         diagonal[i] = a[i, i]
 
 
-@kernel
+@lean
 def _diagonalise(d, e, row):
     """Turn the diagonal d into eigenvalues until nothing is left beside it; rotate the row."""
     k = len(d)
@@ -106,7 +108,7 @@ def _diagonalise(d, e, row):
             _step(d, e, row, first, last)
 
 
-@kernel
+@lean
 def _step(d, e, row, first, last):
     """Take one implicit QL step of the block from first to last, with Wilkinson's shift."""
     half = (d[first + 1] - d[first]) / (2 * e[first])

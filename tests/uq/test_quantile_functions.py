@@ -1,4 +1,4 @@
-"""Quantile functions and ranks have the bits of those of scipy.stats."""
+"""Quantile functions have the bits of those of scipy.stats."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,6 @@ from scipy import stats
 from uq import quantile_functions
 from uq.exact_shares import exact_interval
 from uq.moments import _trimmed_mean
-from uq.order_statistics import mean_ranks
 from uq.tails import _distance
 
 TAILS = (0.005, 0.025, 0.05, 0.5, 0.95, 0.975, 0.995)
@@ -42,10 +41,8 @@ def test_intervals_of_few_hits():
     assert np.array_equal(high[:-1], stats.beta.isf(tail, hits[:-1] + 1, rows - hits[:-1]))
 
 
-def test_ranks_means_and_distances():
+def test_means_and_distances():
     values = np.random.default_rng(1).gamma(2, size=333).round(2)
-    assert np.array_equal(mean_ranks(values), stats.rankdata(values))
-    assert np.array_equal(mean_ranks(np.array([2, np.inf, 1, np.inf])), [2, 3.5, 1, 3.5])
     assert _trimmed_mean(values, 0.1) == stats.trim_mean(values, 0.1)
     excess = np.sort(values) + 0.01
     for shape in (-0.05, 0.4):

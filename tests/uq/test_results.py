@@ -18,6 +18,7 @@ from uq.contract import Status
 from uq.errors import InputError
 from uq.exploring.simulation import simulate
 from uq.rows import results
+from uq.rows.elements import elements_of
 from uq.running import runner
 from uq.study.definition import load_study, study_from_text
 
@@ -165,12 +166,12 @@ def test_what_is_not_a_result_is_refused_in_a_sentence(folder, kinds):
 def test_elements_are_named_by_their_coordinates(kinds):
     _, path = kinds
     ds = results.open_result(path)
-    named = dict(results.elements(ds["life"]))
-    assert list(named) == [
+    named = {one.name: one.values for one in elements_of(ds, ["life", "angle"])}
+    assert list(named)[:-1] == [
         f"life[side={side},depth={depth}]" for side in ("left", "right") for depth in (0.5, 1.5)
     ]
     assert np.array_equal(named["life[side=right,depth=0.5]"], ds["life"].values[:, 1, 0])
-    assert [name for name, _ in results.elements(ds["angle"])] == ["angle"]
+    assert list(named)[-1] == "angle"
 
 
 def test_a_row_out_of_budget_failed_only_where_an_output_is_lacking(kinds):

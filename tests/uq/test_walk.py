@@ -23,7 +23,7 @@ from uq.analysis.twin import with_twin
 from uq.cli.estimates import twin_json
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
-from uq.exploring.rare_events import METHODS as RARE
+from uq.exploring.rare_events import ESTIMATORS as RARE
 from uq.exploring.rare_events import rare_event
 from uq.methods.registry import fed_by
 from uq.rows import stopping

@@ -7,18 +7,17 @@ more rows: m - b (c_n - c_M).
 from typing import NamedTuple
 
 import numpy as np
+import scipy  # which imports scipy.stats when it is first used
 
 from uq import intervals
 from uq.contract import Floats, Mask
 from uq.estimate import Estimate
-from uq.order_statistics import mean_ranks
 from uq.quantile_functions import student
 
 FEWEST = 5
 """With fewer hits, or misses, a control does not improve a share."""
 
 _AGAINST = 5  # hits that count against a control
-_UPPER_TAIL = 0.5 + intervals.CONFIDENCE / 2
 
 
 class Controlled(NamedTuple):
@@ -62,7 +61,8 @@ def controlled_mean(values: Floats, kept: Mask, *, controls: Floats, many: Float
     value = float(plain - slope @ (controls.mean(axis=0) - many.mean(axis=0)))
     if n < k + 3 or intervals.is_constant(values[kept]):
         return Controlled(Estimate(float(plain)), 1.0)
-    half = student(_UPPER_TAIL, n - 1 - k) * errors.std(ddof=1 + k) / np.sqrt(n * reduction)
+    wide = student(intervals.upper_probability(), n - 1 - k)
+    half = wide * errors.std(ddof=1 + k) / np.sqrt(n * reduction)
     return Controlled(Estimate(value, value - float(half), value + float(half)), reduction)
 
 
@@ -122,7 +122,7 @@ def _orientation(hits: Mask, control: Floats) -> float:
     """Return 1 where hits go with large values of the control, -1 where with small ones."""
     if hits.all() or not hits.any():
         return 1.0
-    ranks = mean_ranks(control)
+    ranks = scipy.stats.rankdata(control)
     return 1.0 if ranks[hits].mean() >= ranks[~hits].mean() else -1.0
 
 

@@ -75,8 +75,8 @@ def _frame(sides: list[Side]) -> Iterator[Change]:
         for _, study in sides
     ]
     if ranks[0] != ranks[1]:
-        told = (", ".join(one["parameters"]) if one else "none" for one in ranks)
-        yield Change("dependence", "rank correlations", *told)
+        parameters = (", ".join(one["parameters"]) if one else "none" for one in ranks)
+        yield Change("dependence", "rank correlations", *parameters)
 
 
 def _entries(ds: xr.Dataset, study: StudyFile) -> Iterator[tuple[tuple[str, str], Any]]:
@@ -109,8 +109,8 @@ def _stated(ds: xr.Dataset, study: StudyFile, name: str) -> tuple[str, Any]:
         return f"{value!r}{behind}", value
     if isinstance(entry, Tied):
         return f"equals {entry.equals}", entry.equals
-    told = f"{entry.times} times {law(entry)}" if entry.times is not None else law(entry) + behind
-    return told, entry.model_dump(exclude={"source", "file", "column"}, exclude_none=True)
+    stated = law(entry) + behind if entry.times is None else f"{entry.times} times {law(entry)}"
+    return stated, entry.model_dump(exclude={"source", "file", "column"}, exclude_none=True)
 
 
 def only_change(first: xr.Dataset, second: xr.Dataset, found: list[Change]) -> OnlyChange | None:

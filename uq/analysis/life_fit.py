@@ -11,7 +11,7 @@ import numpy as np
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.location_scale import FAMILIES, Family, anderson_darling, fit
 from uq.estimate import Estimate
-from uq.intervals import CONFIDENCE
+from uq.intervals import CONFIDENCE, upper_probability
 from uq.order_statistics import is_within
 from uq.rows.elements import Element, Floats, Mask
 
@@ -193,6 +193,6 @@ def _distance(family: Family, location: Floats, scale: Floats, sample: _Sample) 
 
 def _exponential(value: float, draws: Floats) -> Estimate:
     """Return the exponentials of a value and of the ends of its interval."""
-    low, high = np.quantile(draws, [0.5 - CONFIDENCE / 2, 0.5 + CONFIDENCE / 2])
+    low, high = np.quantile(draws, [1 - upper_probability(), upper_probability()])
     value, low, high = (float(np.exp(logarithm)) for logarithm in (value, low, high))
     return Estimate(value, low, high)

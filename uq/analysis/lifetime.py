@@ -9,7 +9,13 @@ from uq.analysis.failed_rows import outer, with_failed_at
 from uq.analysis.kaplan_meier import Outliving, outliving
 from uq.analysis.survival_band import simultaneous_band
 from uq.exact_shares import are_few, exact_interval
-from uq.intervals import CONFIDENCE, Ends, Replicates, scattered_share_interval
+from uq.intervals import (
+    CONFIDENCE,
+    Ends,
+    Replicates,
+    scattered_share_interval,
+    upper_probability,
+)
 from uq.quantile_functions import normal
 from uq.rows.elements import Element, Floats, independent_rows, lifetimes, replicates_of
 
@@ -181,7 +187,7 @@ def _greenwood(estimate: Outliving) -> Ends:
     share, deviation = estimate.share, np.sqrt(estimate.variance)
     with np.errstate(divide="ignore", invalid="ignore"):
         middle = np.log(-np.log(share))
-        half = normal(0.5 + CONFIDENCE / 2) * deviation / (share * -np.log(share))
+        half = normal(upper_probability()) * deviation / (share * -np.log(share))
         low, high = (np.exp(-np.exp(middle + side * half)) for side in (1, -1))
         worth = share * (1 - share) / estimate.variance
     known, few = (share > 0) & (share < 1), are_few(share, worth, _FEW_ENDS)

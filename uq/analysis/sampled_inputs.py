@@ -4,13 +4,13 @@ from math import inf
 from typing import NamedTuple
 
 import numpy as np
+import scipy  # which imports scipy.stats when it is first used
 import xarray as xr
 
 from uq.designs.registry import DESIGNS
 from uq.indices.independent_inputs import independent_inputs
 from uq.inputs.conditioning import cdf_within, factor_of, ppf_within
 from uq.inputs.law import Law
-from uq.order_statistics import mean_ranks
 from uq.rows.elements import Floats, independent_rows
 from uq.rows.sampling import row_block, rows
 from uq.study.definition import Study
@@ -79,7 +79,7 @@ def sampled_ranks(study: Study) -> Floats:
     """
     values = drawn_inputs(study)
     assert study.dependence is not None
-    return np.corrcoef([mean_ranks(values[name]) for name in study.dependence.parameters])
+    return np.corrcoef([scipy.stats.rankdata(values[name]) for name in study.dependence.parameters])
 
 
 def compare(law: Law, values: Floats) -> SampledInput:

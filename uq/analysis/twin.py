@@ -177,11 +177,11 @@ def _note_on_few(hits: int, rows: int) -> str:
     if rarer >= FEW:
         return ""
     if rarer < FEWEST:
-        told = f"the twin is not used below {FEWEST}; these are the plain rows"
+        consequence = f"the twin is not used below {FEWEST}; these are the plain rows"
     else:
-        told = f"below {FEW} the interval is exact, and conservative"
+        consequence = f"below {FEW} the interval is exact, and conservative"
     seen = f"{hits} of {rows} rows" if hits == rarer else f"all but {rarer} rows"
-    return f"{seen} lie there: {told}"
+    return f"{seen} lie there: {consequence}"
 
 
 def _filled(control: Element) -> Floats:

@@ -12,6 +12,7 @@ import xarray as xr
 
 from uq.designs.registry import DESIGNS
 from uq.indices.targets import lightened, number_of
+from uq.intervals import upper_probability
 from uq.methods.method import Method
 from uq.methods.registry import METHODS, piloted_by
 from uq.methods.sample import Sample
@@ -30,7 +31,6 @@ from uq.rows.elements import (
 from uq.tails import lacks_variance
 
 _ENOUGH_ROWS = 8
-_LEVEL = 0.975
 
 
 @dataclass(frozen=True)
@@ -103,8 +103,8 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
 def _factor(independent: bool, replicates: int) -> float | None:
     """Return half the width of an interval in standard errors."""
     if independent:
-        return float(normal(_LEVEL))
-    return student(_LEVEL, replicates - 1) if replicates > 1 else None
+        return float(normal(upper_probability()))
+    return student(upper_probability(), replicates - 1) if replicates > 1 else None
 
 
 def _mean(element: Element, rows: int, factor: float) -> float | None:

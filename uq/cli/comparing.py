@@ -13,7 +13,7 @@ from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.wording import estimated, interval, known, number, unit_of
 
-_TOLD = 6
+_MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
 
 
@@ -23,10 +23,10 @@ def compare(first: Path, second: Path, json: bool) -> None:
     if not json:
         _show(found, first, second)
         return
-    said = comparison_json(found)
+    document = comparison_json(found)
     for key, path in (("a", first), ("b", second)):
-        said[key] = {"file": str(path)} | said[key]
-    print_json(said)
+        document[key] = {"file": str(path)} | document[key]
+    print_json(document)
 
 
 def _show(found: Comparison, first: Path, second: Path) -> None:
@@ -100,11 +100,11 @@ def bought(found: Comparison) -> list[str]:
         return []
     unit = "" if only.units == "1" else f" {only.units}"
     first, second = only.first, only.second
-    told = f"sd {number(first.sd)} to {number(second.sd)}{unit}"
+    change = f"sd {number(first.sd)} to {number(second.sd)}{unit}"
     if abs(second.mean - first.mean) > 0.1 * max(first.sd, second.sd):
-        told += f", mean {number(first.mean)} to {number(second.mean)}{unit}"
-    sentences = [f"Only {only.name} differs ({told})."]
-    for name, output in list(found.outputs.items())[:_TOLD]:
+        change += f", mean {number(first.mean)} to {number(second.mean)}{unit}"
+    sentences = [f"Only {only.name} differs ({change})."]
+    for name, output in list(found.outputs.items())[:_MOST_OUTPUTS]:
         for one in output.statistics:
             if one.ratio is not None and isfinite(one.ratio.value):
                 sentences.append(_times(f"{one.first.label} of {name}", one.ratio))

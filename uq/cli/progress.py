@@ -105,11 +105,11 @@ def _moving() -> Iterator[Report]:
 
 def sentence(progress: Progress, pace: float) -> str:
     """Return the progress of a run at a pace in rows per second; 0 if that is unknown."""
-    said = f"{progress.done} of {progress.total} rows, "
+    text = f"{progress.done} of {progress.total} rows, "
     if pace:
         left = (progress.total - progress.done) / pace
-        said += f"{pace:.3g} rows/s, {_clock(left)} left, "
-    return f"{said}{progress.failed} failed"
+        text += f"{pace:.3g} rows/s, {_clock(left)} left, "
+    return f"{text}{progress.failed} failed"
 
 
 def details(progress: Progress) -> list[str]:
@@ -119,8 +119,8 @@ def details(progress: Progress) -> list[str]:
         lines.append(", ".join(lost))
     if progress.median is not None:
         name, median = progress.median
-        told = duration(median) or f"{number(median)} s"
-        lines.append(f"median {name}: {'most rows never end' if isinf(median) else told}")
+        text = duration(median) or f"{number(median)} s"
+        lines.append(f"median {name}: {'most rows never end' if isinf(median) else text}")
     if progress.shares:
         lines.append(", ".join(f"{name} {share:.0%}" for name, share in progress.shares.items()))
     return lines

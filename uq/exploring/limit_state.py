@@ -5,7 +5,6 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
@@ -13,8 +12,8 @@ from uq.contract import Floats, Output, Status
 from uq.errors import InputError, nearest
 from uq.inputs.values import unknown_name
 from uq.rows.columns import censored_name
+from uq.rows.element import places
 from uq.rows.evaluate import Chunk
-from uq.rows.results import elements
 from uq.rows.sampling import Rows, physical, row_seeds
 from uq.rows.workload import Workload
 from uq.running.dispatch import Dispatcher
@@ -51,7 +50,7 @@ def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Eva
         def evaluator(x: Floats, seed: NDArray[np.uint64]) -> Chunk:
             batch = work._replace(total=len(x), block=Rows.without_design(x, seed).part)
             store = MemoryStore(batch)
-            executor.finish(Dispatcher(batch, options, store, executor.evaluate))
+            executor.finish(Dispatcher(batch, options, store))
             return store.chunk()
 
         yield evaluator
@@ -164,12 +163,8 @@ def find_element(study: Study, name: str) -> tuple[Output, int]:
     if declared.is_category:
         raise InputError(f"'{output}' is a category: it has shares, not thresholds")
     coordinates = model.coordinates(study.settings)
-    axes = {dim: list(coordinates[dim]) for dim in declared.dims}
-    shape = tuple(map(len, axes.values()))
-    place = np.arange(np.prod(shape, dtype=int)).reshape(shape)
-    numbered = xr.DataArray(place, axes, declared.dims, name=output)
-    places = {label: int(number) for label, number in elements(numbered)}
-    if name not in places:
-        choice = f"; choose one, such as '{next(iter(places))}'" if name == output else ""
-        raise InputError(f"'{name}': no such element{choice or nearest(name, places)}")
-    return declared, places[name]
+    labels = [label for label, *_ in places(output, {d: coordinates[d] for d in declared.dims})]
+    if name not in labels:
+        choice = f"; choose one, such as '{labels[0]}'" if name == output else ""
+        raise InputError(f"'{name}': no such element{choice or nearest(name, labels)}")
+    return declared, labels.index(name)

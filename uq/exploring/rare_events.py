@@ -101,7 +101,9 @@ def rare_event(
     options = RunOptions(workers, scheduler)
     with evaluator_of(study, output.partition("[")[0], options) as evaluator:
         margin = LimitState(study, output, threshold, below, evaluator)
-        estimates, interval, failed_high, variables = METHODS[method](margin, samples, generators)
+        estimates, interval, failed_high, variables = ESTIMATORS[method](
+            margin, samples, generators
+        )
     low, high = map(float, interval)
     ds = xr.Dataset(
         {
@@ -177,14 +179,14 @@ def _importance(margin: LimitState, samples: int, generators: _Generators) -> _O
     return estimates, interval, float(failed_high), variables
 
 
-METHODS = {"subset": _subset, "importance": _importance}
+ESTIMATORS = {"subset": _subset, "importance": _importance}
 
 
 def _check(threshold: float, method: str, samples: int, replicates: int) -> None:
-    allowed = f"no such method{nearest(method, METHODS)} ({', '.join(METHODS)})"
+    allowed = f"no such method{nearest(method, ESTIMATORS)} ({', '.join(ESTIMATORS)})"
     demands = {
         f"threshold must be finite: {threshold!r}": isfinite(threshold),
-        f"method '{method}': {allowed}": method in METHODS,
+        f"method '{method}': {allowed}": method in ESTIMATORS,
         f"samples must be at least {_FEWEST}: {samples}": samples >= _FEWEST,
         f"replicates must be at least 1: {replicates}": replicates >= 1,
     }

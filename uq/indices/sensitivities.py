@@ -157,8 +157,8 @@ def _indices(
         found = method.indices(sample)
     except RefusedError as refusal:
         return TargetIndices(target.name, *counts, refused=str(refusal))
-    said = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
-    return TargetIndices(target.name, *counts, replace(found, notes=said))
+    combined = (*target.notes, *few, *filter(None, [caution]), *found.notes, *notes)
+    return TargetIndices(target.name, *counts, replace(found, notes=combined))
 
 
 def few_hits(ds: xr.Dataset, target: Target) -> tuple[str, ...]:

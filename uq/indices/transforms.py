@@ -7,8 +7,8 @@ about these rows.
 from typing import NamedTuple
 
 import numpy as np
+import scipy  # which imports scipy.stats when it is first used
 
-from uq.order_statistics import mean_ranks
 from uq.rows.elements import Element, Floats
 from uq.tails import heavier_tail
 from uq.wording import percent
@@ -83,9 +83,9 @@ def logarithm(element: Element) -> Transformed:
         "are censored": int(element.censored.sum()),
         "are not positive": int((element.values <= 0).sum()),
     }
-    told = [f"{count} {what}" for what, count in counts.items() if count]
-    if told:
-        rows = f"of {int(element.present.sum())} rows {' and '.join(told)}"
+    excluded = [f"{count} {what}" for what, count in counts.items() if count]
+    if excluded:
+        rows = f"of {int(element.present.sum())} rows {' and '.join(excluded)}"
         return Transformed(nothing, f"{rows}: no logarithm; ask for rank({element.name})")
     return Transformed(np.log(element.values))
 
@@ -122,7 +122,7 @@ def rank(element: Element) -> Transformed:
         )
     ranks = np.full(len(values), np.nan)
     known = np.where(beyond, np.inf, values)[present]
-    ranks[present] = (mean_ranks(known) - 0.5) / max(len(known), 1)
+    ranks[present] = (scipy.stats.rankdata(known) - 0.5) / max(len(known), 1)
     return Transformed(ranks)
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from uq.estimate import Estimate
-from uq.intervals import CONFIDENCE, scatter_interval, upper_tail
+from uq.intervals import scatter_interval, upper_probability
 from uq.methods.indices import IndexKind
 from uq.methods.sample import Floats
 from uq.quantile_functions import student
@@ -106,7 +106,7 @@ def one_more_row(deviations: Floats, groups: int, replicates: int) -> float:
     enough = min(ENOUGH_ROWS * replicates, ENOUGH_SHARE * len(deviations))
     if replicates < 2 or effective_rows(deviations) >= enough:
         return 0.0
-    wide = student(upper_tail(CONFIDENCE), replicates - 1)
+    wide = student(upper_probability(), replicates - 1)
     return float(wide * (deviations**2).max() / groups)
 
 

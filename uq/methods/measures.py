@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from uq.contract import Floats, Mask
 from uq.methods.indices import RefusedError
 from uq.methods.slices import MOST_CATEGORIES, by_slices, even_cuts
-from uq.order_statistics import mean_ranks
 from uq.quantile_functions import normal
 
 MIN_SIDE = 10
@@ -79,7 +78,7 @@ def delta(x: Floats, y: Floats) -> Floats:
         raise RefusedError(
             f"{counts.max()} rows share one value, and delta compares densities; use pawn"
         )
-    scores = normal((mean_ranks(y) - 0.5) / n)
+    scores = normal((scipy.stats.rankdata(y) - 0.5) / n)
     grid = np.linspace(scores.min(), scores.max(), _GRID)
     anywhere = _density(scores, grid)
     # As many as SALib's: section 5 of the paper.

@@ -75,6 +75,6 @@ def cell(one: Statistic, per: float = 1.0) -> Cell:
 def without_empty_columns(table: Table) -> Table:
     """Return a table without its empty columns; the first column stays."""
     first, *others = zip(table.header, *table.rows, strict=True)
-    said = (one for one in others if any(cell.text not in ("", "-") for cell in one[1:]))
-    header, *rows = zip(first, *said, strict=True)
+    filled = (one for one in others if any(cell.text not in ("", "-") for cell in one[1:]))
+    header, *rows = zip(first, *filled, strict=True)
     return table._replace(header=header, rows=rows)

@@ -94,6 +94,29 @@ class Element:
         return np.where(self.censored, np.inf, self.values)[self.present]
 
 
+def places(
+    output: str, coordinates: Mapping[str, Any]
+) -> Iterator[tuple[str, tuple[int, ...], dict[str, Any]]]:
+    """Yield name, index and coordinates of each element of an output, in order.
+
+    Parameters
+    ----------
+    output : str
+    coordinates : dict of str to array
+        Of each dimension, in order.
+
+    Yields
+    ------
+    tuple
+        Coordinates in names are written like Python's repr, without quotes.
+    """
+    axes = {dim: np.asarray(axis) for dim, axis in coordinates.items()}
+    for index in np.ndindex(*map(len, axes.values())):
+        place = {dim: axes[dim][i].item() for dim, i in zip(axes, index, strict=True)}
+        label = ",".join(f"{dim}={value}" for dim, value in place.items())
+        yield f"{output}[{label}]" if label else output, index, place
+
+
 def elements_in(
     name: str,
     declared: Output,
@@ -121,21 +144,15 @@ def elements_in(
     Yields
     ------
     Element
-        Coordinates in names are written like Python's repr, without quotes.
     """
-    axes = [np.asarray(coordinates[dim]) for dim in declared.dims]
-    for index in np.ndindex(*map(len, axes)):
-        place = {
-            dim: axis[i].item() for dim, axis, i in zip(declared.dims, axes, index, strict=True)
-        }
-        label = ",".join(f"{dim}={value}" for dim, value in place.items())
+    for label, index, place in places(name, {dim: coordinates[dim] for dim in declared.dims}):
         column = np.asarray(values[(slice(None), *index)])
         absent = declared.is_absent(column)
         cut = np.zeros(len(column), dtype=bool)
         if censored is not None:
             cut = np.asarray(censored[(slice(None), *index)]).astype(bool) & ~absent
         yield Element(
-            f"{name}[{label}]" if label else name,
+            label,
             name,
             declared,
             place,

@@ -8,7 +8,7 @@ clock, the host, chunks or workers.
 """
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -124,26 +124,6 @@ def build_rows(
     return xr.Dataset(inputs | outputs, coordinates(model, settings), attrs)
 
 
-def elements(variable: xr.DataArray) -> Iterator[tuple[str, xr.DataArray]]:
-    """Yield name and values of each element of an output: ``work_rate[site=left]``.
-
-    Parameters
-    ----------
-    variable : xarray.DataArray
-        With or without the dimension ``sample``.
-
-    Yields
-    ------
-    tuple of str and xarray.DataArray
-        Coordinates are written like Python's repr, without quotes.
-    """
-    dims = [str(dim) for dim in variable.dims if dim != "sample"]
-    for index in np.ndindex(*(variable.sizes[dim] for dim in dims)):
-        place = dict(zip(dims, index, strict=True))
-        label = ",".join(f"{dim}={variable[dim].values[i].item()}" for dim, i in place.items())
-        yield f"{variable.name}[{label}]" if label else str(variable.name), variable.isel(place)
-
-
 def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") -> xr.Dataset:
     """Open a result and check its schema.
 
@@ -191,7 +171,7 @@ def open_result(path: str | Path, remedy: str = "'uq run STUDY' makes results") 
 
 def _opened(path: Path) -> xr.Dataset:
     try:
-        # Not cached: of a large result, what has been read is not kept in memory.
+        # No cache: a large result, read on use, does not come to be in memory bit by bit.
         ds = xr.open_dataset(path, engine="netcdf4", decode_timedelta=False, cache=False)
         if ds.nbytes > _INFLATED_BYTES + _INFLATION * path.stat().st_size:
             ds.close()

@@ -126,9 +126,15 @@ class Isolated:
                 break
         return lost_rows(*self.spec.load(), 1, cast(Fault, outcome), start)
 
+    def stop(self) -> None:
+        """Have the process end, from any thread: whoever waits for its rows gets a `RunError`."""
+        self._closed.set()
+        if process := self._process:
+            process.kill()
+
     def close(self) -> None:
         """End the process, whatever it is doing."""
-        self._closed.set()
+        self.stop()
         self._end(at_once=True)
 
     def _ask(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk | Fault:
@@ -189,6 +195,8 @@ class Isolated:
                     env=inherited(),
                 )
             self._connection = connection
+            if self._closed.is_set():  # just now: `stop` may have come too early to see it
+                self._process.kill()
             try:
                 connection.send(self.spec)
                 kind, value = connection.recv()

@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy import special
 
+from uq.intervals import upper_probability
+from uq.quantile_functions import student
 from uq.rows import results
 from uq.rows.evaluate import Chunk, joined
 from uq.rows.sampling import Rows
@@ -31,10 +32,10 @@ PILOT_SECONDS = 8.0
 _FILE_BYTES = 30_000  # names, units, the study
 _CHUNKS_AT_LEAST = 2  # per process
 _GOLDEN = (5**0.5 - 1) / 2
-# The overhead of a run, as a multiple of the time that loading its packages takes: both grow
-# together on a busy computer.
+# The overhead of a run and that of more processes, as multiples of the time that loading its
+# packages takes: both grow together on a busy computer.
 _RUN_LOADS = 1.5
-_WORKERS_LOADS = 2.0
+_MORE_LOADS = 0.5
 
 
 class Cost(NamedTuple):
@@ -96,7 +97,7 @@ def pilot(
             stack.enter_context(isolated(workload, None, compiling)) for _ in range(count)
         ]
         load_seconds = _load_seconds()
-        row_seconds, first_seconds = _warm_up(workload, evaluators)
+        row_seconds = _warm_up(workload, evaluators)
         size = ChunkSizes(workload).good(row_seconds)
         done, chunks = _spread_chunks(workload, evaluators, size)
     some, found, seconds = zip(*done, strict=True)
@@ -111,8 +112,8 @@ def pilot(
     if in_one_process(workers, alone):
         count = 1
     beside = _RUN_LOADS * load_seconds
-    if workers or count > 1:
-        beside += _WORKERS_LOADS * load_seconds + first_seconds
+    if count > 1:
+        beside += _MORE_LOADS * load_seconds
     shares = 1.0, max(0.0, 1 - error), 1 + error
     likely, low, high = (alone / count * share + beside for share in shares)
     times = row_seconds, likely, low, high
@@ -139,11 +140,10 @@ def _timed(
     return rows, chunk, time.perf_counter() - began
 
 
-def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> tuple[float, float]:
+def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> float:
     """Compile the model in one process, and load it in the others.
 
-    Then one process computes growing chunks, as a run does before it starts workers: return the
-    time of a row, and of all those rows.
+    Then one process computes growing chunks, as at the start of a run: return the time of a row.
     """
     sizes = ChunkSizes(workload)
     size, seconds = min(workload.total, sizes.first), 0.0
@@ -154,7 +154,7 @@ def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> tuple[float,
         seconds += last
         grown = min(sizes.following(size, last / size), workload.total)
         if seconds > CHUNK_SECONDS or grown <= size:
-            return last / size, seconds
+            return last / size
         size = grown
 
 
@@ -198,4 +198,4 @@ def _row_cost(seconds: Sequence[float], rows: Sequence[int], chunks: int) -> tup
         return mean, 0.0
     each = np.divide(seconds, rows)
     deviation = each.std(ddof=1) / np.sqrt(m) * np.sqrt(1 - m / chunks)
-    return mean, float(special.stdtrit(m - 1, 0.975) * deviation / mean)
+    return mean, float(student(upper_probability(), m - 1) * deviation / mean)

@@ -11,7 +11,7 @@ from models.numerics.jit import inlined
 P, X1, X2 = range(3)
 SHARED = 4
 CLOCK = -1
-UNROLL = 4
+UNROLL = 2
 """Modes in the straight-line body of an inner loop."""
 
 

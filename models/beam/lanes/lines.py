@@ -9,6 +9,7 @@ restarted from the exact phase in each period. At the end of an epoch the steady
 the modes take the opposite jump, so that the motion of the beam is continuous.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -45,8 +46,6 @@ class Lines(NamedTuple):
     slots : ndarray, shape (COUNT * 8 * LANES,)
         u, e, 4 sin^2(delta/2), a, sin(delta/2), cos(delta/2), turns per period, and the turn at the
         start of the epoch, of each line.
-    total : ndarray, shape (steps * LANES,)
-        Their sum at each step of a period, and a few steps more.
     drawn : ndarray, shape (COUNT, 3)
         The lines of one lane.
     modes : ndarray, shape (2, all modes)
@@ -54,22 +53,20 @@ class Lines(NamedTuple):
     """
 
     slots: Array
-    total: Array
     drawn: Array
     modes: Array
 
     @staticmethod
-    def room(is_random: bool, steps: int, modes: int) -> "Lines":
+    def room(is_random: bool, modes: int) -> "Lines":
         """Return room for the lines of a block, or none."""
         if not is_random:
-            return Lines(aligned(0), aligned(0), np.empty((0, 3)), np.empty((2, 0)))
-        padded = -(-steps // _STEPS) * _STEPS
-        return Lines(
-            aligned(COUNT * _LINE * LANES),
-            aligned(padded * LANES),
-            np.empty((COUNT, 3)),
-            np.empty((2, modes)),
-        )
+            return Lines(np.empty(0), np.empty((0, 3)), np.empty((2, 0)))
+        return Lines(aligned(COUNT * _LINE * LANES), np.empty((COUNT, 3)), np.empty((2, modes)))
+
+
+def in_fours(steps: int) -> int:
+    """Return this number of steps, rounded up to a multiple of those summed at a time."""
+    return -(-steps // _STEPS) * _STEPS
 
 
 @kernel
@@ -94,18 +91,18 @@ def draw_lines(load, state, first, steps, lines):
 
 @kernel
 def _draw_lane(load, n, epoch, steps, lines, lane):
-    slots, _, drawn, _ = lines
+    slots, drawn, _ = lines
     frequency, decay, mobility = load.oscillators[n]
     draw(load.load[n], epoch, drawn)
     respond(drawn, load.forcing[n], frequency, decay, mobility)
     for j in range(COUNT):
         k = j * _LINE * LANES + lane
         half = np.pi * drawn[j, SPEED] / steps
-        sine = np.sin(half)
+        sine = math.sin(half)
         slots[k + _SLOW * LANES] = 4 * sine * sine
         slots[k + _SIZE * LANES] = drawn[j, AMPLITUDE]
         slots[k + _SINE * LANES] = sine
-        slots[k + _COSINE * LANES] = np.cos(half)
+        slots[k + _COSINE * LANES] = math.cos(half)
         slots[k + _SPEED * LANES] = drawn[j, SPEED]
         slots[k + _TURN * LANES] = drawn[j, TURN]
 
@@ -141,9 +138,9 @@ def redraw_lines(load, state, first, period, steps, lines, w, stride):
 
 
 @kernel
-def sum_lines(load, state, first, period, lines):
-    """Sum the lines at each step of a period of the call."""
-    slots, total, _, _ = lines
+def add_lines(load, state, first, period, lines, drive):
+    """Add the lines to the tip's motion without contact at each step of a period of the call."""
+    slots, _, _ = lines
     last = state.shape[0] - 1
     since = np.empty(LANES)
     for lane in range(LANES):
@@ -161,11 +158,10 @@ def sum_lines(load, state, first, period, lines):
             )
             slots[k] = a * c
             slots[k + LANES] = -2 * a * sine * fma(s, cosine, c * sine)
-    total[:] = 0.0
     for j in range(0, COUNT, 4):
         four = slots[j * _LINE * LANES : (j + 4) * _LINE * LANES]
-        for at in range(0, total.size, _STEPS * LANES):
-            _turn_four(four, total[at : at + _STEPS * LANES])
+        for at in range(0, drive.size, _STEPS * LANES):
+            _turn_four(four, drive[at : at + _STEPS * LANES])
 
 
 @inlined
@@ -183,7 +179,7 @@ def _turn(u, e, slow):
 
 
 @kernel
-def _turn_four(slots, total):
+def _turn_four(slots, drive):
     """Add the contributions of four lines to four steps."""
     for lane in range(LANES):
         k = lane
@@ -198,7 +194,7 @@ def _turn_four(slots, total):
         k += _LINE * LANES
         d0, d1, d2, d3, e = _turn(slots[k], slots[k + LANES], slots[k + 2 * LANES])
         slots[k], slots[k + LANES] = d3, e
-        total[lane] += (a0 + b0) + (c0 + d0)
-        total[lane + LANES] += (a1 + b1) + (c1 + d1)
-        total[lane + 2 * LANES] += (a2 + b2) + (c2 + d2)
-        total[lane + 3 * LANES] += (a3 + b3) + (c3 + d3)
+        drive[lane] += (a0 + b0) + (c0 + d0)
+        drive[lane + LANES] += (a1 + b1) + (c1 + d1)
+        drive[lane + 2 * LANES] += (a2 + b2) + (c2 + d2)
+        drive[lane + 3 * LANES] += (a3 + b3) + (c3 + d3)

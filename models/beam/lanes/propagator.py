@@ -9,7 +9,6 @@ from models.beam.lanes.systems import System
 from models.beam.lanes.tangents import carry
 from models.beam.structure.modal import Array
 from models.beam.structure.propagation import Record
-from models.numerics.elementary import cos, sin
 
 _LOST = 1e6  # displacement, relative to the gap plus the reach of the tip without contact
 
@@ -24,19 +23,18 @@ def advance(
     n, _, m = system.modes.shape
     beams = system.beams
     record = Record.empty(n, periods, system.steps if trace else 0)
-    phase = 2 * np.pi * np.arange(1, system.steps + 1) / system.steps
     advance_blocks(
         system.modes,
         system.sigma,
-        system.modal.sum(axis=1),
+        system.response,
         Load(beams.load, system.oscillators, system.begin, beams.forcing),
         state,
         gaps,
         growth,
-        cos(phase),
-        sin(phase),
-        *room(m),
-        Lines.room(bool(beams.is_random.any()), system.steps, system.oscillators.shape[2]),
+        system.wave[0],
+        system.wave[1],
+        room(m, system.steps),
+        Lines.room(bool(beams.is_random.any()), system.oscillators.shape[2]),
         tuple(record),
     )
     # Steps too long for the ringing of a long contact amplify it: this is no motion of the beam.

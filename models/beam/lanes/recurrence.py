@@ -4,6 +4,8 @@ import numpy as np
 
 from models.numerics.jit import kernel
 
+RESOLVED = 2.0  # slower pole of a mode, times the step, above which it follows statically
+
 
 @kernel
 def mode_step(w, d, h):
@@ -54,6 +56,11 @@ def mode_step(w, d, h):
 
 @kernel
 def is_static(w, d, h):
-    """Return whether a mode is too fast for steps of h: its slower pole is beyond Nyquist."""
+    """Return whether a mode is so fast that in steps of h it follows the contact statically.
+
+    What is then neglected is its share of the flexibility, like 1/w^2, times its lag behind the
+    force, the inverse of its slower pole. As the frequencies of a beam grow like the squares of
+    their numbers, the sum over the modes falls like h^2.5: no slower than the error of the step.
+    """
     pole = w if d < w else w * (w / (d + np.sqrt(d * d - w * w)))
-    return pole * h > np.pi
+    return pole * h > RESOLVED

@@ -12,6 +12,9 @@ same step (sigma = sum of the modes' share of it), so x = X + sigma p(x) is solv
 iteration because p is piecewise linear. There are no branches, so lanes never diverge, and a row's
 bits do not depend on its neighbours.
 
+The sum X is formed without the last penetration, whose share is added at the end: its calculation
+and that of the modes' motion then overlap.
+
 A force that is linear within a step misses part of the impulse where it is curved, and at its kinks
 at the beginning and the end of a contact. Both parts are known to leading order and are added to
 the sampled penetration; this reduces the measured error of a work-rate by a factor of four to ten.
@@ -20,22 +23,31 @@ the sampled penetration; this reduces the measured error of a work-rate by a fac
 import numpy as np
 
 from models.beam.lanes.layout import CLOCK, UNROLL, X1, X2, P, modes_of, padded
-from models.beam.lanes.lines import draw_lines, redraw_lines, sum_lines
+from models.beam.lanes.lines import add_lines, draw_lines, in_fours, redraw_lines
 from models.beam.structure.modal import Array
 from models.numerics.blocks import LANES, aligned
 from models.numerics.fma import fma
-from models.numerics.jit import kernel
+from models.numerics.jit import inlined, kernel, lean
 
 _NOTHING = 1e-150  # of the gap
 _MODE = 6  # slots of a mode: y, r, t, d, alpha, beta
 # slots of a lane besides its modes, after those of a state
-_RIGHT, _LEFT, _RE, _IM, _STIFF, _SIGMA = range(3, 9)
-_WORK_R, _WORK_L, _PEAK_R, _PEAK_L, _SUM, _RANDOM, _HEAD = range(9, 16)
+_RIGHT, _LEFT, _RE, _IM, _GAIN, _STIFF, _SIGMA = range(3, 10)
+_WORK_R, _WORK_L, _PEAK_R, _PEAK_L, _SUM, _HEAD = range(10, 16)
 
 
-def room(modes: int) -> tuple[Array, Array]:
-    """Return room for the modes of a block of lanes, and for its other slots."""
-    return aligned(padded(modes) * _MODE * LANES), aligned(_HEAD * LANES)
+def room(modes: int, steps: int) -> tuple[Array, Array, Array]:
+    """Return room for a block of lanes: modes, other slots, and the tip's motion without contact.
+
+    The latter at each step of a period, and at a few steps more.
+    """
+    of_modes, of_lanes = padded(modes) * _MODE * LANES, _HEAD * LANES
+    whole = aligned(of_modes + of_lanes + in_fours(steps) * LANES)
+    return (
+        whole[:of_modes],
+        whole[of_modes : of_modes + of_lanes],
+        whole[of_modes + of_lanes :],
+    )
 
 
 @kernel
@@ -59,6 +71,8 @@ def _load(system_modes, sigma, response, state, gaps, first, w, head):
         head[_LEFT * LANES + lane] = gaps[n, 1]
         head[_RE * LANES + lane] = response[n].real
         head[_IM * LANES + lane] = response[n].imag
+        for i in range(m):
+            head[_GAIN * LANES + lane] += system_modes[n, 2, i]
         head[_SIGMA * LANES + lane] = sigma[n]
         head[_STIFF * LANES + lane] = 1 / (1 - sigma[n])
 
@@ -78,12 +92,12 @@ def _store(w, head, first, state, gaps, peak):
         gaps[n, 0] = head[_RIGHT * LANES + lane]
         gaps[n, 1] = head[_LEFT * LANES + lane]
         peak[n, 0] = head[_PEAK_R * LANES + lane]
-        peak[n, 1] = head[_PEAK_L * LANES + lane]
+        peak[n, 1] = -head[_PEAK_L * LANES + lane]
 
 
-@kernel
-def _step(w, head, groups, cosine, sine):
-    """Advance all lanes by one step: the hot loop."""
+@inlined
+def _move(w, head, groups):
+    """Advance the modes; sum their displacements without the share of the last penetration."""
     for lane in range(LANES):
         head[_SUM * LANES + lane] = 0.0
     for g in range(groups):
@@ -91,65 +105,72 @@ def _step(w, head, groups, cosine, sine):
             p = head[P * LANES + lane]
             k = g * (UNROLL * _MODE * LANES) + lane
             y = w[k]
-            y0 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            y0 = fma(w[k + 2 * LANES], y, w[k + LANES])
             w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
-            w[k] = y0
+            w[k] = fma(w[k + 4 * LANES], p, y0)
             k += _MODE * LANES
             y = w[k]
-            y1 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
+            y1 = fma(w[k + 2 * LANES], y, w[k + LANES])
             w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
-            w[k] = y1
-            k += _MODE * LANES
-            y = w[k]
-            y2 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
-            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
-            w[k] = y2
-            k += _MODE * LANES
-            y = w[k]
-            y3 = fma(w[k + 4 * LANES], p, fma(w[k + 2 * LANES], y, w[k + LANES]))
-            w[k + LANES] = fma(w[k + 5 * LANES], p, -w[k + 3 * LANES] * y)
-            w[k] = y3
-            head[_SUM * LANES + lane] += (y0 + y1) + (y2 + y3)
+            w[k] = fma(w[k + 4 * LANES], p, y1)
+            head[_SUM * LANES + lane] += y0 + y1
+
+
+@inlined
+def within(x, low, high):
+    """Return the nearest point between two stops."""
+    x = x if x < high else high
+    return x if x > low else low
+
+
+@inlined
+def _meet(head, drive, s):
+    """Find the penetration at the end of step s, and book the work of the turning points."""
     for lane in range(LANES):
-        right, left = head[_RIGHT * LANES + lane], head[_LEFT * LANES + lane]
-        free = fma(head[_RE * LANES + lane], cosine, head[_SUM * LANES + lane])
-        free = fma(-head[_IM * LANES + lane], sine, free) + head[_RANDOM * LANES + lane]
+        right, left = head[_RIGHT * LANES + lane], -head[_LEFT * LANES + lane]
+        free = head[_SUM * LANES + lane] + drive[s * LANES + lane]
+        free = fma(head[_GAIN * LANES + lane], head[P * LANES + lane], free)
         # The contact force over the stop's stiffness: penetration to the right less to the left.
-        over, under = free - right, -free - left
-        p = ((over if over > 0.0 else 0.0) - (under if under > 0.0 else 0.0)) * head[
-            _STIFF * LANES + lane
-        ]
-        x = fma(head[_SIGMA * LANES + lane], p, free)
-        x1 = head[X1 * LANES + lane]
-        before, after = x1 - head[X2 * LANES + lane], x - x1
+        p = (free - within(free, left, right)) * head[_STIFF * LANES + lane]
+        x, x1 = fma(head[_SIGMA * LANES + lane], p, free), head[X1 * LANES + lane]
         # The corrections below make p non-zero just after contact: p does not indicate contact.
-        in_right, in_left = x1 > right, x1 < -left
+        d1 = x1 - within(x1, left, right)
+        before, after = x1 - head[X2 * LANES + lane], x - x1
+        bend = after - before
+        was_in, is_in = d1 != 0.0, p != 0.0
+        turned, crossed = was_in & (before * after < 0.0), was_in ^ is_in
         # Two divisions in one: for the parabola at the turning point, and for the crossing's
         # position.
-        turned = (before * after < 0.0) & (in_right | in_left)
-        side, gap = (1.0, right) if x > 0.0 else (-1.0, left)
-        d0, d = fma(side, x1, -gap), fma(side, x, -gap)
-        crossed = d0 * d < 0.0
-        curvature = after - before if turned else 1.0
-        travel = abs(d - d0) if crossed else 1.0
+        curvature, travel = bend if turned else 1.0, after if crossed else 1.0
         inverse = 1 / (curvature * travel)
         # Work (eq 8) is the sum of d^2 over the extrema of the penetration d, signed outward.
         swing = before + after
-        vertex = fma(-0.125 * swing * swing, inverse * travel, x1)
-        d_right = vertex - right if turned & in_right else 0.0
-        d_left = -vertex - left if turned & in_left else 0.0
-        outward = 1.0 if before > 0.0 else -1.0
-        head[_WORK_R * LANES + lane] = fma(outward * d_right, d_right, head[_WORK_R * LANES + lane])
-        head[_WORK_L * LANES + lane] = fma(-outward * d_left, d_left, head[_WORK_L * LANES + lane])
-        peak_r, peak_l = head[_PEAK_R * LANES + lane], head[_PEAK_L * LANES + lane]
-        head[_PEAK_R * LANES + lane] = d_right if d_right > peak_r else peak_r
-        head[_PEAK_L * LANES + lane] = d_left if d_left > peak_l else peak_l
-        # The missed impulse of a force with a kink inside the step, and of a curved one.
-        p += 0.5 * side * d0 * d * (inverse * curvature) if crossed else 0.0
-        p -= (after - before) / 12 if d > 0.0 else 0.0
+        depth = fma(-0.125 * swing * swing, inverse * travel, d1) if turned else 0.0
+        work = depth * depth
+        work = work if before * d1 > 0.0 else -work
+        head[_WORK_R * LANES + lane] += work if d1 > 0.0 else 0.0
+        head[_WORK_L * LANES + lane] += work if d1 < 0.0 else 0.0
+        deepest_r, deepest_l = head[_PEAK_R * LANES + lane], head[_PEAK_L * LANES + lane]
+        head[_PEAK_R * LANES + lane] = depth if depth > deepest_r else deepest_r
+        head[_PEAK_L * LANES + lane] = depth if depth < deepest_l else deepest_l
+        # The missed impulse of a curved force, and of one with a kink inside the step: the contact
+        # then takes the share |d/after| of it, with d the penetration at the one end or the other.
+        d = d1 + p
+        p -= bend * (1 / 12) if is_in else 0.0
+        p -= 0.5 * d * (1.0 - abs(d * (inverse * curvature))) if crossed else 0.0
         head[X2 * LANES + lane] = x1
         head[X1 * LANES + lane] = x
         head[P * LANES + lane] = p
+
+
+@lean
+def _take_steps(w, head, groups, drive, begin, end, path):
+    """Advance all lanes from step `begin` to step `end` of a period: the hot loop."""
+    for s in range(begin, end):
+        _move(w, head, groups)
+        _meet(head, drive, s)
+        for lane in range(path.shape[0]):
+            path[lane, s] = head[X1 * LANES + lane]
 
 
 @kernel
@@ -161,37 +182,44 @@ def _forget(w):
 
 
 @kernel
+def _swing(head, cosine, sine, drive):
+    """Set the tip's motion without contact to that under the harmonic force."""
+    for s in range(cosine.size):
+        c, minus = cosine[s], -sine[s]
+        for lane in range(LANES):
+            im = head[_IM * LANES + lane] * minus
+            drive[s * LANES + lane] = fma(head[_RE * LANES + lane], c, im)
+
+
+@kernel
 def advance_blocks(
-    system_modes, sigma, response, load, state, gaps, growth, cosine, sine, w, head, lines, record
+    system_modes, sigma, response, load, state, gaps, growth, cosine, sine, room, lines, record
 ):
     """Advance all beams over the periods of their record, a block of lanes at a time."""
     work, strobe, peak, trace = record
+    w, head, drive = room
     n, periods, _ = work.shape
     steps = cosine.size
     groups = w.size // (UNROLL * _MODE * LANES)
+    before = np.empty(LANES)
     for first in range(0, n, LANES):
         _load(system_modes, sigma, response, state, gaps, first, w, head)
         rows = min(LANES, n - first)
+        traced = rows if trace.size else 0
         is_random = draw_lines(load, state, first, steps, lines)
+        _swing(head, cosine, sine, drive)
         for period in range(periods):
             for lane in range(LANES):
                 head[_WORK_R * LANES + lane] = 0.0
                 head[_WORK_L * LANES + lane] = 0.0
             if is_random:
                 redraw_lines(load, state, first, period, steps, lines, w, _MODE * LANES)
-                sum_lines(load, state, first, period, lines)
-            last_but_two = np.zeros(LANES)
-            for s in range(steps):
-                if s == steps - 1:
-                    for lane in range(LANES):
-                        last_but_two[lane] = head[X2 * LANES + lane]
-                if is_random:
-                    for lane in range(LANES):
-                        head[_RANDOM * LANES + lane] = lines.total[s * LANES + lane]
-                _step(w, head, groups, cosine[s], sine[s])
-                if trace.size:
-                    for lane in range(rows):
-                        trace[first + lane, period * steps + s] = head[X1 * LANES + lane]
+                _swing(head, cosine, sine, drive)
+                add_lines(load, state, first, period, lines, drive)
+            path = trace[first : first + traced, period * steps : (period + 1) * steps]
+            _take_steps(w, head, groups, drive, 0, steps - 1, path)
+            before[:] = head[X2 * LANES : (X2 + 1) * LANES]
+            _take_steps(w, head, groups, drive, steps - 1, steps, path)
             _forget(w)
             for lane in range(rows):
                 row = first + lane
@@ -200,9 +228,10 @@ def advance_blocks(
                 x = head[X1 * LANES + lane]
                 strobe[row, period, 0] = x
                 strobe[row, period, 1] = (
-                    (3 * x - 4 * head[X2 * LANES + lane] + last_but_two[lane]) * steps / (4 * np.pi)
+                    (3 * x - 4 * head[X2 * LANES + lane] + before[lane]) * steps / (4 * np.pi)
                 )
                 head[_RIGHT * LANES + lane] += growth[row, 0] * work[row, period, 0]
                 head[_LEFT * LANES + lane] += growth[row, 1] * work[row, period, 1]
         _store(w, head, first, state, gaps, peak)
-    state[:, CLOCK] += periods
+    for row in range(n):
+        state[row, CLOCK] += periods

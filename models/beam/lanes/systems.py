@@ -1,5 +1,6 @@
 """Beams prepared for the fast propagator, in groups that share a step size."""
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ from models.beam.lanes.recurrence import is_static, mode_step
 from models.beam.parameters import Settings
 from models.beam.structure.modal import Array, Beams, free_reach, steady_response
 from models.beam.structure.propagation import LONGEST
+from models.numerics.elementary import cos, sin
 from models.numerics.jit import kernel
 
 LADDER = tuple(base << k for k in range(8) for base in (64, 96))
@@ -34,20 +36,26 @@ class System(NamedTuple):
         Displacement within the step per unit of its final penetration, negative.
     modal : ndarray, shape (n, all modes), complex
         Steady amplitude of each mode.
+    response : ndarray, shape (n,), complex
+        Their sum.
     oscillators : ndarray, shape (n, 3, all modes)
         w_i [rad s-1], d_i [s-1], b_i [kg-1] of each mode, for the response to a random load.
     free_reach, beams, steps
         As there.
+    wave : ndarray, shape (2, steps)
+        Cosine and sine of the force's phase at the end of each step.
     """
 
     modes: Array
     begin: Array
     sigma: Array
     modal: NDArray[np.complex128]
+    response: NDArray[np.complex128]
     oscillators: Array
     free_reach: Array
     beams: Beams
     steps: int
+    wave: Array
 
     @property
     def longest(self) -> int:
@@ -56,35 +64,33 @@ class System(NamedTuple):
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return some of the beams."""
-        return System._make([*(a[rows] for a in self[:-2]), self.beams.take(rows), self.steps])
+        arrays = (a[rows] for a in self[:-3])
+        return System._make([*arrays, self.beams.take(rows), self.steps, self.wave])
 
 
 @kernel
 def _compliance(frequency, decay, gain, moving, h):
-    """Return the contributions of moving and of static modes to sigma of one beam."""
-    total = residual = 0.0
-    for i in range(frequency.size):
-        w, d = frequency[i], decay[i]
-        if i >= moving:
-            residual += gain[i] / (w * w)
-        elif is_static(w, d, h):
-            total += gain[i] / (w * w)
-        else:
-            total += gain[i] * mode_step(w, d, h)[6]
-    return total, residual
+    """Return the displacement of one beam within a step per unit of its final penetration."""
+    total = 0.0
+    for i in range(moving):
+        total += gain[i] * mode_step(frequency[i], decay[i], h)[6]
+    return total
 
 
 @kernel
-def _prepare(forcing, frequency, decay, gain, moving, steps, modes, begin, sigma, residual):
+def _prepare(forcing, frequency, decay, gain, moving, steps, modes, begin, sigma, compliance):
     for n in range(frequency.shape[0]):
         h = 2 * np.pi / (forcing[n] * steps)
-        sigma[n], residual[n] = _compliance(frequency[n], decay[n], gain[n], moving[n], h)
-        for i in range(moving[n]):
+        compliance[n] = _compliance(frequency[n], decay[n], gain[n], moving[n], h)
+        sigma[n] = 0.0
+        for i in range(frequency.shape[1]):
             w, d, b = frequency[n, i], decay[n, i], gain[n, i]
-            if is_static(w, d, h):
+            if i >= moving[n] or is_static(w, d, h):
+                sigma[n] += b / (w * w)
                 continue
             p11, p12, p21, p22, a1, a2, b1, b2 = mode_step(w, d, h)
-            determinant = np.exp(-2 * d * h)
+            determinant = math.exp(-2 * d * h)
+            sigma[n] += b * b1
             modes[n, 0, i] = p11 + p22
             modes[n, 1, i] = determinant
             modes[n, 2, i] = b * (a1 + p11 * b1 + p12 * b2)
@@ -99,14 +105,14 @@ def _choose_steps(forcing, frequency, decay, gain, moving, least, steps):
     for n in range(frequency.shape[0]):
         for candidate in LADDER:
             h = 2 * np.pi / (forcing[n] * candidate)
-            sigma, _ = _compliance(frequency[n], decay[n], gain[n], moving[n], h)
+            compliance = _compliance(frequency[n], decay[n], gain[n], moving[n], h)
             steps[n] = candidate
-            if abs(sigma) <= COMPLIANCE and candidate >= least[n]:
+            if abs(compliance) <= COMPLIANCE and candidate >= least[n]:
                 break
 
 
 def groups(beams: Beams, settings: Settings) -> Iterator[tuple[NDArray[np.intp], System]]:
-    """Prepare n beams, in groups that share a number of steps and, by fours, of moving modes.
+    """Prepare n beams, in groups that share a number of steps and, by twos, of moving modes.
 
     Unless `steps_per_period` is set, a row's step is the longest of `LADDER` in which a contact
     gives way by no more than `COMPLIANCE` of its penetration, without residual flexibility; the
@@ -131,7 +137,7 @@ def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
     """Prepare n beams for this many steps, in groups with equal numbers of modes."""
     n, m = b.frequency.shape
     modes, begin = np.zeros((n, 4, m)), np.zeros((n, 3, m))
-    sigma, residual = np.empty((2, n))
+    sigma, compliance = np.empty((2, n))
     _prepare(
         b.forcing,
         b.frequency,
@@ -142,19 +148,23 @@ def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
         modes,
         begin,
         sigma,
-        residual,
+        compliance,
     )
+    modal = steady_response(b)
+    phase = 2 * np.pi * np.arange(1, steps + 1) / steps
     system = System(
         modes,
         begin,
-        sigma + residual,
-        steady_response(b),
+        sigma,
+        modal,
+        modal.sum(axis=1),
         np.stack([b.frequency, b.decay, b.mobility], axis=1),
         free_reach(b),
         b,
         steps,
+        np.stack([cos(phase), sin(phase)]),
     )
-    sound = (np.abs(sigma) <= UNSTABLE) & (_least_steps(b) <= steps)
+    sound = (np.abs(compliance) <= UNSTABLE) & (_least_steps(b) <= steps)
     sound &= (b.load["power"] == 0) | (steps <= MOST_UNDER_RANDOM)
     width = np.minimum(m, _widths(begin[:, 2]))
     for size in np.unique(width[sound]):
@@ -175,5 +185,5 @@ def _least_steps(b: Beams) -> Array:
 
 
 def _widths(moving: Array) -> NDArray[np.int64]:
-    """Return the number of modes kept per row: up to the last moving one, in multiples of four."""
+    """Return the number of modes kept per row: up to the last moving one, in pairs."""
     return padded(np.where(moving > 0, 1 + np.arange(moving.shape[1]), 1).max(axis=1))

@@ -12,6 +12,7 @@ time.
 import numpy as np
 
 from models.beam.lanes.layout import SHARED, UNROLL, X1, X2, P, padded
+from models.beam.lanes.steps import within
 from models.beam.lanes.systems import System
 from models.beam.structure.modal import Array
 from models.numerics.blocks import LANES, aligned
@@ -22,21 +23,24 @@ _SUM, _HEAD = 3, 4  # slots of a block besides its modes, after those of a state
 
 
 @kernel
-def _linearise(x, x1, x2, right, left, sigma):
-    """Return reply, now, then_1 and then_2 of the step that arrives at x, as in `propagator`."""
-    side, gap = (1.0, right) if x > 0.0 else (-1.0, left)
-    d0, d = fma(side, x1, -gap), fma(side, x, -gap)
+def _linearise(x, x1, right, left, sigma):
+    """Return reply, now, then_1 and then_2 of the step from x1 to x, as in `steps`."""
+    d, d1 = x - within(x, -left, right), x1 - within(x1, -left, right)
+    is_in, was_in = d != 0.0, d1 != 0.0
     stiff = 1 / (1 - sigma)
     reply, now, then_1, then_2 = 1.0, 0.0, 0.0, 0.0
-    if d > 0.0:
+    if is_in:
         reply, now = stiff, stiff
         now -= reply / 12
         then_1, then_2 = 2 / 12, -1 / 12
-    if d0 * d < 0.0:
-        travel = d - d0
-        weight = 0.5 / (abs(travel) * travel)
-        now = fma(-reply * weight * d0, d0, now)
-        then_1 = fma(weight * d, d, then_1)
+    if is_in != was_in:
+        share = (d + d1) / (x - x1)
+        if is_in:
+            now -= reply * 0.5 * (1 - share) ** 2
+            then_1 += 0.5 * share**2
+        else:
+            now += 0.5 * share**2
+            then_1 -= 0.5 * (1 + share) ** 2
     return reply, now, then_1, then_2
 
 
@@ -53,8 +57,6 @@ def _step(modes, w, head, coefficients):
             c = 4 * UNROLL * g
             t0, d0, a0, b0 = modes[c], modes[c + 1], modes[c + 2], modes[c + 3]
             t1, d1, a1, b1 = modes[c + 4], modes[c + 5], modes[c + 6], modes[c + 7]
-            t2, d2, a2, b2 = modes[c + 8], modes[c + 9], modes[c + 10], modes[c + 11]
-            t3, d3, a3, b3 = modes[c + 12], modes[c + 13], modes[c + 14], modes[c + 15]
             for lane in range(LANES):
                 p = top[P * LANES + lane]
                 k = g * (2 * UNROLL * LANES) + lane
@@ -66,15 +68,7 @@ def _step(modes, w, head, coefficients):
                 y1 = fma(a1, p, fma(t1, y, column[k + 3 * LANES]))
                 column[k + 3 * LANES] = fma(b1, p, -d1 * y)
                 column[k + 2 * LANES] = y1
-                y = column[k + 4 * LANES]
-                y2 = fma(a2, p, fma(t2, y, column[k + 5 * LANES]))
-                column[k + 5 * LANES] = fma(b2, p, -d2 * y)
-                column[k + 4 * LANES] = y2
-                y = column[k + 6 * LANES]
-                y3 = fma(a3, p, fma(t3, y, column[k + 7 * LANES]))
-                column[k + 7 * LANES] = fma(b3, p, -d3 * y)
-                column[k + 6 * LANES] = y3
-                top[_SUM * LANES + lane] += (y0 + y1) + (y2 + y3)
+                top[_SUM * LANES + lane] += y0 + y1
         for lane in range(LANES):
             free, x1 = top[_SUM * LANES + lane], top[X1 * LANES + lane]
             p = fma(then_2, top[X2 * LANES + lane], fma(now, free, then_1 * x1))
@@ -119,11 +113,11 @@ def _carry(modes, sigma, state, gaps, trace, tangents, packed, w, head):
             for j in range(4):
                 packed[4 * i + j] = modes[row, j, i]
         _load(tangents[row], w, head)
-        x1, x2 = state[row, 2 * m + X1], state[row, 2 * m + X2]
+        x1 = state[row, 2 * m + X1]
         for s in range(trace.shape[1]):
             x = trace[row, s]
-            _step(packed, w, head, _linearise(x, x1, x2, gaps[row, 0], gaps[row, 1], sigma[row]))
-            x1, x2 = x, x1
+            _step(packed, w, head, _linearise(x, x1, gaps[row, 0], gaps[row, 1], sigma[row]))
+            x1 = x
         _store(w, head, tangents[row])
 
 

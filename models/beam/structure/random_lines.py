@@ -13,6 +13,8 @@ periods, and phases from the start of the epoch, so that results depend neither 
 run nor on where it is interrupted.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -70,7 +72,7 @@ def draw(load, epoch, lines):
     edges, seed = load["edges"], load["seed"]
     for j in range(COUNT):
         width = edges[j + 1] - edges[j]
-        size = -np.log(_uniform(seed, epoch, 3 * j + 2))
+        size = -math.log(_uniform(seed, epoch, 3 * j + 2))
         lines[j, AMPLITUDE] = np.sqrt(load["power"] * width * size)
         lines[j, SPEED] = edges[j] + width * _uniform(seed, epoch, 3 * j)
         lines[j, TURN] = _uniform(seed, epoch, 3 * j + 1)

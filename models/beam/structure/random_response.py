@@ -1,5 +1,7 @@
 """The steady response to the random force, line by line, without sampling in time."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,7 +38,7 @@ def respond(lines, forcing, frequency, decay, mobility):
             re = fma(stiff, per, re)
             im = fma(-damp, per, im)
         lines[j, AMPLITUDE] *= np.sqrt(re * re + im * im)
-        lines[j, TURN] += np.arctan2(im, re) / (2 * np.pi)
+        lines[j, TURN] += math.atan2(im, re) / (2 * np.pi)
 
 
 @kernel
@@ -49,8 +51,8 @@ def add_modes(lines, period, sign, forcing, frequency, decay, mobility, modes):
     for j in range(COUNT):
         w = lines[j, SPEED] * forcing
         angle = 2 * np.pi * turn_at(lines[j, SPEED], lines[j, TURN], period)
-        c = sign * lines[j, AMPLITUDE] * np.cos(angle)
-        s = sign * lines[j, AMPLITUDE] * np.sin(angle)
+        c = sign * lines[j, AMPLITUDE] * math.cos(angle)
+        s = sign * lines[j, AMPLITUDE] * math.sin(angle)
         for i in range(frequency.size):
             stiff, damp, per = _mode(w, frequency[i], decay[i], mobility[i])
             modes[0, i] = fma(per, fma(stiff, c, damp * s), modes[0, i])

@@ -2,12 +2,16 @@
 
 import ast
 import importlib
+import os
 import pkgutil
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numba
 import numpy as np
+from numba.core.compiler import Flags
 from numba.core.registry import CPUDispatcher
 
 import models
@@ -65,6 +69,28 @@ def test_a_flag_would_be_seen():
     assert free(2.0) == 5.0
     (code,) = free.inspect_llvm().values()
     assert "contract" in FREEDOM.findall(code)
+
+
+def test_the_instruction_set_is_chosen_before_numba_is_imported():
+    """Whichever module comes first; numba would otherwise choose for itself."""
+    program = (
+        "import models.numerics.fma, numba, os;"
+        "print(os.environ['NUMBA_CPU_FEATURES'] == numba.config.CPU_FEATURES)"
+    )
+    unset = {name: value for name, value in os.environ.items() if not name.startswith("NUMBA_CPU")}
+    ended = subprocess.run([sys.executable, "-c", program], env=unset, capture_output=True)
+    assert ended.stdout == b"True\n", ended.stderr
+
+
+def test_options_are_compared_as_numba_compares_them():
+    one, other = Flags(), Flags()
+    assert one == other and hash(one) == hash(other)
+    one.nrt, one.error_model = True, "numpy"
+    assert one != other
+    assert one.values() == {name: getattr(one, name) for name in Flags.options}
+    other.nrt, other.error_model = True, "numpy"
+    other.boundscheck = Flags.options["boundscheck"].default
+    assert one == other and hash(one) == hash(other)
 
 
 def test_no_source_asks_for_more():

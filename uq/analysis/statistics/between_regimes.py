@@ -10,7 +10,14 @@ from scipy import special
 from uq.analysis.statistics.statistic import Context, Kind, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
 from uq.indices.targets import number_of
-from uq.intervals import CONFIDENCE, UNKNOWN, Floats, Replicates, scatter_interval
+from uq.intervals import (
+    CONFIDENCE,
+    UNKNOWN,
+    Floats,
+    Replicates,
+    scatter_interval,
+    upper_probability,
+)
 from uq.quantile_functions import normal
 from uq.rows.elements import Element, output_names
 from uq.tails import lacks_variance
@@ -91,7 +98,7 @@ def _independent(
     value = 1 - (1 - ratio) * (n - 1) / (n - regimes) if n > regimes else np.nan
     total = deviation + residual
     influence = deviation**2 + 2 * deviation * residual - ratio * total**2
-    half = normal(0.5 + CONFIDENCE / 2) * influence.std() / total.var() / np.sqrt(n)
+    half = normal(upper_probability()) * influence.std() / total.var() / np.sqrt(n)
     freedom = regimes - 1, n - regimes
     with np.errstate(divide="ignore", invalid="ignore"):
         statistic = ratio / freedom[0] / ((1 - ratio) / freedom[1])
