@@ -13,6 +13,7 @@ from models.numerics.jit import lean
 _GRAZE = 0.05  # of a guard at two places: a minimum between them below this is computed exactly
 _CLOSE = 1e-7  # of a series' time: Newton's last step
 _ITERATIONS = 60
+_HALVINGS = 30  # to tell which of several guards is the first
 _TRIES = 10  # a guard that opens for less than 1e-12 of a look never opened
 
 _SERIES = TERMS * LANES
@@ -32,15 +33,18 @@ def find(lane, m, y, w):
     for g in range(GUARDS):
         if not (early | late) >> g & 1:
             continue
-        left, right, here = 0.0, 0.0, -1.0
-        place = 1
+        left, right, here, side = 0.0, 0.0, -1.0, 0
         if early >> g & 1:
-            left, right, here = _bracket(g, 1, several, lane, m, y, w)
+            left, right, here, side = _bracket(g, 1, several, lane, m, y, w)
         if here < 0 and late >> g & 1:
-            place = 2
-            left, right, here = _bracket(g, 2, several, lane, m, y, w)
+            left, right, here, side = _bracket(g, 2, several, lane, m, y, w)
+        if here > 0 and several:
+            # A guess is not enough: a body would move on with a velocity below zero.
+            _pose(g, side, lane, m, y)
+            left, right = _narrow(lane, left, right, m, w)
+            here = right
         if here >= 0 and (found < 0 or here < guess):
-            found, seen, guess = g, place, here
+            found, seen, guess = g, side, here
             m[at.LEFT * LANES + lane], m[at.RIGHT * LANES + lane] = left, right
     m[at.MET * LANES + lane] = found
     if found >= 0:
@@ -50,16 +54,27 @@ def find(lane, m, y, w):
 
 @lean
 def _bracket(g, place, several, lane, m, y, w):
-    """Return two places between which a guard falls through zero, and about where; -1: nowhere."""
+    """Return two places between which a guard falls through zero, about where, and its side.
+
+    It falls nowhere if the third is -1. A force has its limits on two sides: the side is that which
+    it has at the look of this number.
+    """
     j = (at.VALUE + GUARDS * place + g) * LANES + lane
     k = (at.RATE + GUARDS * place + g) * LANES + lane
     g_0, g_1 = m[j - GUARDS * LANES], m[j]
     d_0, d_1 = m[k - GUARDS * LANES] * _LENGTH, m[k] * _LENGTH
     right = place * _LENGTH
     left = right - _LENGTH
+    if g != TOUCH and _turned(g - BAR, place, lane, m):
+        both = 2 * m[(at.BAR_LIMIT + g - BAR) * LANES + lane]
+        if d_0 < 0 and d_1 < 0 and g_0 > 0:
+            bottom = _dip(g, place - 1, left, g_0, d_0, both - g_1, -d_1, lane, m, y, w)
+            if bottom > 0:
+                return left, bottom, 0.5 * (left + bottom), place - 1
+        g_0, d_0 = both - g_0, -d_0
     if g_1 < 0 and g_0 > 0:
         here = crossing(g_0, d_0, g_1, d_1) if several else g_0 / (g_0 - g_1)
-        return left, right, left + _LENGTH * here
+        return left, right, left + _LENGTH * here, place
     if g_1 < 0:
         # Just begun, it opens and closes before the look, or never opens.
         _pose(g, place, lane, m, y)
@@ -68,17 +83,36 @@ def _bracket(g, place, several, lane, m, y, w):
             if _height(lane, left, m, w) > 0:
                 bend = _term(2, lane, m, w)
                 here = -_term(1, lane, m, w) / bend if bend < 0 else right
-                return left, right, min(max(here, left), right)
+                return left, right, min(max(here, left), right), place
             right = left
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, place
     if d_0 < 0 and d_1 > 0 and g_0 > 0:
-        bottom, lowest = dip(g_0, d_0, g_1, d_1)
-        if lowest < _GRAZE * min(g_0, g_1):
-            _pose(g, place, lane, m, y)
-            bottom, lowest = _bottom(lane, left + bottom * _LENGTH, m, w)
-            if lowest < 0 and left < bottom < right:
-                return left, bottom, 0.5 * (left + bottom)
-    return left, right, -1.0
+        bottom = _dip(g, place, left, g_0, d_0, g_1, d_1, lane, m, y, w)
+        if bottom > 0:
+            return left, bottom, 0.5 * (left + bottom), place
+    return left, right, -1.0, place
+
+
+@lean
+def _turned(interface, place, lane, m):
+    """Return whether the force that an interface holds changes sides before a look."""
+    j = interface * LANES + lane
+    offset = m[at.BAR_OFFSET * LANES + j]
+    before = m[(at.PRESSED + place - 1) * LANES + lane] + offset > 0
+    after = m[(at.PRESSED + place) * LANES + lane] + offset > 0
+    return m[at.BAR_HOLD * LANES + j] > 0 and before != after
+
+
+@lean
+def _dip(g, side, left, g_0, d_0, g_1, d_1, lane, m, y, w):
+    """Return where a guard that falls and rises again is lowest, if that is below zero; else -1."""
+    bottom, lowest = dip(g_0, d_0, g_1, d_1)
+    if lowest < _GRAZE * min(g_0, g_1):
+        _pose(g, side, lane, m, y)
+        bottom, lowest = _bottom(lane, left + bottom * _LENGTH, m, w)
+        if lowest < 0 and left < bottom < left + _LENGTH:
+            return bottom
+    return -1.0
 
 
 @lean
@@ -127,6 +161,18 @@ def _height(lane, place, m, w):
     for k in range(ORDER, -1, -1):
         total = fma(total, place, _term(k, lane, m, w))
     return total
+
+
+@lean
+def _narrow(lane, left, right, m, w):
+    """Return two close places between which the guard of a lane falls through zero."""
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (left + right)
+        if _height(lane, middle, m, w) > 0:
+            left = middle
+        else:
+            right = middle
+    return left, right
 
 
 @lean

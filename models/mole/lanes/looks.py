@@ -46,6 +46,13 @@ def limit_step(m, w):
         m[at.MET * LANES + lane] = -1.0
 
 
+@lean
+def _dips(g_0, d_0, g_1, d_1):
+    """Return whether a guard falls far and rises again: its tangents at both ends meet low."""
+    meet = -d_0 * d_1 * _LENGTH > _DIP * (d_1 * g_0 - d_0 * g_1)
+    return (d_0 < 0) & (d_1 > 0) & meet
+
+
 def _judge(place: int) -> Callable[..., None]:
     """Return the kernel that sets the guards at one place, and their rates.
 
@@ -81,15 +88,25 @@ def _judge(place: int) -> Callable[..., None]:
             m[rates + MOLE * LANES + lane] = fma(slip, fma(ratio, rate, drift), -side * change)
         if place > 0:
             before = GUARDS * LANES
+            pressed = (at.PRESSED + place) * LANES
             for lane in range(LANES):
                 marked = 0.0
                 for g in range(GUARDS):
                     j = g * LANES + lane
                     g_0, g_1 = m[values + j - before], m[values + j]
                     d_0, d_1 = m[rates + j - before], m[rates + j]
-                    # Where it falls and rises again, the tangents at both ends meet below it.
-                    dips = -d_0 * d_1 * _LENGTH > _DIP * (d_1 * g_0 - d_0 * g_1)
-                    ends = (g_1 < 0) | ((d_0 < 0) & (d_1 > 0) & dips)
+                    ends = (g_1 < 0) | _dips(g_0, d_0, g_1, d_1)
+                    if g != TOUCH:
+                        # A force that changes sides may have been at the limit of the first.
+                        j = (g - BAR) * LANES + lane
+                        offset = m[at.BAR_OFFSET * LANES + j]
+                        turned = (m[pressed - LANES + lane] > -offset) != (
+                            m[pressed + lane] > -offset
+                        )
+                        turned &= m[at.BAR_HOLD * LANES + j] > 0
+                        both = 2 * m[at.BAR_LIMIT * LANES + j]
+                        ends |= turned & _dips(g_0, d_0, both - g_1, -d_1)
+                        ends |= turned & _dips(both - g_0, -d_0, g_1, d_1)
                     marked += 2.0 ** (g + GUARDS * (place - 1)) if ends else 0.0
                 earlier = m[at.LOOK * LANES + lane] if place > 1 else 0.0
                 m[at.LOOK * LANES + lane] = earlier + marked
