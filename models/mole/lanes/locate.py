@@ -26,14 +26,14 @@ _LENGTH = 1 / (LOOKS - 1)
 @lean
 def find(lane, m, y, w):
     """Choose the guard that ends the step of a lane, and note between which places."""
-    found, seen, guess = -1, 0, 0.0
+    found, seen, guess = -1, 1.0, 0.0
     marks = int(m[at.LOOK * LANES + lane])
     early, late = marks % 8, marks // 8
     several = (early | late) & ((early | late) - 1)
     for g in range(GUARDS):
         if not (early | late) >> g & 1:
             continue
-        left, right, here, side = 0.0, 0.0, -1.0, 0
+        left, right, here, side = 0.0, 0.0, -1.0, 1.0
         if early >> g & 1:
             left, right, here, side = _bracket(g, 1, several, lane, m, y, w)
         if here < 0 and late >> g & 1:
@@ -56,51 +56,46 @@ def find(lane, m, y, w):
 def _bracket(g, place, several, lane, m, y, w):
     """Return two places between which a guard falls through zero, about where, and its side.
 
-    It falls nowhere if the third is -1. A force has its limits on two sides: the side is that which
-    it has at the look of this number.
+    It falls nowhere if the third is -1. A force that an interface holds has its limits on two
+    sides, 1 and -1.
     """
     j = (at.VALUE + GUARDS * place + g) * LANES + lane
     k = (at.RATE + GUARDS * place + g) * LANES + lane
     g_0, g_1 = m[j - GUARDS * LANES], m[j]
     d_0, d_1 = m[k - GUARDS * LANES] * _LENGTH, m[k] * _LENGTH
     right = place * _LENGTH
-    left = right - _LENGTH
-    if g != TOUCH and _turned(g - BAR, place, lane, m):
-        both = 2 * m[(at.BAR_LIMIT + g - BAR) * LANES + lane]
-        if d_0 < 0 and d_1 < 0 and g_0 > 0:
-            bottom = _dip(g, place - 1, left, g_0, d_0, both - g_1, -d_1, lane, m, y, w)
+    left, side = right - _LENGTH, 1.0
+    if g != TOUCH and m[(at.BAR_HOLD + g - BAR) * LANES + lane] > 0:
+        j = (g - BAR) * LANES + lane
+        offset, both = m[at.BAR_OFFSET * LANES + j], 2 * m[at.BAR_LIMIT * LANES + j]
+        side = 1.0 if m[(at.PRESSED + place) * LANES + lane] + offset > 0 else -1.0
+        before = 1.0 if m[(at.PRESSED + place - 1) * LANES + lane] + offset > 0 else -1.0
+        far, fall = both - g_0, -d_0
+        if side != before:
+            far, fall, g_0, d_0 = g_0, d_0, far, fall
+        if fall < 0 and d_1 < 0 and far > 0:
+            bottom = _dip(g, -side, left, far, fall, both - g_1, -d_1, lane, m, y, w)
             if bottom > 0:
-                return left, bottom, 0.5 * (left + bottom), place - 1
-        g_0, d_0 = both - g_0, -d_0
+                return left, bottom, 0.5 * (left + bottom), -side
     if g_1 < 0 and g_0 > 0:
         here = crossing(g_0, d_0, g_1, d_1) if several else g_0 / (g_0 - g_1)
-        return left, right, left + _LENGTH * here, place
+        return left, right, left + _LENGTH * here, side
     if g_1 < 0:
         # Just begun, it opens and closes before the look, or never opens.
-        _pose(g, place, lane, m, y)
+        _pose(g, side, lane, m, y)
         for _ in range(_TRIES):
             left = right / 16
             if _height(lane, left, m, w) > 0:
                 bend = _term(2, lane, m, w)
                 here = -_term(1, lane, m, w) / bend if bend < 0 else right
-                return left, right, min(max(here, left), right), place
+                return left, right, min(max(here, left), right), side
             right = left
-        return 0.0, 0.0, 0.0, place
+        return 0.0, 0.0, 0.0, side
     if d_0 < 0 and d_1 > 0 and g_0 > 0:
-        bottom = _dip(g, place, left, g_0, d_0, g_1, d_1, lane, m, y, w)
+        bottom = _dip(g, side, left, g_0, d_0, g_1, d_1, lane, m, y, w)
         if bottom > 0:
-            return left, bottom, 0.5 * (left + bottom), place
-    return left, right, -1.0, place
-
-
-@lean
-def _turned(interface, place, lane, m):
-    """Return whether the force that an interface holds changes sides before a look."""
-    j = interface * LANES + lane
-    offset = m[at.BAR_OFFSET * LANES + j]
-    before = m[(at.PRESSED + place - 1) * LANES + lane] + offset > 0
-    after = m[(at.PRESSED + place) * LANES + lane] + offset > 0
-    return m[at.BAR_HOLD * LANES + j] > 0 and before != after
+            return left, bottom, 0.5 * (left + bottom), side
+    return left, right, -1.0, side
 
 
 @lean
@@ -116,8 +111,8 @@ def _dip(g, side, left, g_0, d_0, g_1, d_1, lane, m, y, w):
 
 
 @lean
-def _pose(g, place, lane, m, y):
-    """Set a lane's guard as a function of u, v, F and time; its limit is that of the place."""
+def _pose(g, side, lane, m, y):
+    """Set a lane's guard, of a force on one side, as a function of u, v, F and time."""
     of_u = of_v = of_f = of_1 = of_t = 0.0
     if g == TOUCH:
         of_u = -m[at.OPEN * LANES + lane]
@@ -126,10 +121,8 @@ def _pose(g, place, lane, m, y):
         which = g - BAR
         slip = m[(at.BAR_SLIP + which) * LANES + lane]
         offset = m[(at.BAR_OFFSET + which) * LANES + lane]
-        side = m[(at.BAR_HOLD + which) * LANES + lane]
-        side = side if m[(at.PRESSED + place) * LANES + lane] + offset > 0 else -side
-        of_f = -side
-        of_1 = m[(at.BAR_LIMIT + which) * LANES + lane] - side * offset
+        of_f = -side * m[(at.BAR_HOLD + which) * LANES + lane]
+        of_1 = m[(at.BAR_LIMIT + which) * LANES + lane] + of_f * offset
         if g == BAR:
             of_v = slip
         else:

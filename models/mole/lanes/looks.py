@@ -97,16 +97,19 @@ def _judge(place: int) -> Callable[..., None]:
                     d_0, d_1 = m[rates + j - before], m[rates + j]
                     ends = (g_1 < 0) | _dips(g_0, d_0, g_1, d_1)
                     if g != TOUCH:
-                        # A force that changes sides may have been at the limit of the first.
+                        # On the way, the force may have been at the limit on its other side.
                         j = (g - BAR) * LANES + lane
+                        held = m[at.BAR_HOLD * LANES + j] > 0
                         offset = m[at.BAR_OFFSET * LANES + j]
                         turned = (m[pressed - LANES + lane] > -offset) != (
                             m[pressed + lane] > -offset
                         )
-                        turned &= m[at.BAR_HOLD * LANES + j] > 0
                         both = 2 * m[at.BAR_LIMIT * LANES + j]
-                        ends |= turned & _dips(g_0, d_0, both - g_1, -d_1)
-                        ends |= turned & _dips(both - g_0, -d_0, g_1, d_1)
+                        far_0, fall_0 = both - g_0, -d_0
+                        near_0, near_fall = (far_0, fall_0) if turned else (g_0, d_0)
+                        far_0, fall_0 = (g_0, d_0) if turned else (far_0, fall_0)
+                        ends |= held & _dips(near_0, near_fall, g_1, d_1)
+                        ends |= held & _dips(far_0, fall_0, both - g_1, -d_1)
                     marked += 2.0 ** (g + GUARDS * (place - 1)) if ends else 0.0
                 earlier = m[at.LOOK * LANES + lane] if place > 1 else 0.0
                 m[at.LOOK * LANES + lane] = earlier + marked

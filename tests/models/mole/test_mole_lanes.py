@@ -72,6 +72,33 @@ def test_it_moves_as_the_exact_propagator(formulation, frequency):
     assert record[0, HIGH] == pytest.approx(motion.highest, abs=1e-10)
 
 
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+@pytest.mark.parametrize(
+    ("bar_friction", "mole_friction", "phase", "displacement"),
+    [
+        (9.0, 0.1, -1.67, -0.0410458),  # the bar stops before the mole would begin to slip
+        (8.72, 0.02, 1.471, -0.0326306),  # the force on the mole reaches its limits on both sides
+        (7.31, 0.02, 1.778, -0.0380499),  # or one, from zero and back
+    ],
+)
+def test_slips_shorter_than_a_step_are_found(
+    bar_friction, mole_friction, phase, displacement, tolerance
+):
+    """Slips of half a millisecond to one and a half, in steps of up to three."""
+    p = Params(
+        bar_friction=bar_friction,
+        mole_friction=mole_friction,
+        supply_phase=phase,
+        initial_displacement=displacement,
+        control_frequency=2.5,
+    )
+    q = mole(p, "physical")
+    record = go(machines([p], tolerance), 2)
+    motion = exact.propagate(q, exact.start(p, q), 2 * q.control_period, 1e-12)
+    np.testing.assert_allclose(record[0, 0], motion.state.y[0], atol=2 * tolerance * SIZES[0])
+    assert record[0, PROGRESS] == pytest.approx(motion.state.y[5], abs=2 * tolerance * SIZES[0])
+
+
 def test_moles_anywhere_within_the_bounds_move_as_the_exact_propagator():
     """Bars flung far and fast, every other one through a narrow coil."""
     bounds = [MODEL.parameter(name).bounds for name in MODEL.parameter_names]
