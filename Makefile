@@ -67,6 +67,7 @@ bench: $(TEST)
 	@$(BIN)/python -m benchmarks.large
 	@$(BIN)/python -m benchmarks.scaling
 	@$(BIN)/python -m benchmarks.cluster
+	@$(BIN)/python -m benchmarks.table
 
 # Coverage of every reported interval: writes docs/coverage.md, in about an hour and a half.
 coverage: $(TEST)

@@ -9,6 +9,7 @@ import time
 import numpy as np
 
 from benchmarks import newmark
+from benchmarks.figures import Figure, keep
 from models.beam import lanes
 from models.beam.parameters import Params, Settings
 from models.beam.structure.modal import beams
@@ -72,6 +73,7 @@ def by_newmark(frequency, steps):
 
 def work_rates():
     print("Work-rate: error of the worse site, and microseconds per forcing period and row")
+    found = []
     for frequency in KNOWN:
         print(f"  {frequency} Hz")
         for steps in (0, 96, 192, 400):
@@ -86,6 +88,9 @@ def work_rates():
             if error <= goal:
                 break
         print(f"    ratio at equal error: {seconds / fast:.0f}")
+        what = f"a forcing period of the beam at {frequency} Hz, work-rate to {goal:.1g}"
+        found.append(Figure(what, "Newmark's method", seconds / fast))
+    keep("beam", found)
 
 
 if __name__ == "__main__":

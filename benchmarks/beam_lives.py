@@ -7,6 +7,7 @@ gaps that no longer wear.
 """
 
 import time
+from itertools import count
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -17,8 +18,8 @@ from models.beam.parameters import REGIMES, Params, Settings
 from models.beam.response.settling import settle
 from models.beam.start import initial_gaps
 from models.beam.structure.modal import beams
-from models.beam.wear.accelerated_life import run_life
 from models.beam.wear.regimes import changes_of, confirmed_regimes
+from models.beam.wear.worn_beams import wear_down
 from models.numerics.blocks import LANES
 from uq.rows.sampling import row_block
 from uq.study.definition import load_study
@@ -28,6 +29,7 @@ CASES = (("beam-lifetime-561", 0.02), ("beam-lifetime-561", 0.04), ("beam-lifeti
 CASES += (("beam-lifetime", 0.05),)
 DEPTHS = (2.5e-4,)
 ROWS, CHECKED, SETTLED = 256, 50, 40
+EVERY = 4  # rounds
 
 
 def rows_of(name, begin, end):
@@ -68,7 +70,7 @@ def errors(name, accuracy):
     )
 
 
-def regimes(name, periods=16_384):
+def regimes(name, periods=4096):
     rows = rows_of(name, ROWS + CHECKED, ROWS + CHECKED + SETTLED)
     p = Params._make(np.ascontiguousarray(rows.x.T))
     settings = Settings(depths=DEPTHS)
@@ -77,24 +79,28 @@ def regimes(name, periods=16_384):
         q = Params._make(field[chosen] for field in p)
         gaps, x0 = initial_gaps(q), q.initial_gap
         state = lanes.start(system, q.initial_displacement / x0, q.initial_velocity / x0)
-        work = settle(lanes, system, state, gaps).work
-        told = []
+        settled = settle(lanes, system, state, gaps)
+        seen, rounds = [], count()
 
-        def advance(system, state, gaps, growth, periods, told=told):
+        def advance(system, state, gaps, growth, periods, seen=seen, rounds=rounds):
             record = lanes.advance(system, state, gaps, growth, periods)
-            settled = settle(lanes, system, state.copy(), gaps.copy())
-            told.append((gaps.copy(), settled.regime))
+            if next(rounds) % EVERY == 0:
+                regime = settle(lanes, system, state.copy(), gaps.copy()).regime
+                seen.append((system.beams.stiffness, gaps.copy(), regime))
             return record
 
         share = np.stack([np.ones_like(x0), q.wear_coefficient_ratio], axis=1)
         growths = np.asarray(DEPTHS) / x0[:, None]
         spy = SimpleNamespace(advance=advance)
-        life = run_life(spy, system, state, gaps, work, share, growths, periods).history
+        start = (spy, system, state, gaps, settled.work, settled.regime)
+        life = wear_down(*start, share, growths, periods, settings.accuracy).history
+        row, at, regime = (np.concatenate(some) for some in zip(*seen, strict=True))
         truth = np.full_like(life.regime, -1)
-        for look, (at, regime) in enumerate(told):
-            here = np.abs(life.gaps[:, look, None] - at).max(axis=2)
-            rows_left = np.flatnonzero(life.regime[:, look] >= 0)
-            truth[rows_left, look] = regime[here[rows_left].argmin(axis=1)]
+        for i, k in enumerate(system.beams.stiffness):  # no two rows have the same
+            mine = np.flatnonzero(row == k)
+            for look in np.flatnonzero(life.regime[i] >= 0):
+                apart = np.abs(at[mine] - life.gaps[i, look]).max(axis=1)
+                truth[i, look] = regime[mine[apart.argmin()]]
         looks += (life.regime >= 0).sum()
         alike += ((life.regime == truth) & (truth >= 0)).sum()
         found, known = (changes_of(confirmed_regimes(r)).sum(axis=1) for r in (life.regime, truth))

@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks import newmark
+from benchmarks.figures import Figure, keep
 from models.beam import MODEL, exact
 from models.beam.parameters import REGIMES, Params, Settings
 from tests.models.beam.incremental import follow
@@ -83,7 +84,7 @@ def by_increments(rows, way, propagator, steps):
 
 
 def rival(name, rows, known, goal, own, propagator, every_steps):
-    """Print a rival's cheapest setting of equal accuracy, and its cost relative to ours."""
+    """Print a rival's cheapest setting of equal accuracy, and return its cost relative to ours."""
     by_increments(rows._replace(x=rows.x[:1]), WAYS[0], propagator, every_steps[0])  # compiles
     for way, steps in zip(WAYS, every_steps, strict=True):
         lives, seconds = by_increments(rows, way, propagator, steps)
@@ -97,6 +98,7 @@ def rival(name, rows, known, goal, own, propagator, every_steps):
         f"{seconds / own:7.0f}{verdict}",
         flush=True,
     )
+    return seconds / own
 
 
 def report(name, count, settings, goal):
@@ -132,10 +134,12 @@ def report(name, count, settings, goal):
     known, off = known[:RIVALLED], off[:RIVALLED]
     print(f"  a life of the first {RIVALLED} rows, to a median error of {goal:.0%}:")
     print(f"    {'accelerated wear':47s} {np.median(off):7.2%} {own * 1e3:10.1f} ms")
-    rival("exact, increments", some, known, goal, own, exact, (0,) * len(WAYS))
-    rival("Newmark, increments", some, known, goal, own, newmark, NEWMARK_STEPS)
+    ways = {"exact": (exact, (0,) * len(WAYS)), "Newmark": (newmark, NEWMARK_STEPS)}
+    ratios = [rival(f"{way}, increments", some, known, goal, own, *ways[way]) for way in ways]
+    what = f"a life of `{name}`, median error {goal:.0%}"
+    peers = (f"gaps that grow in increments, {way}" for way in ("exact", "Newmark's method"))
+    return [Figure(what, peer, ratio) for peer, ratio in zip(peers, ratios, strict=True)]
 
 
 if __name__ == "__main__":
-    for case in CASES:
-        report(*case)
+    keep("beam_study", [figure for case in CASES for figure in report(*case)])

@@ -9,22 +9,21 @@ what follows from it.
 import asyncio
 import contextlib
 import json
-import resource
 import subprocess
 import sys
 import tempfile
 import time
 from functools import partial
 from pathlib import Path
-from typing import Annotated, NamedTuple
 
 import numpy as np
 import psutil
 from distributed import Client
 
-from benchmarks.coverage.problems import Settings, study_of
+from benchmarks import children
+from benchmarks.coverage.problems import study_of
+from benchmarks.large import INPUTS, LAWS, OUTPUTS, machine
 from uq import store
-from uq.contract import Model, Output, Parameter
 from uq.rows.evaluate import evaluate
 from uq.rows.workload import workload_of
 from uq.running import dask_task
@@ -32,9 +31,7 @@ from uq.running.dispatch import Dispatcher
 from uq.running.environment import command, inherited
 from uq.running.options import RunOptions
 from uq.running.remote_cluster import remote_workers
-from uq.running.sent_chunks import SentChunks
 
-INPUTS, OUTPUTS = 10, 20
 CHUNKS = {250: 200_000, 4000: 1_600_000}
 """Rows of a chunk -> rows of a run."""
 
@@ -48,31 +45,12 @@ SIZES = (100_000, 1_000_000, 10_000_000)
 """Rows of the runs whose memory is measured."""
 
 
-def _input(i):
-    return Annotated[float, Parameter(f"x_{i}", "1", "a number", (0.0, 1.0), "none")]
-
-
-Ten = NamedTuple("Ten", [(f"x{i}", _input(i)) for i in range(INPUTS)])  # noqa: UP014
-Ten._field_defaults.update(dict.fromkeys(Ten._fields, 0.5))
-
-
 def _batch(x, seed, settings):
     outputs = {f"y{k}": x[:, k % INPUTS].copy() for k in range(OUTPUTS)}
     return outputs, np.zeros(len(x), np.int8)
 
 
-FREE = Model(
-    "free",
-    "rows that cost nothing",
-    "1",
-    Ten,
-    Settings,
-    {f"y{k}": Output("1", f"output {k}") for k in range(OUTPUTS)},
-    _batch,
-)
-
-
-LAWS = dict.fromkeys(Ten._fields, {"distribution": "uniform", "lower": 0.0, "upper": 1.0})
+FREE = machine("free", "rows that cost nothing", _batch)
 
 
 def free_study(rows, method="monte-carlo"):
@@ -155,11 +133,11 @@ def costs(address, scheduler, crew, rows, chunk_rows, folder):
         remote_workers(address) as workers,
         store.keep(study, Path(folder) / "rates.nc", fresh=True) as kept,
     ):
-        workload = workload_of(study)
-        dispatcher = Dispatcher(workload, RunOptions(chunk_rows=chunk_rows), kept)
+        options = RunOptions(chunk_rows=chunk_rows)
+        dispatcher = Dispatcher(workload_of(study), options, kept, None)
         parts = [psutil.Process()], [scheduler], crew
         before, began = [used(*part) for part in parts], time.perf_counter()
-        dispatcher.finish_on(SentChunks(workload, workers))
+        dispatcher.finish_on(workers)
         seconds = time.perf_counter() - began
         return np.subtract([used(*part) for part in parts], before), seconds
 
@@ -189,27 +167,27 @@ def rates():
 
 def measured(title, arguments):
     """Print time and largest memory of one Python process."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    process = psutil.Popen([sys.executable, *arguments], stdout=subprocess.DEVNULL)
     most = 0
-    while process.poll() is None:
-        with contextlib.suppress(psutil.NoSuchProcess):
-            most = max(most, process.memory_info().rss)
-        if most > MOST_MEMORY:
-            process.kill()
-        time.sleep(0.05)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    with children.clocked() as taken:
+        process = psutil.Popen([sys.executable, *arguments], stdout=subprocess.DEVNULL)
+        while process.poll() is None:
+            with contextlib.suppress(psutil.NoSuchProcess):
+                most = max(most, process.memory_info().rss)
+            if most > MOST_MEMORY:
+                process.kill()
+            time.sleep(0.05)
     outcome = "" if process.returncode == 0 else f"  ended with {process.returncode}"
-    print(f"  {title:32} {cpu:7.1f} s CPU {most / 1e6:7.0f} MB{outcome}", flush=True)
+    print(f"  {title:32} {taken.cpu:7.1f} s CPU {most / 1e6:7.0f} MB{outcome}", flush=True)
 
 
 def drive(rows, method, path):
     """Compute a study of free rows in this process, kept on disk as they arrive."""
     study = free_study(int(rows), method)
     with store.keep(study, Path(path), fresh=True) as kept:
-        dispatcher = Dispatcher(workload_of(study), RunOptions(), kept)
-        dispatcher.finish_here(partial(evaluate, study.model, study.settings))
+        dispatcher = Dispatcher(
+            workload_of(study), RunOptions(), kept, partial(evaluate, study.model, study.settings)
+        )
+        dispatcher.finish_here()
         print(f"{rows} rows kept: {time.process_time():.1f} s CPU", file=sys.stderr, flush=True)
         kept.dataset()
 

@@ -55,6 +55,8 @@ def cheapest(settings, error, goal):
 def compare(rivals, error_of, known, goal, unit="", amount=1.0):
     """Print the tools' settings, errors and times, and the ratios of times to the first tool's.
 
+    Returns these ratios by tool.
+
     Parameters
     ----------
     rivals : dict of str to Rival
@@ -85,8 +87,8 @@ def compare(rivals, error_of, known, goal, unit="", amount=1.0):
             seconds = _seconds(lambda rival=rival, s=setting: rival.run(rival.rows, s))
             best[name] = min(best[name], seconds / (rival.rows * amount))
     first = next(iter(best.values()))
+    ratios = {name: each / first for name, each in best.items()}
     for name, (setting, error) in chosen.items():
-        each = best[name]
-        print(
-            f"    {name:32s} {setting:9.3g} {error:9.1e} {each * 1e3:9.4f} ms {each / first:7.1f}"
-        )
+        time_each, ratio = f"{best[name] * 1e3:9.4f} ms", f"{ratios[name]:7.1f}"
+        print(f"    {name:32s} {setting:9.3g} {error:9.1e} {time_each} {ratio}")
+    return ratios

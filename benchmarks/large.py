@@ -26,6 +26,15 @@ Ten = NamedTuple("Ten", [(f"x{i}", _input(i)) for i in range(INPUTS)])  # noqa: 
 Ten._field_defaults.update(dict.fromkeys(Ten._fields, 0.5))
 
 
+LAWS = dict.fromkeys(Ten._fields, {"distribution": "uniform", "lower": 0.0, "upper": 1.0})
+
+
+def machine(name, title, batch):
+    """Return a model of ten inputs and twenty outputs."""
+    outputs = {f"y{k}": Output("1", f"output {k}") for k in range(OUTPUTS)}
+    return Model(name, title, "1", Ten, Settings, outputs, batch)
+
+
 def _batch(x, seed, settings):
     weights = np.random.default_rng(0).random((OUTPUTS, INPUTS)) ** 4
     outputs = {
@@ -34,16 +43,7 @@ def _batch(x, seed, settings):
     return outputs, np.zeros(len(x), np.int8)
 
 
-LARGE = Model(
-    "large",
-    "ten inputs and twenty outputs",
-    "1",
-    Ten,
-    Settings,
-    {f"y{k}": Output("1", f"output {k}") for k in range(OUTPUTS)},
-    _batch,
-)
-LAWS = dict.fromkeys(Ten._fields, {"distribution": "uniform", "lower": 0.0, "upper": 1.0})
+LARGE = machine("large", "ten inputs and twenty outputs", _batch)
 ANALYSIS = {
     "quantiles": [0.01, 0.05, 0.5, 0.95, 0.99],
     "thresholds": {f"y{k}": [1.0] for k in range(OUTPUTS)},

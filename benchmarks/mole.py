@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.compare import Rival, clock, compare
+from benchmarks.figures import Figure, keep
 from benchmarks.mole_modes import ELECTRIC, IMPACT, JOULE, PROGRESS
 from benchmarks.mole_rivals import by_runge_kutta, by_scipy
 from models.mole import MODEL, exact
@@ -116,6 +117,13 @@ def _results(end):
     return np.hstack([np.transpose(means) / DURATION, end[:3].T])
 
 
+PEERS = {
+    "heyoka, batches of 8, tolerance": "heyoka with events, in batches of 8",
+    "scipy DOP853, compiled, rtol": "scipy's DOP853 with events and compiled rates",
+    "Runge-Kutta, signum, steps": "Runge-Kutta steps through the jumps",
+}
+
+
 def settled_motion(frequency):
     stretch = Stretch(frequency)
     known = stretch.by_exact(KNOWN, 1e-13)
@@ -137,8 +145,12 @@ def settled_motion(frequency):
     steps = [round(100 * 1.5**k) for k in range(20)]
     jumps = {"Runge-Kutta, signum, steps": Rival(stretch.by_runge_kutta, steps, KNOWN)}
     print(f" {frequency:g} Hz")
-    compare(rivals | jumps, error_of, KNOWN, 1e-3, amount=DURATION)
-    compare(rivals, error_of, KNOWN, 1e-6, amount=DURATION)
+    found = []
+    for tools, goal in ((rivals | jumps, 1e-3), (rivals, 1e-6)):
+        what = f"settled motion of the mole at {frequency:g} Hz, to {goal:.0e}"
+        ratios = compare(tools, error_of, KNOWN, goal, amount=DURATION)
+        found += [Figure(what, PEERS[name], ratios[name]) for name in ratios if name in PEERS]
+    return found
 
 
 def study():
@@ -159,6 +171,5 @@ if __name__ == "__main__":
     if Taylor is None:
         print("heyoka is not installed and omitted")
     print("Settled motion: setting, error, time per simulated second, ratio")
-    for hertz in FREQUENCIES:
-        settled_motion(hertz)
+    keep("mole", [figure for hertz in FREQUENCIES for figure in settled_motion(hertz)])
     study()

@@ -4,12 +4,12 @@ Whole commands with one worker and with two, by turns, on compiled code. CPU tim
 cost whatever else the computer does; the times of a busy computer mean little.
 """
 
-import resource
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
+
+from benchmarks import children
+from benchmarks.figures import Figure, keep
 
 STUDY = "studies/beam-lifetime.toml"
 WORKERS = (1, 2)
@@ -19,10 +19,8 @@ REPEAT = 3
 def timed(study, workers, output):
     """Return the time and the CPU time of a whole run, all its processes together [s]."""
     options = ["-o", str(output), "--fresh", "--quiet", "--workers", str(workers)]
-    before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    subprocess.run([sys.executable, "-m", "uq", "run", study, *options], check=True)
-    seconds, after = time.perf_counter() - began, resource.getrusage(resource.RUSAGE_CHILDREN)
-    return seconds, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    taken = children.run([sys.executable, "-m", "uq", "run", study, *options])
+    return taken.seconds, taken.cpu
 
 
 def main(study=STUDY):
@@ -36,6 +34,9 @@ def main(study=STUDY):
     for workers, (seconds, cpu) in zip(WORKERS, best, strict=True):
         gain = best[0][0] / seconds
         print(f"  {workers} workers {seconds:7.1f} s {cpu:7.1f} s CPU {gain:6.2f} times as fast")
+    if study == STUDY:
+        rows = "6,000 rows of `beam-lifetime`, the whole command"
+        keep("scaling", [Figure(f"{rows}, two processes", "one process", gain)])
 
 
 if __name__ == "__main__":

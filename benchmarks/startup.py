@@ -4,13 +4,15 @@ CPU time, user and system, of complete commands in fresh processes with everythi
 median of five, each beside the import of numba and xarray.
 """
 
-import resource
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
+from subprocess import DEVNULL
+
+from benchmarks import children
+from benchmarks.figures import Figure, keep
 
 REFERENCE = (sys.executable, "-c", "import numba, xarray")
 REPEATS = 5
@@ -29,14 +31,6 @@ distribution = "lognormal"
 median = 2.5e-10
 sigma = 0.5
 """
-
-
-def cpu_seconds(command: Sequence[str]) -> float:
-    """Return the CPU time of a command and its children [s]."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
 def commands(folder: Path) -> dict[str, tuple[str, ...]]:
@@ -66,17 +60,32 @@ def main() -> None:
         taken: dict[str, list[float]] = {name: [] for name in rivals}
         reference = []
         for command in rivals.values():  # compile
-            subprocess.run(
-                command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-            )
+            children.run(command, stdout=DEVNULL, stderr=DEVNULL)
         for _ in range(REPEATS):
-            reference.append(cpu_seconds(REFERENCE))
+            reference.append(children.run(REFERENCE).cpu)
             for name, command in rivals.items():
-                taken[name].append(cpu_seconds(command))
+                taken[name].append(children.run(command, stdout=DEVNULL).cpu)
     unit = median(reference)
     print(f"{'import numba, xarray':<32}{unit:6.2f} s")
     for name, seconds in taken.items():
         print(f"{name:<32}{median(seconds):6.2f} s {median(seconds) / unit:6.2f}")
+    peer = "importing numba and xarray"
+    keep(
+        "startup",
+        [
+            Figure(f"CPU time of {_title(name)}", peer, median(seconds) / unit, longer=True)
+            for name, seconds in taken.items()
+        ],
+    )
+
+
+def _title(name: str) -> str:
+    """Name a command as users know it."""
+    verb, subject, *_ = name.split()
+    if verb == "run,":
+        return f"`uq run` of 1,000 rows that cost nothing, `--workers {subject}`"
+    rows = "" if verb == "simulate" else ", 10,000 rows"
+    return f"`uq {verb}` of `{subject}`{rows}"
 
 
 if __name__ == "__main__":

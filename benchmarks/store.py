@@ -13,6 +13,8 @@ from pathlib import Path
 
 import psutil
 
+from benchmarks.figures import Figure, keep
+
 STUDY = """
 [study]
 name = "linear"
@@ -56,7 +58,7 @@ def clock(command):
 
 
 def overhead(study):
-    """Print how much longer a run takes whose rows are kept on disk."""
+    """Print how much longer a run takes whose rows are kept on disk, and return it."""
     given = ["run", str(study), "--fresh", "-o"]
     kept = [sys.executable, "-m", "uq", *given, "kept.nc"]
     memory = [sys.executable, "-c", IN_MEMORY, *given, "memory.nc"]
@@ -65,7 +67,9 @@ def overhead(study):
     print(f"100,000 rows of 'linear', the whole command, best of {REPEAT}")
     print(f"  rows kept on disk   {with_store:6.2f} s")
     print(f"  rows in memory      {without:6.2f} s")
-    print(f"  ratio               {with_store / without:6.2f}")
+    ratio = with_store / without
+    print(f"  ratio               {ratio:6.2f}")
+    return Figure("100,000 rows kept on disk as they arrive", "kept in memory", ratio, longer=True)
 
 
 def memory(study):
@@ -95,8 +99,9 @@ def main():
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         study = Path("linear.toml")
         study.write_text(STUDY)
-        overhead(study)
+        figure = overhead(study)
         memory(study)
+    keep("store", [figure])
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.compare import Rival, clock, compare
+from benchmarks.figures import Figure, keep
 from benchmarks.shooting import rates, shoot
 from models.numerics.blocks import LANES
 from models.vibrator import MODEL, lanes
@@ -95,9 +96,21 @@ def by_lanes(rows, steps):
 
 def beside(rivals, known, goal):
     """Compare tools by the largest error of the angles [rad] of the first rows."""
-    compare(
+    return compare(
         rivals, lambda angles: np.abs(angles - known[: len(angles)]).max(), len(known), goal, " rad"
     )
+
+
+PEERS = {
+    "scipy DOP853, compiled, rtol": "scipy's DOP853 with compiled rates",
+    "heyoka, batches of 8, tolerance": "heyoka in batches of 8",
+    "shooting, steps a turn": "shooting, one machine at a time",
+}
+
+
+def figures(what, ratios):
+    """Return the figures of the first tool against its peers."""
+    return [Figure(what, PEERS[name], ratio) for name, ratio in ratios.items() if name in PEERS]
 
 
 def run_ups():
@@ -132,8 +145,11 @@ def run_ups():
             return angle_of(made[tolerance].advance(START[:n], DURATION))
 
         rivals["heyoka, batches of 8, tolerance"] = Rival(by_taylor, tolerances, ROWS)
+    found = []
     for goal in (1e-4, 1e-8):
-        beside(rivals, known, goal)
+        what = f"run-up of the vibrator, angle to {goal:.0e} rad"
+        found += figures(what, beside(rivals, known, goal))
+    return found
 
 
 def steady_states():
@@ -164,7 +180,8 @@ def steady_states():
             by_shooting, [round(16 * 1.1**k) for k in range(60)], KNOWN
         ),
     }
-    beside(rivals, known, 1e-8)
+    what = "steady state of the vibrator, angle to 1e-08 rad"
+    return figures(what, beside(rivals, known, 1e-8))
 
 
 def study():
@@ -189,7 +206,6 @@ def averaged_theory():
 
 
 if __name__ == "__main__":
-    run_ups()
-    steady_states()
+    keep("vibrator", run_ups() + steady_states())
     study()
     averaged_theory()

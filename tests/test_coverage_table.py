@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from benchmarks.coverage import fewer_rows, known_indices, noise, problems
+from benchmarks.coverage import fewer_rows, known_indices, nested, noise, problems
 from benchmarks.coverage.page import page
 from benchmarks.coverage.parts import PARTS
 from benchmarks.coverage.tally import Tally
@@ -99,7 +99,17 @@ def test_what_is_off_needs_a_reason():
 
 @pytest.mark.parametrize(
     "name",
-    ["plain-monte-carlo", "lives", "sobol-life", "shapley", "null-regional", "twin", "differences"],
+    [
+        "plain-monte-carlo",
+        "lives",
+        "sobol-life",
+        "shapley",
+        "nested-few-samples",
+        "levels-two-values",
+        "null-regional",
+        "twin",
+        "differences",
+    ],
 )
 def test_parts_count_what_is_printed(name):
     lines = PARTS[name].count(2)
@@ -116,3 +126,20 @@ def test_truths_of_the_random_model_are_those_of_many_rows():
         assert np.mean(b * (one - a)) == pytest.approx(noise.TRUTH["S1"][name], abs=0.03)
         assert np.mean((a - one) ** 2) / 2 == pytest.approx(noise.TRUTH["ST"][name], abs=0.03)
     assert np.mean((a - again) ** 2) / 2 == pytest.approx(noise.SHARE, abs=0.03)
+
+
+def test_truths_of_the_nested_model_are_those_of_many_rows():
+    more = {"units": 2, "repeats": 2}
+    study = problems.study_of("monte-carlo", 50_000, 1, nested.NAME, nested.LAWS, design=more)
+    ds = problems.computed(study)
+    y, upper = ds["y"].values.reshape(-1, 2, 2), ds["regime"].values.reshape(-1, 2, 2)
+    assert y.mean() == pytest.approx(nested.MEAN, abs=0.01)
+    assert y.var() == pytest.approx(nested.VARIANCE, rel=0.02)
+    assert np.mean(y > nested.RARE) == pytest.approx(1 - nested.cdf(nested.RARE), rel=0.1)
+    assert np.mean(y < nested.ppf(0.05)) == pytest.approx(0.05, rel=0.05)
+    shared = np.cov(y[:, 0, 0], y[:, 1, 1])[0, 1]
+    both = np.cov(y[:, 0, 0], y[:, 0, 1])[0, 1]
+    assert 12 * shared == pytest.approx(nested.PARTS["shared"], rel=0.05)
+    assert 12 * (both - shared) == pytest.approx(nested.PARTS["own"], rel=0.1)
+    assert upper.mean() == pytest.approx(nested.UPPER, abs=0.005)
+    assert np.mean(upper[..., 0] != upper[..., 1]) == pytest.approx(nested.ANOTHER, abs=0.005)

@@ -135,7 +135,7 @@ STUDY_FAULTS = [
     (
         {"uncertain": {"x3": {**UNIFORM, "meen": 1}}},
         "[uncertain.x3] meen = 1: no such argument of x3's law"
-        " (allowed: source, distribution, lower, upper, truncate, times)",
+        " (allowed: source, distribution, lower, upper, truncate, times, level)",
     ),
     (
         {"uncertain": {"x3": {**UNIFORM, "lower": "0"}}},

@@ -5,6 +5,7 @@ from .analysis.comparison import compare as compare
 from .analysis.convergence import enough as enough
 from .analysis.convergence import running_estimates as running_estimates
 from .analysis.fit_table import life_fits as life_fits
+from .analysis.level_table import levels as levels
 from .analysis.lifetime import survival as survival
 from .analysis.overview import summary as summary
 from .analysis.regime_table import regimes as regimes

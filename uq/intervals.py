@@ -3,7 +3,8 @@
 Rows are either independent (``replicate`` is None) or belong to independent replicates of a
 design, given as the replicate's number for each row. Formulas for independent rows are wrong for
 the rows of a Latin hypercube or a low-discrepancy sequence, whose estimates scatter less; there
-only the scatter between replicates shows the error. Where there is no interval (one replicate, too
+only the scatter between replicates shows the error. Where samples have several rows, samples stand
+for replicates (`uq.clusters.Clusters`). Where there is no interval (one replicate, too
 few rows, replicates that agree to the last bit) it is ``(nan, nan)``, never one of zero width.
 """
 
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uq.clusters import Clusters, linearised_means
 from uq.contract import Floats, Mask
 from uq.exact_shares import are_few, exact_interval
 from uq.quantile_functions import normal, student
@@ -133,7 +135,11 @@ def share_interval(
         return binomial_interval(hits.mean(), len(hits), confidence)
     return _floats(
         scattered_share_interval(
-            hits.mean(), by_replicate(hits, replicate), confidence=confidence, rows=len(hits)
+            hits.mean(),
+            by_replicate(hits, replicate),
+            confidence=confidence,
+            rows=len(hits),
+            samples=replicate.samples if isinstance(replicate, Clusters) else None,
         )
     )
 
@@ -168,6 +174,7 @@ def scattered_share_interval(
     scatter_at: Floats | float | None = None,
     confidence: float = CONFIDENCE,
     rows: Floats | float | None = None,
+    samples: int | None = None,
 ) -> Ends:
     """Return the interval of a share, or of several, from the estimates of replicates.
 
@@ -182,6 +189,9 @@ def scattered_share_interval(
     confidence : float, optional
     rows : float or ndarray, shape (k,), optional
         Of all replicates together: an upper limit of the effective number where hits are few.
+    samples : int, optional
+        Where samples have several rows, their number: the limit if nothing shows how the rows of
+        one agree. Hits are then counted in effective rows.
 
     Returns
     -------
@@ -200,14 +210,17 @@ def scattered_share_interval(
     found = _wilson(share, worth, wide)
     if rows is None:
         return found
-    worth = np.fmin(worth * (normal(upper_probability(confidence)) / wide) ** 2, rows)
-    few = are_few(share, rows)
+    limit = rows if samples is None else np.where(known, rows, np.minimum(rows, samples))
+    worth = np.fmin(worth * (normal(upper_probability(confidence)) / wide) ** 2, limit)
+    few = are_few(share, rows if samples is None else worth)
     low, high = exact_interval(share, worth, confidence)
     return np.where(few, low, found[0]), np.where(few, high, found[1])
 
 
 def by_replicate(values: NDArray[np.generic], replicate: NDArray[np.integer]) -> Floats:
-    """Return the mean of each replicate that has rows."""
+    """Return the mean of each replicate that has rows; of samples see `linearised_means`."""
+    if isinstance(replicate, Clusters):
+        return linearised_means(values, replicate)
     counts = np.bincount(replicate)
     sums = np.bincount(replicate, weights=values.astype(float))
     return sums[counts > 0] / counts[counts > 0]

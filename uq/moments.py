@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uq.clusters import Clusters
 from uq.estimate import Estimate
 from uq.intervals import (
     CONFIDENCE,
@@ -141,7 +142,8 @@ def sd_interval(
     -------
     low, high : float
         Independent rows: after [1]_, with the kurtosis of the rows. Replicates: Student's t of the
-        logarithms of their variances. In both the upper end is raised by what one more row as
+        logarithms of their variances; samples of several rows: of their mean squares, as the
+        relative error of the variance. In all the upper end is raised by what one more row as
         extreme as the farthest would add, since samples without such rows scatter too little.
 
     References
@@ -158,9 +160,14 @@ def sd_interval(
         low, high = variance * _bonett(values, squares, confidence)
     else:
         found = by_replicate(squares, replicate)
+        logarithm = float(np.log(variance))
+        if isinstance(replicate, Clusters):  # a few rows each: their logarithms scatter too much
+            low, high = np.exp(scatter_interval(logarithm, found / variance, confidence))
+            return float(np.sqrt(low)), float(
+                np.sqrt(high + found.max() / max(len(found), replicate.samples))
+            )
         if not (found > 0).all():
             return UNKNOWN
-        logarithm = float(np.log(variance))
         low, high = np.exp(scatter_interval(logarithm, np.log(found), confidence))
     return float(np.sqrt(low)), float(np.sqrt(high + squares.max() / n))
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from uq.clusters import Clusters
 from uq.intervals import (
     CONFIDENCE,
     ROUNDING,
@@ -100,8 +101,9 @@ def quantile_interval(
     if np.isnan(value):
         return UNKNOWN
     below = values < value if np.isposinf(value) else values <= value
+    several = {"rows": n, "samples": replicate.samples} if isinstance(replicate, Clusters) else {}
     low, high = scattered_share_interval(
-        probability, by_replicate(below, replicate), below.mean(), confidence
+        probability, by_replicate(below, replicate), below.mean(), confidence, **several
     )
     return (
         quantile(values, low) if low * n >= 1 else np.nan,

@@ -132,7 +132,8 @@ def percent_interval(low: float, high: float) -> str:
 
 def law(stated: Any) -> str:
     """Return the law of an input: ``normal(mean = 1.0, sd = 0.1)``."""
-    given = stated.model_dump(exclude={"distribution", "source", "times"}, exclude_none=True)
+    without = {"distribution", "source", "times", "level"}
+    given = stated.model_dump(exclude=without, exclude_none=True)
     if given.get("file") is not None:
         given.pop("values", None)  # a result keeps the file's name alone
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())

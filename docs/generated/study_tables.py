@@ -58,7 +58,7 @@ def laws() -> str:
 
 
 def _own(law: type[BaseModel]) -> list[str]:
-    common = ("distribution", "source", "truncate", "times")
+    common = ("distribution", "source", "truncate", "times", "level")
     return [name for name in law.model_fields if name not in common]
 
 

@@ -103,7 +103,7 @@ def _simulate_group(
     gaps, state = initial_gaps(p), initial_state(propagator, system, p)
     begin = state.copy()
     settled = settle(propagator, system, state, gaps)
-    work, error = settled.work.copy(), settled.error.copy()
+    work, error, regime = settled.work.copy(), settled.error.copy(), settled.regime.copy()
     add_step_error(propagator, system, state, gaps, settled)
     add_neighbour_error(propagator, system, begin, gaps, settled)
     share = wear_shares(p)
@@ -119,7 +119,7 @@ def _simulate_group(
         part = (
             find_random_lives(*start, error[rows] / NINE_IN_TEN, *wear)
             if is_random
-            else find_lives(*start, *wear)
+            else find_lives(*start, regime[rows], *wear)
         )
         for field, some in zip(lives, part, strict=True):
             field[rows] = some

@@ -18,7 +18,6 @@ Reading order; a module imports only those above it:
     events          event location within a step
     series          sums over power series of many systems
     tableaux        coefficients of the Runge-Kutta methods
-    tsit5           order 5, many systems, fixed steps
     nystrom         any tableau for q'' = f(q, q'), many systems, fixed steps
     dop853_step     order 8(5,3), one system: a step
     dop853          the same over any time, through guarded modes

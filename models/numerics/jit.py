@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, TypeVar
 
 import numba
 from numba.core.bytecode import FunctionIdentity
@@ -79,7 +79,7 @@ def kernel(function: Function) -> Function:
     compiled before. Products and sums are fused where the source says so; see
     `models.numerics.fma`.
     """
-    return _compiled(function, "never")
+    return _compiled(function)
 
 
 def lean(function: Function) -> Function:
@@ -88,17 +88,20 @@ def lean(function: Function) -> Function:
     Counting is atomic, and takes a third of the time of kernels that make many short calls. Use it
     for functions that a `kernel` calls; what Python calls must be a `kernel`.
     """
-    return _compiled(function, "never", _nrt=False)
+    return _compiled(function, _nrt=False)
 
 
 def inlined(function: Function) -> Function:
-    """Compile straight-line algebra into every calling kernel, so that its loops vectorise."""
-    return _compiled(function, "always")
+    """Compile straight-line algebra into every calling kernel, so that its loops vectorise.
+
+    LLVM does so. Where numba inlines instead, it types every copy anew, which takes seconds.
+    """
+    return _compiled(function, _nrt=False, forceinline=True)
 
 
-def _compiled(function: Function, inline: Literal["never", "always"], **more: bool) -> Function:
+def _compiled(function: Function, **more: bool) -> Function:
     more |= {"no_cfunc_wrapper": True}  # nobody calls a kernel from C
-    decorate: Any = partial(numba.njit, nogil=True, error_model="numpy", inline=inline, **more)
+    decorate: Any = partial(numba.njit, nogil=True, error_model="numpy", **more)
     typed_in = not Path(inspect.getfile(function)).is_file()  # an edit would go unnoticed
     folder = None if typed_in else folder_of(function)
     if folder is None:

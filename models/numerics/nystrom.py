@@ -9,6 +9,7 @@ This is the method of the same tableau with half the memory and half the loads.
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from models.numerics.blocks import LANES
 from models.numerics.fma import fma
-from models.numerics.jit import kernel
+from models.numerics.jit import kernel, lean
 from models.numerics.tableaux import Tableau
 
 STAGES = 12  # at most
@@ -72,7 +73,7 @@ def _combiner(
 
     # Terms after the n-th are removed at compile time. Two chains of sums, so that the additions do
     # not all wait for each other.
-    @kernel
+    @lean
     def combine(w):
         for j in range(whole):
             k, v_0 = w[rise + j], w[velocity + j]
@@ -122,10 +123,26 @@ def _product(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float
     return (exact(a) @ exact(b)).astype(float)
 
 
-def stepper(
-    quantities: int, slopes: int, method: Tableau, accelerate: Callable[[Any], None]
-) -> Callable[[Any], None]:
-    """Compile the steps of one method for one system.
+def weights(method: Tableau) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the weights of the slopes of s stages in velocities and in positions.
+
+    Parameters
+    ----------
+    method : Tableau
+
+    Returns
+    -------
+    a, b : ndarray, shape (s + 1, s)
+        For the arguments of the stages, then for the new state.
+    """
+    stages = method.matrix()
+    rows = np.vstack([stages, method.b])
+    return rows, _product(rows, stages)
+
+
+@cache
+def combiner(quantities: int, slopes: int, method: Tableau) -> Callable[[int, Any], None]:
+    """Compile what follows a stage of one method.
 
     Parameters
     ----------
@@ -135,6 +152,68 @@ def stepper(
         Offset in the block of the room for the slopes of all stages.
     method : Tableau
         With s <= 12 stages.
+
+    Returns
+    -------
+    kernel
+        ``combine(stage, block)``, given the accelerations of a stage, counted from 0, sets the
+        argument of the next; after the last, the new state.
+    """
+    at = layout(quantities)
+    a, b = weights(method)
+    stages = len(a) - 1
+    combiners = [
+        _combiner(
+            quantities,
+            slopes,
+            a[done][:done],
+            b[done][:done],
+            (at.position, at.velocity) if done == stages else (at.at, at.speed),
+        )
+        for done in range(1, stages + 1)
+    ]
+    spare = combiners[-1:] * (STAGES - stages)
+    c_1, c_2, c_3, c_4, c_5, c_6, c_7, c_8, c_9, c_10, c_11, c_12 = combiners + spare
+
+    @kernel
+    def combine(stage, w):
+        if stage == 0:
+            c_1(w)
+        elif stage == 1:
+            c_2(w)
+        elif stage == 2:
+            c_3(w)
+        elif stage == 3:
+            c_4(w)
+        elif stage == 4:
+            c_5(w)
+        elif stage == 5:
+            c_6(w)
+        elif stage == 6:
+            c_7(w)
+        elif stage == 7:
+            c_8(w)
+        elif stage == 8:
+            c_9(w)
+        elif stage == 9:
+            c_10(w)
+        elif stage == 10:
+            c_11(w)
+        else:
+            c_12(w)
+
+    return combine
+
+
+def stepper(
+    quantities: int, slopes: int, method: Tableau, accelerate: Callable[[Any], None]
+) -> Callable[[Any], None]:
+    """Compile the steps of one method for one system.
+
+    Parameters
+    ----------
+    quantities, slopes, method
+        As for `combiner`.
     accelerate : kernel
         ``accelerate(block)`` sets the accelerations, times the step, at `Layout.rise`.
 
@@ -144,24 +223,9 @@ def stepper(
         ``step(block)`` advances the state by one step. Call it from a module-level kernel, or it is
         not cached.
     """
-    at, whole = layout(quantities), 2 * quantities * LANES
+    at, whole, stages = layout(quantities), 2 * quantities * LANES, len(method.b)
     position, arguments = at.position, at.at
-    a = method.matrix()
-    rows = np.vstack([a, method.b])
-    squares = _product(rows, a)
-    stages = len(rows) - 1
-    combiners = [
-        _combiner(
-            quantities,
-            slopes,
-            rows[done][:done],
-            squares[done][:done],
-            (at.position, at.velocity) if done == stages else (at.at, at.speed),
-        )
-        for done in range(1, stages + 1)
-    ]
-    spare = combiners[-1:] * (STAGES - stages)
-    c_1, c_2, c_3, c_4, c_5, c_6, c_7, c_8, c_9, c_10, c_11, c_12 = combiners + spare
+    combine = combiner(quantities, slopes, method)
 
     @kernel
     def step(w):
@@ -169,29 +233,6 @@ def stepper(
             w[arguments + j] = w[position + j]
         for stage in range(stages):
             accelerate(w)
-            if stage == 0:
-                c_1(w)
-            elif stage == 1:
-                c_2(w)
-            elif stage == 2:
-                c_3(w)
-            elif stage == 3:
-                c_4(w)
-            elif stage == 4:
-                c_5(w)
-            elif stage == 5:
-                c_6(w)
-            elif stage == 6:
-                c_7(w)
-            elif stage == 7:
-                c_8(w)
-            elif stage == 8:
-                c_9(w)
-            elif stage == 9:
-                c_10(w)
-            elif stage == 10:
-                c_11(w)
-            else:
-                c_12(w)
+            combine(stage, w)
 
     return step

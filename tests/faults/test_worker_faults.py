@@ -1,8 +1,9 @@
 """Whatever happens to the processes that compute, the result is that of an undisturbed run."""
 
-import contextlib
+import signal
 import threading
 import time
+from functools import partial
 
 import numpy as np
 import psutil
@@ -11,18 +12,19 @@ from faulty_studies import PATIENCE, computed_here
 from in_memory import compute
 
 from uq.contract import Status
-from uq.errors import RunError
 from uq.rows.workload import workload_of
-from uq.running import isolation
+from uq.running import isolation, local_cluster, sent_chunks
 
 
-def workers():
-    """Return the living processes that compute rows for this one."""
+def processes(module, of=None):
+    """Return the living processes, started by this one, that run a module."""
     found = []
-    for child in psutil.Process().children():
-        with contextlib.suppress(psutil.NoSuchProcess):
-            if "uq.running.child" in child.cmdline() and child.status() != psutil.STATUS_ZOMBIE:
+    for child in (of or psutil.Process()).children(recursive=True):
+        try:
+            if module in child.cmdline() and child.status() != psutil.STATUS_ZOMBIE:
                 found.append(child)
+        except psutil.NoSuchProcess:
+            pass
     return found
 
 
@@ -34,34 +36,78 @@ def wait_for(condition):
 
 
 class Killer:
-    """Kills processes as rows of a run arrive; called with the run's progress."""
+    """Kills processes as rows of a run arrive; called with the run's progress.
 
-    def __init__(self, times, rows, all_of_them):
-        self.all = all_of_them
+    Each time it waits for a worker that has begun to compute: there is something to lose.
+    """
+
+    def __init__(self, module, times, rows, all_of_them):
+        self.module, self.all = module, all_of_them
         self.marks = [rows * (i + 1) // (times + 1) for i in range(times)]
 
     def __call__(self, progress):
         if not self.marks or progress.done < self.marks[0]:
             return
         self.marks.pop(0)
-        wait_for(workers)
-        for process in workers()[: None if self.all else 1]:
+        wait_for(self._at_work)
+        for process in self._at_work()[: None if self.all else 1]:
             process.kill()
+
+    def _at_work(self):
+        workers = {worker: processes(CHILD, worker) for worker in processes(WORKER)}
+        if self.module == WORKER:
+            return [worker for worker, children in workers.items() if children]
+        return [child for children in workers.values() for child in children]
+
+
+CHILD, WORKER = "uq.running.child", "uq.running.dask_worker"
 
 
 @pytest.mark.parametrize(
-    ("fault", "times", "all_of_them"),
+    ("fault", "module", "times", "all_of_them"),
     [
-        ("worker killed", 3, False),
-        pytest.param("all workers killed", 4, True, marks=pytest.mark.slow),
+        ("worker killed", WORKER, 1, False),
+        pytest.param("all workers killed", WORKER, 2, True, marks=pytest.mark.slow),
+        pytest.param("process of a worker killed", CHILD, 4, True, marks=pytest.mark.slow),
     ],
 )
-def test_killed_processes_leave_no_trace(study_of, injected, fault, times, all_of_them):
+def test_killed_processes_leave_no_trace(study_of, injected, fault, module, times, all_of_them):
     study = study_of(seconds=0.02)
-    killer = Killer(times, 120, all_of_them)
+    killer = Killer(module, times, 120, all_of_them)
     ds = compute(study, workers=2, chunk_rows=5, progress=killer)
     assert killer.marks == []
     injected(fault, times)
+    assert ds.identical(computed_here(study))
+
+
+@pytest.mark.slow
+def test_a_chunk_that_loses_three_workers_is_halved(study_of, monkeypatch, injected):
+    study = study_of(seconds=0.1, samples=60)
+    failed = []
+    real = sent_chunks.SentChunks._failed
+    monkeypatch.setattr(
+        sent_chunks.SentChunks,
+        "_failed",
+        lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
+    )
+
+    workers = partial(processes, WORKER)
+
+    def kill_thrice():
+        for _ in range(3):
+            # A worker that the scheduler knows is about to compute.
+            wait_for(lambda: [w for w in workers() if w.net_connections(kind="tcp")])
+            time.sleep(1.0)
+            for worker in workers():
+                worker.kill()
+                worker.wait(PATIENCE)
+
+    thread = threading.Thread(target=kill_thrice)
+    thread.start()
+    ds = compute(study, workers=1, chunk_rows=20)
+    thread.join()
+    assert "KilledWorker" in failed
+    injected("worker killed three times on a chunk")
     assert ds.identical(computed_here(study))
 
 
@@ -87,26 +133,27 @@ def test_a_row_is_not_guilty_because_its_process_was_killed_twice(study_of, inje
         chunk = process.evaluate(rows.x, rows.seed)
     finally:
         process.close()
-    injected("worker killed", 2)
+    injected("process of a worker killed", 2)
     assert chunk.status.tolist() == [Status.OK, Status.OK]
     assert np.array_equal(chunk.columns["y"], computed_here(study)["y"].values)
 
 
 @pytest.mark.slow
-def test_workers_that_cannot_live_end_the_run(study_of, injected):
+def test_workers_that_cannot_live_end_the_run(study_of, monkeypatch, injected):
+    monkeypatch.setattr(local_cluster, "_DEATHS_AT_MOST", 3)
     stop = threading.Event()
 
     def kill_on():
-        while not stop.wait(0.02):
-            for process in workers():
-                process.kill()
+        while not stop.wait(0.05):
+            for process in processes("uq.running.dask_worker"):
+                process.send_signal(signal.SIGKILL)
 
     injected("workers killed again and again")
     thread = threading.Thread(target=kill_on)
     thread.start()
     try:
-        with pytest.raises(RunError, match="a process for the rows could not start: Killed"):
-            compute(study_of(seconds=0.5, samples=600), workers=2, chunk_rows=1)
+        with pytest.raises(local_cluster.RunError, match="worker process"):
+            compute(study_of(seconds=0.5, samples=600), workers=1, chunk_rows=1)
     finally:
         stop.set()
         thread.join()
@@ -114,22 +161,23 @@ def test_workers_that_cannot_live_end_the_run(study_of, injected):
 
 @pytest.mark.slow
 def test_workers_that_can_start_no_process_end_the_run(study_of, monkeypatch, injected):
-    monkeypatch.setenv("UQ_TEST_CHILDREN_END", "1")
+    monkeypatch.setenv("UQ_TEST_WORKERS_CHILDREN_END", "1")
+    said = "no worker could compute rows .*: a process for the rows could not start: exit code 3"
     injected("workers that can start no process")
-    with pytest.raises(RunError, match="a process for the rows could not start: exit code 3"):
-        compute(study_of(seconds=0.01), workers=2, chunk_rows=20)
+    with pytest.raises(local_cluster.RunError, match=said):
+        compute(study_of(seconds=0.01), workers=1, chunk_rows=20)
 
 
 @pytest.mark.slow
-def test_processes_of_this_computer_listen_to_nobody(study_of):
+def test_everything_listens_on_this_computer_alone(study_of):
     listening = set()
 
     def look(progress):
-        assert progress.dashboard == ""
+        assert progress.dashboard == ""  # none that would not answer
         for process in (psutil.Process(), *psutil.Process().children(recursive=True)):
             for connection in process.net_connections(kind="inet"):
                 if connection.status == psutil.CONN_LISTEN:
                     listening.add(connection.laddr.ip)
 
     compute(study_of(seconds=0.02, samples=60), workers=2, chunk_rows=5, progress=look)
-    assert listening == set()
+    assert listening == {"127.0.0.1"}

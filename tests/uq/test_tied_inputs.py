@@ -61,7 +61,7 @@ def test_no_product_leaves_the_bounds():
         (
             {"x1": UNIFORM, "x2": {"equals": "x1", "distribution": "normal"}},
             '[uncertain.x2] distribution = "normal": no such argument of x2\'s law'
-            " (allowed: equals, source)",
+            " (allowed: equals, source, level)",
         ),
         ({"x1": UNIFORM, "x2": {"equals": "x1"}, "x3": {"equals": "x2"}}, "(allowed: x1)"),
         ({"x1": UNIFORM, "x2": UNIFORM | {"times": "x3"}}, "(allowed: x1)"),

@@ -6,6 +6,7 @@ import pandas as pd
 import xarray as xr
 
 from uq.analysis.convergence import COLUMNS, running_estimates
+from uq.analysis.level_shares import ByLevel, by_level
 from uq.analysis.summary import Summary, summarise
 from uq.errors import InputError
 from uq.indices.sensitivities import Sensitivities, sensitivities
@@ -51,6 +52,11 @@ class Findings:
             nothing = pd.DataFrame(columns=COLUMNS)
             nothing.attrs["refused"] = str(refused)
             return nothing
+
+    @cached_property
+    def levels(self) -> ByLevel:
+        """What `uq.analysis.level_shares.by_level` returns."""
+        return by_level(self.ds)
 
     def sensitivities(self, method: str) -> Sensitivities:
         """Return what `uq.indices.sensitivities.sensitivities` finds by a method.

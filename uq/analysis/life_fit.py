@@ -33,8 +33,8 @@ MOST_DRAWN = 400 * REFITS
 LEVEL = 0.05
 
 INDEPENDENT_ONLY = (
-    "the test of fit holds for independent rows; use method = 'monte-carlo', or, of imported rows"
-    " that are independent, independent = true"
+    "the test of fit holds for independent rows; use method = 'monte-carlo' with one row a sample,"
+    " or, of imported rows that are independent, independent = true"
 )
 
 ASSUMES = (

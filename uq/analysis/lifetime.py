@@ -8,6 +8,7 @@ import xarray as xr
 from uq.analysis.failed_rows import outer, with_failed_at
 from uq.analysis.kaplan_meier import Outliving, outliving
 from uq.analysis.survival_band import simultaneous_band
+from uq.clusters import Clusters, dealt
 from uq.exact_shares import are_few, exact_interval
 from uq.intervals import (
     CONFIDENCE,
@@ -143,14 +144,17 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
     found = outliving(values, censored, time, known_at_once=known_at_once)
     if replicate is None:
         return Curve(found.share, *_greenwood(found))
-    of = replicate[element.present]
+    of = dealt(replicate[element.present])
     estimates = [
         outliving(values[of == r], censored[of == r], time, known_at_once=known_at_once).share
         for r in np.unique(of)
     ]
     seen = len(values) - np.searchsorted(np.sort(values[censored]), time, side="right")
     rows = np.where((found.share > 0) & (found.share < 1), seen, np.nan)
-    interval = scattered_share_interval(found.share, np.array(estimates), rows=rows)
+    samples = replicate.samples if isinstance(replicate, Clusters) else None
+    interval = scattered_share_interval(
+        found.share, np.array(estimates), rows=rows, samples=samples
+    )
     return Curve(found.share, *interval)
 
 

@@ -16,7 +16,15 @@ from uq import intervals, two_samples
 from uq.analysis.estimators import MEAN, SD, Estimator, Sample
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
-from uq.rows.elements import Floats, are_independent, independent_rows, replicates_of, study_file_of
+from uq.rows.elements import (
+    Floats,
+    are_independent,
+    has_independent_samples,
+    independent_rows,
+    replicates_of,
+    study_file_of,
+)
+from uq.rows.nesting import is_nested
 from uq.study.file import Tied
 
 _ROUNDING = 1e-6  # an interval so much narrower than the plain ones is zero but for rounding
@@ -58,7 +66,9 @@ def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
         return _kinship_of_imported(first, second)
     if first.attrs["seed"] != second.attrs["seed"]:
         return Kinship.STRANGERS
-    independent = [DESIGNS[ds.attrs["design"]].independent for ds in both]
+    independent = [has_independent_samples(ds) for ds in both]
+    if any(independent) and any(is_nested(ds) for ds in both):
+        return Kinship.UNKNOWN
     if all(independent):
         same = _columns(first) == _columns(second)
         return Kinship.ROWS if same else Kinship.UNKNOWN

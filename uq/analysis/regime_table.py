@@ -23,6 +23,7 @@ from uq.rows.elements import (
     replicates_of,
     shown_outputs,
 )
+from uq.rows.nesting import one_of_each_sample
 
 PROBABILITIES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
@@ -64,8 +65,12 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
         for name, variable in rows.data_vars.items()
         if variable.attrs["role"] == "input"
     }
+    plain = one_of_each_sample(rows)
+    own = {name: plain[name].values for name in inputs}
     quantiles = [[_quantiles(x[hits]) for x in inputs.values()] for hits in members]
-    distances = [_distances(inputs, target) for target in category_targets(rows, "regime")]
+    far = {target.name: _distances(own, target) for target in category_targets(plain, "regime")}
+    unknown = [np.nan] * (len(inputs) + 1)
+    distances = [far.get(f"P(regime={name})", unknown) for name in codes]
     found = [
         target
         for element in elements_of(rows, shown_outputs(rows, analysis_of(rows)))

@@ -12,6 +12,7 @@ from uq.indices.independent_inputs import independent_inputs
 from uq.inputs.conditioning import cdf_within, factor_of, ppf_within
 from uq.inputs.law import Law
 from uq.rows.elements import Floats, independent_rows
+from uq.rows.nesting import one_of_each_sample
 from uq.rows.sampling import row_block, rows
 from uq.study.definition import Study
 from uq.study.input_checks import laws_of
@@ -60,8 +61,8 @@ def sampled_inputs(study: Study) -> dict[str, SampledInput]:
 
 
 def drawn_inputs(study: Study) -> dict[str, Floats]:
-    """Return the first rows of a study, each input as its own law gives it."""
-    x = row_block(study, 0, min(rows(study), MAX_ROWS)).x
+    """Return the first rows of a study, one of each sample, each input as its own law gives it."""
+    x = row_block(study, 0, min(rows(study), MAX_ROWS)).x[:: study.design.rows_of_a_sample]
     column = {name: x[:, i] for i, name in enumerate(study.model.parameter_names)}
     return {
         name: column[name] if law.times is None else factor_of(law, column[name], column[law.times])
@@ -123,7 +124,7 @@ def laws_and_values(ds: xr.Dataset) -> dict[str, tuple[Law, Floats]]:
     dict of str to tuple of Law and ndarray
         For a parameter that is another times a factor, those of the factor.
     """
-    plain = independent_rows(ds)
+    plain = one_of_each_sample(independent_rows(ds))
     if plain.sizes["sample"] == 0:
         return {}
     values = independent_inputs(plain)

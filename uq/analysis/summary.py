@@ -20,9 +20,9 @@ from uq.rows import stopping
 from uq.rows.elements import (
     Element,
     analysis_of,
-    are_independent,
     elements_of,
     flags,
+    has_independent_samples,
     independent_rows,
     output_names,
     replicates_of,
@@ -31,6 +31,7 @@ from uq.rows.elements import (
     why_no_statistics,
 )
 from uq.rows.in_regime import within_regime
+from uq.rows.nesting import is_nested, nesting_of, size_in_words
 from uq.study.file import AnalysisTable
 
 NO_INTERVALS = (
@@ -42,6 +43,8 @@ NOT_STATED = (
     "no intervals: how the imported rows were drawn is unknown; if they are independent draws from"
     " the laws, set independent = true in [design]"
 )
+
+SEVERAL_ROWS = "the rows of one sample are not independent ({size}): intervals rest on samples"
 
 NO_STATISTICS = "no statistics: the rows of a '{design}' design {why}; see 'uq sensitivity'"
 
@@ -208,7 +211,11 @@ def _notes(ds: xr.Dataset) -> list[str]:
     notes = []
     if design.until is not None:
         notes.append(stopping.sentence(design, ds))
-    if not are_independent(ds) and ds.attrs["replicates"] == 1:
+    if is_nested(ds):
+        place = nesting_of(ds)
+        size = size_in_words(place.samples, place.units, place.repeats)
+        notes.append(SEVERAL_ROWS.format(size=size))
+    if not has_independent_samples(ds) and ds.attrs["replicates"] == 1:
         reason = NOT_STATED if DESIGNS[ds.attrs["design"]].imported else NO_INTERVALS
         notes.append(reason.format(design=ds.attrs["design"]))
     return notes

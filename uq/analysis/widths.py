@@ -1,7 +1,8 @@
 """The expected width of the intervals of a study, from a few of its rows.
 
 From the spread of independent rows. Intervals from replicates scatter, and good designs make them
-narrower: for these the width is about the largest to expect.
+narrower: for these the width is about the largest to expect. So it is where samples have several
+rows: as if these agreed.
 """
 
 from collections.abc import Mapping
@@ -22,9 +23,9 @@ from uq.rows.elements import (
     Element,
     Floats,
     analysis_of,
-    are_independent,
     elements_of,
     flags,
+    has_independent_samples,
     independent_rows,
     shown_outputs,
 )
@@ -74,7 +75,7 @@ def expected_widths(pilot: xr.Dataset) -> dict[str, Widths]:
     samples, replicates = pilot.attrs["samples"], pilot.attrs["replicates"]
     labels = [label for _, label in flags(pilot["block"])]
     rows = samples * replicates * (2 if "A" in labels else 1)
-    factor = _factor(are_independent(pilot), replicates)
+    factor = _factor(has_independent_samples(pilot), replicates)
     keys = [pilot[name].values for name in ("block", "group", "replicate")]
     groups = np.lexsort(keys).reshape(-1, len(labels))
     method = piloted_by(DESIGNS[pilot.attrs["design"]])

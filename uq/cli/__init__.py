@@ -19,8 +19,9 @@ _when_interrupted = "interrupted"
 
 _ALLOCATIONS = 100_000  # between searches for garbage; imports allocate much and discard little
 
-_READERS = ("summary", "sensitivity", "convergence", "compare", "plot", "report")
-"""Verbs that only read results."""
+_READERS = ("summary", "sensitivity", "levels", "convergence", "compare", "plot", "report")
+"""Verbs that only read results. For each array of one, xarray would import dask to ask whether it
+is one of dask's: here none is."""
 
 
 def main() -> NoReturn:
@@ -29,7 +30,7 @@ def main() -> NoReturn:
         signal.signal(number, _stop)
     gc.set_threshold(_ALLOCATIONS)
     if sys.argv[1:2] and sys.argv[1] in _READERS:
-        forgo_dask()
+        sys.modules.setdefault("dask", None)  # type: ignore[arg-type]  # "not installed"
     for name, value in SINGLE_THREADED.items():
         os.environ.setdefault(name, value)
     streams.watch()
@@ -43,15 +44,6 @@ def main() -> NoReturn:
             raise
         code = 1
     sys.exit(streams.finish(code))
-
-
-def forgo_dask() -> None:
-    """Have dask pass for not installed, unless xarray, or a model, has looked for it already.
-
-    For each array of a result, xarray would import it to ask whether the array is one of dask's.
-    """
-    if "xarray" not in sys.modules:
-        sys.modules.setdefault("dask", None)  # type: ignore[arg-type]
 
 
 def say_when_interrupted(sentence: str) -> None:

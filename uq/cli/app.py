@@ -20,6 +20,7 @@ VERBS = (
     results.verify,
     results.summary,
     results.sensitivity,
+    results.levels,
     results.convergence,
     results.compare,
     results.twin,

@@ -3,6 +3,7 @@
 from itertools import combinations
 
 from uq.cli.printing import grid, heading, number
+from uq.designs.levels import OWN
 from uq.designs.registry import DESIGNS
 from uq.methods.registry import fed_by
 from uq.rows.sampling import group_size, rows
@@ -17,10 +18,17 @@ def check(path: str, model: str | None) -> None:
     design = study.design
     heading(f"{path}: valid", study.description)
     kind = DESIGNS[design.method]
-    factors = {"replicates": design.replicates, "rows each": group_size(study)}
+    factors = {
+        "replicates": design.replicates,
+        "rows each": group_size(study),
+        "units": design.units,
+        "repeats": design.repeats,
+    }
     parts = [f"{design.samples} samples"]
     parts += [f"{count} {name}" for name, count in factors.items() if count > 1]
     stated = ", stated to be independent" * design.independent
+    if design.rows_of_a_sample > 1 and kind.independent:
+        stated += "; those of one sample are not"
     dependent = study.dependence is not None or (kind.imported and not design.independent)
     shared = study.random and kind.shares_seeds
     seeds = "the model is random: rows that are compared share a seed"
@@ -39,7 +47,11 @@ def check(path: str, model: str | None) -> None:
     heading("\nUncertain inputs")
     laws = [(name, law(stated), _unit(study, name)) for name, stated in study.uncertain.items()]
     ties = [(name, f"equals {tied.equals}", "") for name, tied in study.tied.items()]
-    grid(laws + ties, header=("parameter", "distribution", "unit"))
+    header = ("parameter", "distribution", "unit")
+    if design.rows_of_a_sample > 1 or set(study.levels) != {OWN}:
+        grid([(*line, study.level(line[0])) for line in laws + ties], header=(*header, "level"))
+    else:
+        grid(laws + ties, header=header)
     _show_sampled(study)
 
 
@@ -52,13 +64,14 @@ def _show_sampled(study: Study) -> None:
     """Print the law of each input as stated and in the rows."""
     from uq.analysis.sampled_inputs import MAX_ROWS, sampled_inputs, sampled_ranks
 
-    count = min(rows(study), MAX_ROWS)
+    count = -(-min(rows(study), MAX_ROWS) // study.design.rows_of_a_sample)
     found = sampled_inputs(study)
     if not found:
         print(f"\nThe rows of a '{study.design.method}' design do not follow these laws.")
         return
+    nested = study.design.rows_of_a_sample > 1
     heading(
-        f"\nIn {count} rows",
+        f"\nIn {count} rows{', one of each sample' * nested}",
         f"(independent rows would be less than {1.36 / count**0.5:.2g} off in 19 of 20 cases)",
     )
     lines = []

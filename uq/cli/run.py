@@ -18,8 +18,14 @@ from uq.rows import results
 from uq.running import runner
 from uq.running.options import Progress, RunOptions
 from uq.store import folder_of
-from uq.study.definition import Study
+from uq.study.definition import Study, load_study
 from uq.upkeep.amending import study_of
+
+
+def loaded(path: str, model: str | None, samples: int | None) -> Study:
+    """Return a study, with another number of samples if one is given."""
+    study = load_study(path, model)
+    return study if samples is None else study.with_samples(samples)
 
 
 def amended(

@@ -37,6 +37,10 @@ class Design:
         Whether the rows of a replicate, or A and B of a crossed design, follow the laws.
     least : int
         The smallest number of samples.
+    nests : bool
+        Whether a sample may have several rows (`uq.designs.levels`).
+    most_inputs : int or None
+        Largest number of coordinates of a point, if it is limited.
     caution : str
         A sentence shown with every index from its rows, or "".
     """
@@ -49,6 +53,8 @@ class Design:
     independent: bool = False
     follows_laws: bool = True
     least: int = 1
+    nests: bool = False
+    most_inputs: int | None = None
     caution: str = ""
 
     @property

@@ -9,16 +9,32 @@ from functools import partial
 from uq.designs.curves import LEAST_POINTS, fast_curves, random_balance
 from uq.designs.design import Design
 from uq.designs.layouts import CROSSED, CURVES, PATHS, TRAJECTORIES
-from uq.designs.sequences import halton, latin_hypercube, monte_carlo, paths, sobol
+from uq.designs.sequences import (
+    MOST_OF_SOBOL,
+    halton,
+    latin_hypercube,
+    monte_carlo,
+    paths,
+    sobol,
+)
 from uq.designs.trajectories import POOL, morris_trajectories
 
 DESIGNS = {
-    "monte-carlo": Design("independent rows", monte_carlo, independent=True),
+    "monte-carlo": Design("independent rows", monte_carlo, independent=True, nests=True),
     "latin-hypercube": Design(
-        "each input stratified into as many slices as samples", latin_hypercube, append_only=False
+        "each input stratified into as many slices as samples",
+        latin_hypercube,
+        append_only=False,
+        nests=True,
     ),
-    "sobol": Design("scrambled Sobol' sequence, samples a power of two", sobol, power_of_two=True),
-    "halton": Design("scrambled Halton sequence", halton),
+    "sobol": Design(
+        "scrambled Sobol' sequence, samples a power of two",
+        sobol,
+        power_of_two=True,
+        nests=True,
+        most_inputs=MOST_OF_SOBOL,
+    ),
+    "halton": Design("scrambled Halton sequence", halton, nests=True),
     "saltelli": Design(
         "scrambled Sobol' sequence crossed for Sobol' indices, samples a power of two",
         sobol,

@@ -12,6 +12,9 @@ import numpy as np
 
 from uq.designs.streams import Points, drawn_at_once, generator, inside, replicate_seed
 
+MOST_OF_SOBOL = 21_201
+"""Dimensions that `scipy.stats.qmc.Sobol` has direction numbers for."""
+
 
 def monte_carlo(seed: int, replicates: int, d: int, samples: int, start: int, stop: int) -> Points:
     """Draw independent points."""

@@ -50,7 +50,7 @@ def evaluator_of(study: Study, output: str, options: RunOptions) -> Iterator[Eva
         def evaluator(x: Floats, seed: NDArray[np.uint64]) -> Chunk:
             batch = work._replace(total=len(x), block=Rows.without_design(x, seed).part)
             store = MemoryStore(batch)
-            executor.finish(Dispatcher(batch, options, store))
+            executor.finish(Dispatcher(batch, options, store, executor.evaluate))
             return store.chunk()
 
         yield evaluator

@@ -20,6 +20,7 @@ from uq.methods.registry import METHODS, designs_for, fed_by, for_dependent_inpu
 from uq.methods.sample import Sample
 from uq.rows.elements import analysis_of, independent_rows, why_no_statistics
 from uq.rows.in_regime import within_regime
+from uq.rows.nesting import is_nested, one_of_each_sample
 from uq.tails import lacks_variance
 
 FEWEST_HITS = 5
@@ -27,6 +28,12 @@ FEWEST_HITS = 5
 
 ENOUGH_HITS = 20
 """With fewer in each replicate the indices come with a warning."""
+
+
+ONE_ROW = (
+    "from one row of each sample, since rows of one sample are not independent; see 'uq levels'"
+)
+"""The note on indices where samples have several rows."""
 
 
 @dataclass(frozen=True)
@@ -127,9 +134,12 @@ def sensitivities(
         why = "within a regime the inputs depend on each other"
     else:
         why = why_dependent(ds)
+    nested, ds = is_nested(ds), one_of_each_sample(ds)
     method = method or [*methods(ds, bool(why)), *fed_by(DESIGNS[ds.attrs["design"]])][0]
     _check_method(ds.attrs["design"], method, why)
     sample, notes = sample_of(ds), tuple(notes_on_inputs(ds))
+    if nested:
+        notes = (*notes, ONE_ROW)
     if sample.random and METHODS[method].noise:
         notes = (*notes, METHODS[method].noise)
     found: dict[str, TargetIndices] = {}
@@ -140,7 +150,14 @@ def sensitivities(
         own = replace(sample, values=target.values, quantiles=quantiles)
         found[target.name] = one = _indices(ds, METHODS[method], target, own, notes)
         (whole if one.refused else used).append(own.whole)
+    if nested:
+        found = {name: _with_reason(one) for name, one in found.items()}
     return Sensitivities(method, *_counts(*(used or whole), rows=len(sample.values)), found)
+
+
+def _with_reason(one: TargetIndices) -> TargetIndices:
+    """Return indices of one row a sample, with that reason where there are none."""
+    return replace(one, refused=f"{one.refused}; {ONE_ROW}") if one.refused else one
 
 
 def _indices(

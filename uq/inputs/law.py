@@ -4,7 +4,10 @@ from abc import abstractmethod
 from math import inf
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+
+from uq.designs.levels import LEVELS, OWN
+from uq.errors import nearest
 
 Positive = Annotated[float, Field(gt=0)]
 
@@ -13,6 +16,17 @@ LIST = Field(strict=False)
 
 STRICT = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 """What every table of a study file asks of its keys and values."""
+
+
+def _known_level(level: str) -> str:
+    if level not in LEVELS:
+        raise ValueError(f"no such level{nearest(level, LEVELS)} (allowed: {', '.join(LEVELS)})")
+    return level
+
+
+Level = Annotated[str, AfterValidator(_known_level)]
+LEVEL_SCHEMA: dict[str, Any] = {"enum": list(LEVELS)}
+LEVEL_MEANING = ", ".join(f"{name}: {meaning}" for name, meaning in LEVELS.items())
 
 
 class Law(BaseModel):
@@ -32,6 +46,7 @@ class Law(BaseModel):
     times: str | None = Field(
         None, description="another uncertain parameter; the law is that of its factor"
     )
+    level: Level = Field(OWN, description=LEVEL_MEANING, json_schema_extra=LEVEL_SCHEMA)
 
     @abstractmethod
     def frozen(self) -> Any:

@@ -17,6 +17,7 @@ from uq.report.convergence import convergence_of
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
+from uq.report.levels import levels_of
 from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
 from uq.report.pictures import pictures
 from uq.rows.elements import study_file_of
@@ -113,6 +114,7 @@ def _content(ds: xr.Dataset) -> dict[str, Any]:
         "results_drawn": [one for one in drawn if one.of.name not in lives],
         "lives": list(result_tables(found, of_lives=True)),
         "lives_drawn": [one for one in drawn if one.of.name in lives],
+        "levels": levels_of(findings),
         "methods": methods,
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
         "text_is_cut": len(ds.attrs["study"]) > _SHOWN_TEXT,

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import xarray as xr
 
+from uq.clusters import Clusters
 from uq.contract import Floats as Floats
 from uq.contract import Mask as Mask
 from uq.designs.layouts import CURVES, NOISE
@@ -14,6 +15,7 @@ from uq.intervals import Replicates
 from uq.rows.columns import censored_name
 from uq.rows.element import Element as Element
 from uq.rows.element import elements_in
+from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed
 from uq.rows.variables import outputs_of
 from uq.study.file import AnalysisTable, StudyFile
@@ -52,12 +54,24 @@ def why_no_statistics(ds: xr.Dataset) -> str:
 
 
 def replicates_of(rows: xr.Dataset) -> Replicates:
-    """Return the replicate of each row, or None if the rows are independent."""
-    return None if are_independent(rows) else rows["replicate"].values
+    """Return the replicate of each row, or None if the rows are independent.
+
+    Where samples have several rows, `Clusters`: of independent samples, the sample of each row.
+    """
+    if not is_nested(rows):
+        return None if are_independent(rows) else rows["replicate"].values
+    place = nesting_of(rows)
+    of = place.sample if has_independent_samples(rows) else rows["replicate"].values
+    return Clusters(of, place.samples)
 
 
 def are_independent(ds: xr.Dataset) -> bool:
     """Whether the rows of a result (blocks A and B of a crossed design) are independent."""
+    return has_independent_samples(ds) and not is_nested(ds)
+
+
+def has_independent_samples(ds: xr.Dataset) -> bool:
+    """Whether samples are independent, however many rows each has."""
     design = DESIGNS[ds.attrs["design"]]
     return design.independent or (design.imported and study_file_of(ds).design.independent)
 

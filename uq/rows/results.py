@@ -79,8 +79,11 @@ def build(
     """
     model = study.model
     varied = dict(study.uncertain) | dict(study.tied)
+    nested = study.design.rows_of_a_sample > 1
     inputs = {
-        name: parameter_variable(model, name, rows.x[:, i], varied[name].source)
+        name: parameter_variable(
+            model, name, rows.x[:, i], varied[name].source, study.level(name) if nested else ""
+        )
         if name in varied
         else parameter_variable(model, name, study.fixed.get(name, model.nominal[name]))
         for i, name in enumerate(model.parameter_names)

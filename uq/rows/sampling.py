@@ -1,7 +1,8 @@
 """The rows of a study: any range of them, from the unit cube to physical inputs, bit for bit.
 
 Further samples append rows: row = (j * replicates + r) * blocks + b for base point j, replicate r
-and block b of its group.
+and block b of its group. Where a sample has units and repeats, it has one block, and
+row = ((j * replicates + r) * units + u) * repeats + v for unit u and repeat v.
 """
 
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uq.contract import Floats
+from uq.designs.levels import coordinates, dimension
 from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import factor_ends, ppf_between, ppf_within
 from uq.inputs.data_files import numbers
@@ -67,7 +69,13 @@ def group_size(study: "Study") -> int:
 
 def rows(study: "Study") -> int:
     """Return the number of rows of a study."""
-    return study.design.samples * study.design.replicates * group_size(study)
+    return study.design.samples * rows_per_sample(study)
+
+
+def rows_per_sample(study: "Study") -> int:
+    """Return the number of rows that one more sample of each replicate adds."""
+    design = study.design
+    return design.replicates * group_size(study) * design.rows_of_a_sample
 
 
 def row_block(study: "Study", start: int, stop: int) -> Rows:
@@ -85,12 +93,14 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
         Row i depends, to the bit, only on the study and i, not on the range.
     """
     table, labels = study.design, block_labels(study)
-    place, block = np.divmod(np.arange(start, stop), len(labels))
+    place, within = np.divmod(np.arange(start, stop), table.rows_of_a_sample)
+    place, block = np.divmod(place, len(labels))
     group, replicate = np.divmod(place, table.replicates)
     keys = group, block
     if study.random:
         keys = DESIGNS[table.method].layout.shared_seeds(group, block, labels)
-    seeds = row_seeds(table.seed, replicate, *keys)
+    own = np.divmod(within, table.repeats) if table.rows_of_a_sample > 1 else ()
+    seeds = row_seeds(table.seed, replicate, *keys, *own)
     x = _imported(study, start, stop) if study.imported else _drawn(study, start, stop)
     return Rows(x, seeds, replicate.astype(np.int32), group, block.astype(np.int16))
 
@@ -98,20 +108,22 @@ def row_block(study: "Study", start: int, stop: int) -> Rows:
 def _drawn(study: "Study", start: int, stop: int) -> Floats:
     """Return the inputs of the rows start..stop, shape (n, all parameters)."""
     table = study.design
-    per_group = table.replicates * group_size(study)
-    first, last = start // per_group, -(-stop // per_group)
+    levels, per_sample = study.levels, rows_per_sample(study)
+    first, last = start // per_sample, -(-stop // per_sample)
     cube = DESIGNS[table.method].unit_rows(
         seed=table.seed,
         replicates=table.replicates,
-        d=len(study.uncertain),
+        d=dimension(levels, table.units, table.repeats),
         samples=table.samples,
         second_order=table.second_order,
         start=first,
         stop=max(first, last),
         random=study.random,
     )
-    offset = first * per_group
-    unit = cube.reshape(-1, cube.shape[-1])[start - offset : stop - offset]
+    if table.rows_of_a_sample > 1:
+        cube = cube[..., coordinates(levels, table.units, table.repeats)]
+    offset = first * per_sample
+    unit = cube.reshape(-1, len(levels))[start - offset : stop - offset]
     return physical(study, unit)
 
 

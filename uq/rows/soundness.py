@@ -32,6 +32,7 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
     for place in _PLACES:
         if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
             yield f"'{place}' is not one integer per row"
+    yield from _nesting_faults(ds)
     for flag in ("block", "status"):
         if fault := _flag_fault(ds[flag]):
             yield fault
@@ -51,6 +52,23 @@ def _faults(ds: xr.Dataset) -> Iterator[str]:
                 yield f"'{name}' lacks the attribute '{attribute}'"
         if role == "output":
             yield from _output_faults(str(name), variable)
+
+
+def _nesting_faults(ds: xr.Dataset) -> Iterator[str]:
+    """Yield what is wrong with samples of several rows."""
+    if "world" not in ds.variables:
+        return
+    for place, size in (("world", ""), ("unit", "units"), ("repeat", "repeats")):
+        if place not in ds or ds[place].dims != ("sample",) or ds[place].dtype.kind not in "iu":
+            yield f"'{place}' is not one integer per row"
+            return
+        most = ds.attrs.get(size, np.iinfo(np.int64).max if not size else 0)
+        if not isinstance(most, int | np.integer) or not 1 <= most:
+            yield f"attribute '{size}' is not a positive number"
+        elif ((ds[place].values < 0) | (ds[place].values >= most)).any():
+            yield f"'{place}' is out of range"
+        elif size and most > ds.sizes["sample"]:
+            yield f"attribute '{size}' is larger than the number of rows"
 
 
 def _output_faults(name: str, variable: xr.DataArray) -> Iterator[str]:

@@ -14,7 +14,7 @@ import xarray as xr
 from uq import intervals, order_statistics
 from uq.estimate import NOTHING, Estimate
 from uq.moments import moments
-from uq.rows.elements import Element, independent_rows, named_elements
+from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
 
 if TYPE_CHECKING:
     from uq.study.file import DesignTable, Until
@@ -68,7 +68,7 @@ def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
     until = design.until
     assert until is not None
     rows = independent_rows(ds)
-    replicate = None if design.has_independent_rows else rows["replicate"].values
+    replicate = replicates_of(rows)
     seen = [
         _estimate(element, until, replicate, confidence(design))
         for element in named_elements(rows, until.output)

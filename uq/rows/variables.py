@@ -24,7 +24,7 @@ Columns = Mapping[str, NDArray[Any]]
 
 
 def parameter_variable(
-    model: Model, name: str, value: Any, source: str = ""
+    model: Model, name: str, value: Any, source: str = "", level: str = ""
 ) -> tuple[Any, Any, Any]:
     """Return the variable of a parameter: one number, or one per row."""
     declared = model.parameter(name)
@@ -36,6 +36,7 @@ def parameter_variable(
         "symbol": declared.symbol,
         "source": source or declared.source,
     }
+    attrs |= {"level": level} if level else {}
     return (("sample",), value, attrs) if uncertain else ((), np.float64(value), attrs)
 
 
@@ -117,12 +118,21 @@ def places(study: "Study", rows: "Rows", numbers: NDArray[np.int64] | None) -> d
     sample = ("sample",)
     numbers = np.arange(len(rows.x)) if numbers is None else numbers
     block = {"long_name": "block of the design"} | _flags(block_labels(study), np.int16)
-    return {
+    found = {
         "sample": (sample, numbers, {"long_name": "row"}),
         "replicate": (sample, rows.replicate, {"long_name": "independent scramble of the design"}),
         "group": (sample, rows.group, {"long_name": "base point of the design"}),
         "block": (sample, rows.block, block),
     }
+    design = study.design
+    if design.rows_of_a_sample > 1:
+        within = numbers % design.rows_of_a_sample
+        unit, repeat = np.divmod(within, design.repeats)
+        world = rows.group * design.replicates + rows.replicate
+        found["world"] = (sample, world, {"long_name": "sample, whose units share inputs"})
+        found["unit"] = (sample, unit.astype(np.int32), {"long_name": "unit of the sample"})
+        found["repeat"] = (sample, repeat.astype(np.int32), {"long_name": "repeat of the unit"})
+    return found
 
 
 def _flags(labels: Sequence[str], dtype: type[np.integer[Any]], first: int = 0) -> dict[str, Any]:
@@ -135,6 +145,7 @@ def _flags(labels: Sequence[str], dtype: type[np.integer[Any]], first: int = 0) 
 def study_attributes(study: "Study") -> dict[str, Any]:
     """Return the attributes of a result of a study."""
     design = study.design
+    nested = design.rows_of_a_sample > 1
     return (
         {"title": study.description or study.name}
         | model_attributes(study.model)
@@ -149,6 +160,7 @@ def study_attributes(study: "Study") -> dict[str, Any]:
             "seed": design.seed,
         }
         | ({"random": 1} if study.random else {})
+        | ({"units": design.units, "repeats": design.repeats} if nested else {})
         | made_here(study.model_reference)
     )
 

@@ -55,6 +55,14 @@ def evaluate_rows(
         return child.evaluate(x, seed, start), time.perf_counter() - began
 
 
+def begin_child(spec: ModelSpec, limit: float | None) -> None:
+    """Start a child before there are rows for it; parameters as of `evaluate_rows`."""
+    child = Isolated(spec, limit)
+    child.begin()
+    with _lock:
+        _idle.append(child)
+
+
 def end_children() -> None:
     """End the idle children."""
     with _lock:

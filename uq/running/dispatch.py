@@ -7,15 +7,18 @@ computes them changes no bit of the result.
 import time
 from collections import deque
 from math import ceil
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from uq.rows.evaluate import Chunk, KernelError
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
-from uq.running.crew import Crew
 from uq.running.isolation import Evaluate
 from uq.running.options import DEFAULTS, Progress, RunOptions
+from uq.running.sent_chunks import SentChunks
 from uq.store import DiskStore, MemoryStore, row_bytes
+
+if TYPE_CHECKING:
+    from uq.running.workers import Workers
 
 CHUNK_SECONDS = 0.5
 """Work in a chunk, unless the number of rows is given or there are many workers."""
@@ -26,9 +29,8 @@ _CHUNKS_PER_SECOND = 50
 # Longest chunk that is a whole block of the kernel: half a block may take as long.
 _BLOCK_SECONDS = 5.0
 _FIRST_ROWS = 16
-SENT_PER_THREAD = 2
-"""Chunks sent to each thread of a cluster: one under way, the next at hand."""
-
+_SENT_CHUNKS = 4  # at least, also while workers start
+_SENT_PER_THREAD = 2  # one under way, the next at hand
 _SENT_BYTES = 2_000_000_000  # inputs of all chunks sent: the scheduler keeps them, too
 _LAST_SHARE = 1 / 8  # of a chunk: smaller chunks at the end would waste work
 _GROWTH = 4  # of the first chunks
@@ -54,9 +56,9 @@ class ChunkSizes(NamedTuple):
         """Rows of the first chunk, before the cost of a row is known."""
         return self.whole_groups(self.options.chunk_rows or _FIRST_ROWS)
 
-    def following(self, size: int, row_seconds: float, threads: int = 1) -> int:
-        """Return the rows of a chunk after one of `size` rows, 0 if it is the first."""
-        return min(_GROWTH * size or self.first, self.good(row_seconds, threads))
+    def following(self, size: int, row_seconds: float) -> int:
+        """Return the rows of the chunk after one of `size` rows, while chunks grow."""
+        return min(_GROWTH * size, self.good(row_seconds))
 
     def good(self, row_seconds: float, threads: int = 1) -> int:
         """Return the rows of a good chunk.
@@ -70,7 +72,7 @@ class ChunkSizes(NamedTuple):
         """
         limit, wish = self.options.row_limit, self.options.chunk_rows
         inputs = 8 * len(self.workload.model.parameter_names)
-        sent = _SENT_BYTES // (SENT_PER_THREAD * threads * inputs)
+        sent = _SENT_BYTES // (_SENT_PER_THREAD * threads * inputs)
         most = max(1, min(_CHUNK_BYTES // row_bytes(self.workload), sent))
         if limit and row_seconds:  # chunks of sound rows must not be stopped
             most = max(1, min(most, int(_LIMIT_SHARE * limit / row_seconds)))
@@ -96,6 +98,8 @@ class Dispatcher:
     options : RunOptions
     store : MemoryStore or DiskStore
         Keeps the rows; missing rows are computed.
+    evaluate : callable
+        Computes rows on this computer.
     stop : int, optional
         Number after the last row that is wanted; by default all are.
 
@@ -114,58 +118,65 @@ class Dispatcher:
         workload: Workload,
         options: RunOptions,
         store: MemoryStore | DiskStore,
+        evaluate: Evaluate,
         stop: int | None = None,
     ) -> None:
         self.workload = workload
         self.store = store
         self._options = options
         self._sizes = ChunkSizes(workload, options)
+        self._evaluate = evaluate
         stop = store.total if stop is None else stop
         self._todo = deque((a, min(b, stop)) for a, b in store.missing if a < stop)
         self.rows = sum(b - a for a, b in self._todo)
         self._untaken = self.left = self.rows
         self.row_seconds = 0.0
-        self._largest = 0  # chunk that has arrived
         self._dashboard = ""
 
-    def begin_here(self, evaluate: Evaluate, share: float) -> None:
-        """Run the first rows with `evaluate`, in growing chunks, until one takes long enough.
+    def begin_here(self, share: float) -> None:
+        """Run the first rows here, in growing chunks, until a chunk takes long enough.
 
         The first call may compile, so only later ones show the cost of a row. At most about `share`
         of all rows to be computed run here.
         """
+        size = self._sizes.first
         least_left = (1 - share) * self._untaken
-        self._here(evaluate)
+        self._here(size)
         spent = 0.0
         while spent < CHUNK_SECONDS and self._untaken > least_left:
-            spent += self._here(evaluate)
+            size = self._sizes.following(size, self.row_seconds)
+            spent += self._here(size)
 
-    def finish_here(self, evaluate: Evaluate) -> None:
-        """Run the remaining rows with `evaluate`."""
+    def finish_here(self) -> None:
+        """Run the remaining rows without workers."""
         while self.left:
-            self._here(evaluate)
+            self._here(self._sizes.good(self.row_seconds))
 
-    def finish_on(self, crew: Crew) -> None:
-        """Have the remaining rows computed."""
+    def finish_on(self, crew: "Workers") -> None:
+        """Run the remaining rows on workers, and here until a local worker is there."""
         self._dashboard = crew.dashboard
+        sent = SentChunks(self.workload, crew, self._options.row_limit)
         while self.left:
-            # Only as many chunks are sent as keep the crew busy.
-            while self._untaken and len(crew) < crew.room:
-                crew.send(*self._take(self._shared(max(1, crew.threads))))
-            for start, some, chunk, seconds in crew.returned():
+            threads = crew.threads
+            sharing = max(1, threads or crew.own)
+            # Only as many chunks are sent as keep the workers busy.
+            while self._untaken and len(sent) < max(_SENT_CHUNKS, _SENT_PER_THREAD * sharing):
+                sent.send(*self._take(self._shared(sharing)))
+            if crew.own and not threads and self._untaken:
+                self._here(self._shared(sharing))
+            for start, some, chunk, seconds in sent.returned():
                 if seconds:  # unknown for a row that was given up
                     self.row_seconds = seconds / len(some.x)
                 self._keep(start, some, chunk)
-            crew.expect(self.row_seconds * self.left)
             self.store.keep_up()
 
-    def _here(self, evaluate: Evaluate) -> float:
-        """Run the next rows; return the time it took [s]."""
+    def _here(self, size: int) -> float:
+        """Run the next rows on this computer; return the time it took [s]."""
         if not self._untaken:
             return 0.0
-        start, some = self._take(self._sizes.following(self._largest, self.row_seconds))
+        start, some = self._take(size)
         began = time.perf_counter()
-        chunk = evaluate(some.x, some.seed, start)
+        chunk = self._evaluate(some.x, some.seed, start)
         seconds = time.perf_counter() - began
         self.row_seconds = seconds / len(some.x)
         self._keep(start, some, chunk)
@@ -183,7 +194,6 @@ class Dispatcher:
         self.store.preview.add(chunk)
         self.store.add(start, some, chunk)
         self.left -= len(some.x)
-        self._largest = max(self._largest, len(some.x))
         self.report_progress()  # at once: an interrupt reports how many rows are kept
         wrong = self.store.shapes_all_wrong
         if wrong and self.store.done >= min(_ENOUGH_ROWS, self.store.total):
@@ -199,7 +209,7 @@ class Dispatcher:
 
     def _shared(self, threads: int) -> int:
         """Return the rows of the next chunk, so that all threads finish together."""
-        size = self._sizes.following(self._largest, self.row_seconds, threads)
+        size = self._sizes.good(self.row_seconds, threads)
         least = int(_LAST_SHARE * size)
         share = max(ceil(self._untaken / threads), least)
         if self._untaken - share < least:  # too few for another chunk

@@ -1,8 +1,8 @@
-"""Who computes rows: this process, others on this computer, or the workers of a cluster."""
+"""Who computes rows: this computer, and dask workers if the work is worth starting them."""
 
 from contextlib import ExitStack
 from functools import partial
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,29 +12,33 @@ from uq.contract import Floats
 from uq.interrupts import in_background
 from uq.rows.evaluate import Chunk, evaluate
 from uq.rows.workload import Workload
-from uq.running.cores import cores
-from uq.running.crew import Crew
 from uq.running.dispatch import Dispatcher
-from uq.running.isolation import Action, Evaluate, isolated
-from uq.running.local_processes import SHORT_SECONDS, local_processes
+from uq.running.isolation import Action, Evaluate, isolated, spec_of
 from uq.running.options import RunOptions
+
+if TYPE_CHECKING:
+    from uq.running.workers import Workers
+
+SHORT_SECONDS = 4.0
+"""Shorter work is not worth starting workers."""
 
 
 def in_one_process(workers: int | None, seconds: float) -> bool:
-    """Return whether one process computes work that takes it so long [s]."""
+    """Return whether one process computes work that takes it so long [s], without workers."""
     return workers == 0 or (workers is None and seconds < SHORT_SECONDS)
 
 
 def processes(workload: Workload, workers: int | None) -> int:
-    """Return how many processes compute at the same time, if the work is worth starting them."""
-    groups = workload.total // workload.group or np.inf  # 0: not known yet
-    return int(min(1 if workers == 0 else workers or cores(), groups))
+    """Return how many processes compute at the same time, if the work is worth starting workers."""
+    from uq.running.local_cluster import CORES
+
+    return min(1 if workers == 0 else workers or CORES, workload.total // workload.group)
 
 
 class Executor:
     """Computes the rows of one dispatcher after another; a context manager.
 
-    The processes stay for the next dispatcher.
+    Workers start when they are first needed, and stay for the next dispatcher.
 
     Parameters
     ----------
@@ -44,11 +48,18 @@ class Executor:
     compiling : callable
         Called when compilation of the model starts.
 
+    Attributes
+    ----------
+    evaluate : Evaluate
+        Computes rows on this computer, in a separate process unless the user wants none.
+
     Raises
     ------
     InputError
         When options exclude each other.
     """
+
+    evaluate: Evaluate
 
     def __init__(
         self, workload: Workload, options: RunOptions, compiling: Action = lambda: None
@@ -56,22 +67,17 @@ class Executor:
         options.check()
         self._workload, self._options = workload, options
         self._compiling = compiling
-        self._here: Evaluate | None = None
-        self._crew: Crew | None = None
+        self._crew: Workers | None = None
         self._stack = ExitStack()
+        self._seconds = 0.0
 
     def __enter__(self) -> Self:
-        workload, workers, limit = self._workload, self._options.workers, self._options.row_limit
-        if workers == 0:
+        if self._options.workers == 0:
             self._stack.enter_context(compilation(self._compiling))
-            self._here = partial(_in_process, workload)
-        elif self._options.scheduler is not None:
-            process = isolated(workload, limit, self._compiling)
-            self._here = self._stack.enter_context(process)
+            self.evaluate = partial(_in_process, self._workload)
         else:
-            most = processes(workload, workers)
-            crew = local_processes(workload, most if workers else 1, most, limit, self._compiling)
-            self._crew = self._stack.enter_context(crew)
+            process = isolated(self._workload, self._options.row_limit, self._compiling)
+            self.evaluate = self._stack.enter_context(process)
         return self
 
     def __exit__(self, *exception: object) -> None:
@@ -79,21 +85,40 @@ class Executor:
 
     def finish(self, dispatcher: Dispatcher) -> None:
         """Have all rows of a dispatcher computed."""
-        if self._options.scheduler is not None and self._crew is None:
-            self._crew = self._cluster(self._options.scheduler)  # before anything is computed
-        if self._here is not None and self._crew is not None:
-            dispatcher.begin_here(self._here, share=1 / 8)
-        if self._crew is not None:
-            dispatcher.finish_on(self._crew)
-        elif self._here is not None:
-            dispatcher.finish_here(self._here)
+        workers = self._options.workers
+        if self._options.scheduler is not None:
+            crew = self._started(dispatcher)  # before anything is computed
+            dispatcher.begin_here(share=1 / 8)
+            dispatcher.finish_on(crew)
+            return
+        begun = not workers and self._crew is None
+        if begun:
+            dispatcher.begin_here(share=1)
+        # Counting earlier dispatchers, is the work worth starting workers?
+        seconds = self._seconds + dispatcher.row_seconds * dispatcher.left
+        if self._crew is None and in_one_process(workers, seconds):
+            dispatcher.finish_here()
+        elif dispatcher.left:
+            crew = self._started(dispatcher)
+            if not begun:
+                dispatcher.begin_here(share=1 / 8)  # while they start
+            dispatcher.finish_on(crew)
+        self._seconds += dispatcher.row_seconds * dispatcher.rows
 
-    def _cluster(self, address: str) -> Crew:
-        from uq.running.remote_cluster import remote_workers
-        from uq.running.sent_chunks import SentChunks
+    def _started(self, dispatcher: Dispatcher) -> "Workers":
+        from uq.running.local_cluster import local_workers
 
-        workers = self._stack.enter_context(remote_workers(address))
-        return SentChunks(self._workload, workers, self._options.row_limit)
+        if self._crew is None:
+            if self._options.scheduler is not None:
+                from uq.running.remote_cluster import remote_workers
+
+                crew = remote_workers(self._options.scheduler)
+            else:
+                wanted = spec_of(self._workload), self._options.row_limit
+                count = processes(dispatcher.workload, self._options.workers)
+                crew = local_workers(count, wanted)
+            self._crew = self._stack.enter_context(crew)
+        return self._crew
 
 
 def _in_process(workload: Workload, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk:

@@ -9,7 +9,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from math import ceil
 from multiprocessing import Pipe
@@ -71,6 +71,7 @@ def isolated(
     """
     process = Isolated(spec_of(workload), limit, compiling)
     with undone(process.close):
+        process.begin()
         yield process.evaluate
 
 
@@ -94,6 +95,7 @@ class Isolated:
         self._compiling = compiling
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
+        self._ready = False
         self._grace = 0.0
         self._closed = threading.Event()
 
@@ -126,15 +128,9 @@ class Isolated:
                 break
         return lost_rows(*self.spec.load(), 1, cast(Fault, outcome), start)
 
-    def stop(self) -> None:
-        """Have the process end, from any thread: whoever waits for its rows gets a `RunError`."""
-        self._closed.set()
-        if process := self._process:
-            process.kill()
-
     def close(self) -> None:
         """End the process, whatever it is doing."""
-        self.stop()
+        self._closed.set()
         self._end(at_once=True)
 
     def _ask(self, x: Floats, seed: NDArray[np.uint64], start: int) -> Chunk | Fault:
@@ -169,6 +165,23 @@ class Isolated:
             else:
                 return kind, value
 
+    def begin(self) -> Connection:
+        """Start the process, unless done, without waiting for it; `start` sees whether it lives."""
+        if self._connection:
+            return self._connection
+        self._connection, there = Pipe()
+        with there, suppress(OSError):
+            self._process = subprocess.Popen(
+                command("uq.running.child", str(there.fileno())),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                pass_fds=(there.fileno(),),
+                start_new_session=True,  # Ctrl-C reaches this process, which ends the other
+                env=inherited(),
+            )
+            self._connection.send(self.spec)
+        return self._connection
+
     def start(self) -> Connection:
         """Start the process and load the model, unless done; again if it is killed meanwhile.
 
@@ -179,26 +192,13 @@ class Isolated:
         RunError
             When it cannot start, or was closed.
         """
-        if self._connection:
+        if self._connection and self._ready:
             return self._connection
         for _ in range(_STARTS):
             if self._closed.is_set():
                 raise RunError("the process for the rows was ended")
-            connection, there = Pipe()
-            with there:
-                self._process = subprocess.Popen(
-                    command("uq.running.child", str(there.fileno())),
-                    stdin=subprocess.PIPE,
-                    stdout=subprocess.DEVNULL,
-                    pass_fds=(there.fileno(),),
-                    start_new_session=True,  # Ctrl-C reaches this process, which ends the other
-                    env=inherited(),
-                )
-            self._connection = connection
-            if self._closed.is_set():  # just now: `stop` may have come too early to see it
-                self._process.kill()
             try:
-                connection.send(self.spec)
+                connection = self.begin()
                 kind, value = connection.recv()
             except (EOFError, OSError):
                 reason = self._end()
@@ -206,7 +206,7 @@ class Isolated:
             if kind == child.REFUSED:
                 self._end()
                 raise value
-            self._grace = _FIRST_SECONDS
+            self._grace, self._ready = _FIRST_SECONDS, True
             return connection
         raise RunError(f"a process for the rows could not start: {reason}")
 
@@ -214,6 +214,7 @@ class Isolated:
         """End the process, unless it is already dying; return how it ended."""
         process, connection = self._process, self._connection
         self._process = self._connection = None
+        self._ready = False
         if connection:
             connection.close()
         if not process:

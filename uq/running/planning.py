@@ -32,10 +32,10 @@ PILOT_SECONDS = 8.0
 _FILE_BYTES = 30_000  # names, units, the study
 _CHUNKS_AT_LEAST = 2  # per process
 _GOLDEN = (5**0.5 - 1) / 2
-# The overhead of a run and that of more processes, as multiples of the time that loading its
-# packages takes: both grow together on a busy computer.
+# The overhead of a run, as a multiple of the time that loading its packages takes: both grow
+# together on a busy computer.
 _RUN_LOADS = 1.5
-_MORE_LOADS = 0.5
+_WORKERS_LOADS = 2.0
 
 
 class Cost(NamedTuple):
@@ -97,10 +97,10 @@ def pilot(
             stack.enter_context(isolated(workload, None, compiling)) for _ in range(count)
         ]
         load_seconds = _load_seconds()
-        row_seconds = _warm_up(workload, evaluators)
+        row_seconds, first_seconds = _warm_up(workload, evaluators)
         size = ChunkSizes(workload).good(row_seconds)
         done, chunks = _spread_chunks(workload, evaluators, size)
-    some, found, seconds = zip(*done, strict=True)
+    starts, some, found, seconds = zip(*done, strict=True)
     rows = Rows(*(np.concatenate(parts) for parts in zip(*some, strict=True)))
     row_seconds, error = _row_cost(seconds, [len(part.x) for part in some], chunks)
 
@@ -112,15 +112,17 @@ def pilot(
     if in_one_process(workers, alone):
         count = 1
     beside = _RUN_LOADS * load_seconds
-    if count > 1:
-        beside += _MORE_LOADS * load_seconds
+    if workers or count > 1:
+        beside += _WORKERS_LOADS * load_seconds + first_seconds
     shares = 1.0, max(0.0, 1 - error), 1 + error
     likely, low, high = (alone / count * share + beside for share in shares)
     times = row_seconds, likely, low, high
     cost = Cost(total, count, len(rows.x), *times, result_bytes, kept + result_bytes)
     chunk = joined(found)
     failures = {label: f"row {row}: {text}" for label, (row, text) in chunk.failures.items()}
-    return cost, results.build(study, rows, chunk.columns, chunk.status, failures)
+    parts = zip(starts, some, strict=True)
+    numbers = np.concatenate([np.arange(start, start + len(part.x)) for start, part in parts])
+    return cost, results.build(study, rows, chunk.columns, chunk.status, failures, numbers)
 
 
 def _load_seconds() -> float:
@@ -140,10 +142,11 @@ def _timed(
     return rows, chunk, time.perf_counter() - began
 
 
-def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> float:
+def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> tuple[float, float]:
     """Compile the model in one process, and load it in the others.
 
-    Then one process computes growing chunks, as at the start of a run: return the time of a row.
+    Then one process computes growing chunks, as a run does before it starts workers: return the
+    time of a row, and of all those rows.
     """
     sizes = ChunkSizes(workload)
     size, seconds = min(workload.total, sizes.first), 0.0
@@ -154,14 +157,14 @@ def _warm_up(workload: Workload, evaluators: Sequence[Evaluate]) -> float:
         seconds += last
         grown = min(sizes.following(size, last / size), workload.total)
         if seconds > CHUNK_SECONDS or grown <= size:
-            return last / size
+            return last / size, seconds
         size = grown
 
 
 def _spread_chunks(
     workload: Workload, evaluators: Sequence[Evaluate], size: int
-) -> tuple[list[tuple[Rows, Chunk, float]], int]:
-    """Return chunks spread over the study, with the time of each, and how many it has in all.
+) -> tuple[list[tuple[int, Rows, Chunk, float]], int]:
+    """Return chunks spread over the study, with their first row and time, and how many it has.
 
     They are cut as in a run: rows that are computed together may share work.
     """
@@ -182,7 +185,7 @@ def _spread_chunks(
 
     with ThreadPoolExecutor(len(evaluators)) as pool:
         list(pool.map(compute, evaluators))
-    return [done[start] for start in sorted(done)], chunks
+    return [(start, *done[start]) for start in sorted(done)], chunks
 
 
 def _spread(count: int) -> list[int]:

@@ -187,7 +187,7 @@ def carry_out(
     with Executor(workload, options, compiling) as executor:
         for part in (*_interim_studies(study, kept), None):
             stop = rows(part) if part else workload.total
-            dispatcher = Dispatcher(workload, options, there, stop)
+            dispatcher = Dispatcher(workload, options, there, executor.evaluate, stop)
             if there.found:
                 dispatcher.report_progress()
             executor.finish(dispatcher)

@@ -1,7 +1,8 @@
 """Chunks sent to dask workers: what returns, and what is sent again.
 
-The chunks of a killed worker are computed by another. A chunk that kills workers more often than
-dask's ``allowed-failures`` is halved until the guilty row is found, which is marked as crashed.
+The chunks of a killed worker are computed by another. A chunk that kills own workers `TRIES` times,
+or those of a cluster more often than dask's ``allowed-failures``, is halved until the guilty row is
+found, which is marked as crashed.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -9,12 +10,10 @@ from typing import TYPE_CHECKING, Any
 from uq.contract import Status
 from uq.errors import InputError, RunError
 from uq.provenance import versions
-from uq.rows.evaluate import Fault, lost_rows
+from uq.rows.evaluate import Chunk, Fault, lost_rows
 from uq.rows.sampling import Rows
 from uq.rows.workload import Workload
-from uq.running.crew import Returned
 from uq.running.dask_task import evaluate_rows
-from uq.running.dispatch import SENT_PER_THREAD
 from uq.running.isolation import TRIES, spec_of
 
 if TYPE_CHECKING:
@@ -23,14 +22,16 @@ if TYPE_CHECKING:
     from uq.running.workers import Workers
 
 _WAIT_SECONDS = 0.2
-_SENT_CHUNKS = 4  # at least
 
 _Sent = tuple[int, Rows, int]
 """Number of the first row, the rows, and how often they have been sent."""
 
+Returned = tuple[int, Rows, Chunk, float]
+"""Number of the first row, the rows, their outputs, and what they cost [s], 0 if unknown."""
+
 
 class SentChunks:
-    """The `Crew` of a cluster: the chunks that its workers have, or are about to get.
+    """Chunks that workers have, or are about to get.
 
     Parameters
     ----------
@@ -53,24 +54,6 @@ class SentChunks:
 
     def __len__(self) -> int:
         return len(self._under_way) + len(self._unsent)
-
-    @property
-    def threads(self) -> int:
-        """See `Workers.threads`."""
-        return self._crew.threads
-
-    @property
-    def room(self) -> int:
-        """So many that each thread has its next chunk at hand."""
-        return max(_SENT_CHUNKS, SENT_PER_THREAD * self.threads)
-
-    @property
-    def dashboard(self) -> str:
-        """See `Workers.dashboard`."""
-        return self._crew.dashboard
-
-    def expect(self, seconds: float) -> None:
-        """Do nothing: who owns the cluster decides how many workers there are."""
 
     def send(self, start: int, rows: Rows, tries: int = 1) -> None:
         """Have some rows computed."""

@@ -1,4 +1,4 @@
-"""The workers of a dask cluster, as a run sees them."""
+"""Dask workers as a run sees them, whoever started them."""
 
 import gc
 import logging
@@ -18,10 +18,13 @@ class Workers:
     Attributes
     ----------
     client : distributed.Client
+    own : int
+        Workers that this process started, 0 on an existing cluster.
     """
 
-    def __init__(self, client: Client, watch: Callable[[int, bool], None]) -> None:
+    def __init__(self, client: Client, watch: Callable[[int, bool], None], own: int = 0) -> None:
         self.client = client
+        self.own = own
         self._watch = watch
         self._threads, self._counted = 0, 0.0
 
@@ -32,7 +35,9 @@ class Workers:
 
     @property
     def dashboard(self) -> str:
-        """Address of the dashboard, or ""."""
+        """Address of the dashboard of an existing cluster, or ""."""
+        if self.own:  # nothing is behind the address that dask reports
+            return ""
         try:
             return str(self.client.dashboard_link or "")
         except (KeyError, OSError):  # no dashboard, or the scheduler has just gone
@@ -55,7 +60,7 @@ class Workers:
         return self._threads
 
     def watch(self, progress: bool = False) -> None:
-        """See that the cluster is still there; to be called regularly.
+        """Replace dead workers if this process started them; to be called regularly.
 
         Parameters
         ----------
@@ -65,7 +70,7 @@ class Workers:
         Raises
         ------
         RunError
-            When no workers are to be expected.
+            When no workers are to be expected: they cannot start, keep dying, or stay away.
         """
         self._watch(self.threads, progress)
 

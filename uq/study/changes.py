@@ -33,6 +33,11 @@ def what_changed(text: str, model_version: str, study: Study) -> str:
     except (ValueError, OverflowError, RecursionError):
         before = {}
     now = dict(_entries(read_toml(study.text)))
+    if study.design.rows_of_a_sample == 1:  # then no row depends on a level
+        before, now = (
+            {place: value for place, value in entries.items() if place[2:] != ("level",)}
+            for entries in (before, now)
+        )
     for place in before | now:
         if before.get(place) != now.get(place):
             *tables, name = place

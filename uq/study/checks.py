@@ -5,6 +5,7 @@ from typing import Any
 
 from uq.contract import Model
 from uq.designs.design import Design
+from uq.designs.levels import MAX_ROWS_OF_A_SAMPLE, OWN, dimension
 from uq.designs.registry import DESIGNS
 from uq.errors import nearest
 from uq.inputs.faults import Fault
@@ -103,6 +104,7 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     problems = {}
     if "samples" in table and (problem := design.size_problem(table["samples"])):
         problems["samples"] = f"{problem} for '{method}'"
+    problems |= dict(_nesting_problems(table, tables["uncertain"]))
     if "second_order" in asks and not design.crossed:
         problems["second_order"] = f"only for method = {_able(lambda d: d.crossed)}"
     if "independent" in asks and not stated:
@@ -116,14 +118,21 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
         )
     for key, problem in problems.items():
         yield Fault(("design", key), problem, True if key == "until" else table[key])
-    if "tolerance" in asks and not design.independent and not stated:
+    several = _rows_of_a_sample(table) > 1
+    if "tolerance" in asks and several:
+        problem = f"refused: its confidence assumes independent rows, {_SEVERAL}"
+        yield Fault(("analysis", "tolerance"), problem, analysis["tolerance"])
+    elif "tolerance" in asks and not design.independent and not stated:
         able = independent + ", independent = true if they are" * design.imported
         problem = (
             f"refused: its confidence assumes independent rows, and those of '{method}' are not;"
             f" use method = {able}, or leave the bound out"
         )
         yield Fault(("analysis", "tolerance"), problem, analysis["tolerance"])
-    if "twin" in asks and not design.independent:
+    if "twin" in asks and several:
+        problem = f"needs independent rows, {_SEVERAL}"
+        yield Fault(("analysis", "twin"), problem, analysis["twin"])
+    elif "twin" in asks and not design.independent:
         why = (
             "needs rows that can be drawn, and imported rows cannot"
             if stated
@@ -134,6 +143,39 @@ def design_faults(tables: Tables) -> Iterator[Fault]:
     unsaid = design.imported and not stated
     dependent = bool(tables["dependence"]) or unsaid
     yield from _method_faults(method, analysis.get("sensitivity", ()), dependent, unsaid)
+
+
+_SEVERAL = "and the units and repeats of one sample are not; set both to 1, or leave it out"
+
+
+def _rows_of_a_sample(table: Mapping[str, Any]) -> int:
+    """Return units times repeats of a [design]."""
+    return int(table.get("units", 1) * table.get("repeats", 1))
+
+
+def _nesting_problems(
+    table: Mapping[str, Any], uncertain: Mapping[str, Any]
+) -> Iterator[tuple[str, str]]:
+    """Yield why a design cannot have the units or repeats asked for: key and problem."""
+    units, repeats, method = table.get("units", 1), table.get("repeats", 1), table["method"]
+    asked = [key for key in ("units", "repeats") if table.get(key, 1) > 1]
+    if not asked:
+        return
+    if not DESIGNS[method].nests:
+        able = _able(lambda d: d.nests)
+        for key in asked:
+            yield key, f"a sample of a '{method}' design has no {key}; use method = {able}"
+    elif units * repeats > MAX_ROWS_OF_A_SAMPLE:
+        problem = f"units x repeats must be at most {MAX_ROWS_OF_A_SAMPLE}: {units * repeats}"
+        yield asked[0], problem
+    elif most := DESIGNS[method].most_inputs:
+        levels = [law.get("level", OWN) for law in uncertain.values() if "equals" not in law]
+        if (size := dimension(levels, units, repeats)) > most:
+            problem = (
+                f"a sample then draws {size} numbers, and a point of a '{method}' design has at"
+                f" most {most}; use method = {_able(lambda d: d.nests and d.independent)}"
+            )
+            yield asked[0], problem
 
 
 def _method_faults(

@@ -36,7 +36,7 @@ class Study:
         By which `uq.study.registry.find_model` finds the model, in another process too.
     description : str
     design : DesignTable
-        method, samples, replicates, second_order, seed, until.
+        method, samples, replicates, units, repeats, second_order, seed, until.
     fixed : dict of str to float
         Parameters that override their nominal values.
     uncertain : dict of str to Law
@@ -80,6 +80,16 @@ class Study:
         return max(lows), min(highs)
 
     @property
+    def levels(self) -> tuple[str, ...]:
+        """The level of each uncertain parameter, in order; see `uq.designs.levels`."""
+        return tuple(law.level for law in self.uncertain.values())
+
+    def level(self, name: str) -> str:
+        """Return the level of a parameter that varies; one that equals another has the other's."""
+        law = self.uncertain[self.tied[name].equals if name in self.tied else name]
+        return law.level
+
+    @property
     def random(self) -> bool:
         """Whether the rows depend on their seed."""
         free = {*self.uncertain, *self.tied}
@@ -91,7 +101,8 @@ class Study:
     @property
     def identity(self) -> str:
         """SHA-256 of what the rows depend on, so not of their number, comments or [analysis]."""
-        design = self.design.model_dump(exclude={"samples", "file", "until", "independent"})
+        without = {"samples", "file", "until", "independent", "units", "repeats"}
+        design = self.design.model_dump(exclude=without)
         constants = {
             name: self.fixed.get(name, nominal)
             for name, nominal in self.model.nominal.items()
@@ -99,7 +110,7 @@ class Study:
         }
         # The contents of files count, their names do not.
         laws = [
-            [name, law.model_dump(exclude={"source", "file", "column"}, exclude_none=True)]
+            [name, law.model_dump(exclude={"source", "file", "column", "level"}, exclude_none=True)]
             for name, law in self.uncertain.items()
         ]
         parts = [self.model.name, self.model.version, design, constants, laws]
@@ -111,6 +122,9 @@ class Study:
             parts.append(self.dependence.model_dump(exclude={"source"}))
         if self.imported:
             parts.append(dict(self.imported))
+        if self.design.rows_of_a_sample > 1:  # else every level is a row of its own
+            sizes = [self.design.units, self.design.repeats]
+            parts.append({"rows of a sample": sizes, "levels": self.levels})
         if self.random and DESIGNS[self.design.method].shares_seeds:
             parts.append("rows that are compared share a seed")
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()

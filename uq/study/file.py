@@ -21,9 +21,10 @@ from pydantic import (
 from pydantic_core.core_schema import CoreSchema, no_info_plain_validator_function
 
 from uq.designs.design import MAX_SAMPLES
+from uq.designs.levels import MAX_ROWS_OF_A_SAMPLE
 from uq.designs.registry import DESIGNS
 from uq.errors import nearest
-from uq.inputs.law import LIST, STRICT, Law
+from uq.inputs.law import LEVEL_SCHEMA, LIST, STRICT, Law, Level
 from uq.inputs.registry import any_law, law_of
 from uq.literals import shown
 from uq.methods.registry import METHODS
@@ -132,6 +133,18 @@ class DesignTable(_Table):
         le=10_000,
         description="independent scrambles of the design: the source of confidence intervals",
     )
+    units: int = Field(
+        1,
+        ge=1,
+        le=MAX_ROWS_OF_A_SAMPLE,
+        description="of each sample: they have its shared inputs",
+    )
+    repeats: int = Field(
+        1,
+        ge=1,
+        le=MAX_ROWS_OF_A_SAMPLE,
+        description="of each unit: they differ by chance",
+    )
     second_order: bool = Field(False, description="saltelli only: also pairs of parameters")
     seed: int = Field(0, ge=0, lt=2**63, description="the same seed gives the same rows")
     file: str | None = Field(
@@ -149,7 +162,17 @@ class DesignTable(_Table):
     @property
     def has_independent_rows(self) -> bool:
         """Whether rows are independent, by the design or because the study states it."""
+        return self.has_independent_samples and self.rows_of_a_sample == 1
+
+    @property
+    def has_independent_samples(self) -> bool:
+        """Whether samples are independent, however many rows each has."""
         return self.independent or DESIGNS[self.method].independent
+
+    @property
+    def rows_of_a_sample(self) -> int:
+        """Units times repeats."""
+        return self.units * self.repeats
 
 
 class Tied(_Table):
@@ -157,6 +180,9 @@ class Tied(_Table):
 
     equals: str = Field(description="another uncertain parameter, which has a law of its own")
     source: str = Field("", description="why they are the same; shown in every result")
+    level: Level | None = Field(
+        None, description="that of the other parameter", json_schema_extra=LEVEL_SCHEMA
+    )
 
 
 def _kind(entry: Any) -> str:

@@ -91,6 +91,8 @@ def input_faults(model: Model, entries: Entries) -> Iterator[Fault]:
             yield Fault(path, f"{problem}{nearest(other, leaders)} (allowed: {allowed})", other)
             continue
         law, there = leaders[other], model.parameter(other)
+        if text := _level_problem(entry, name, known[other]):
+            yield Fault(path, text, other)
         if isinstance(entry, Tied):
             if parameter.unit != there.unit:
                 problem = f"is in another unit, {there.unit}, than '{name}', {parameter.unit}"
@@ -104,6 +106,17 @@ def input_faults(model: Model, entries: Entries) -> Iterator[Fault]:
                 yield Fault(path, problem, other)
             elif text := _product_problem(parameter, entry, law, there):
                 yield Fault(("uncertain", name), text)
+
+
+def _level_problem(entry: Law | Tied, name: str, other: Law) -> str | None:
+    """Return why the level of a parameter is not that of the one that it follows, or None."""
+    if entry.level in (None, other.level):
+        return None
+    verb = "equals" if isinstance(entry, Tied) else "times"
+    return (
+        f"is on the level '{other.level}', and '{name}' on '{entry.level}': '{verb}' joins inputs"
+        f" of one level; give '{name}' level = \"{other.level}\""
+    )
 
 
 def _followed(entry: Law | Tied) -> str | None:
@@ -124,6 +137,11 @@ def dependence_faults(tables: Mapping[str, Any], entries: Entries) -> Iterator[F
         elif name in entries and _followed(entries[name]):
             problem = "follows another parameter already; only laws of their own can be correlated"
             yield Fault(("dependence", "parameters"), problem, name)
+    levels = {name: entries[name].level for name in names if isinstance(entries.get(name), Law)}
+    if len(set(levels.values())) > 1:
+        seen = ", ".join(f"{name} is {level}" for name, level in levels.items())
+        problem = f"must be inputs of one level: {seen}"
+        yield Fault(("dependence", "parameters"), problem)
     if names and ranks is not None and (wrong := matrix_problem(tuple(names), ranks)):
         yield wrong.within("dependence", "rank_correlation")
     method = tables["design"].get("method")

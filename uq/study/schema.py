@@ -112,6 +112,8 @@ def _design_schema(design: Design) -> dict[str, Schema]:
         ("second_order", not design.crossed, {"const": False}),
         ("samples", design.least > 1, {"minimum": design.least}),
         ("replicates", design.imported, {"const": 1}),
+        ("units", not design.nests, {"const": 1}),
+        ("repeats", not design.nests, {"const": 1}),
         ("file", not design.imported, absent),
         ("independent", not design.imported, {"const": False}),
         ("until", not design.append_only, absent),

@@ -131,7 +131,8 @@ def _follow(
     m = size // 2
     room = scratch(free, contact)
     modal = np.empty((2, len(room.weight[0]), tangents.shape[1]))
-    tangents[m:, size + 2] += y[m:]
+    for i in range(m, len(y)):
+        tangents[i, size + 2] += y[i]
     clearance = math.inf
     x, v = y[:m].sum(), y[m:].sum()
     on_section = to_section and v > 0 and x >= gaps[RIGHT] * (1 - _SECTION)
@@ -167,7 +168,8 @@ def _follow(
         if theta == 2 * math.pi:
             theta = 0.0
             period += 1
-    tangents[m:, size + 2] -= y[m:]
+    for i in range(m, len(y)):
+        tangents[i, size + 2] -= y[i]
     return theta + 2 * math.pi * period, clearance
 
 

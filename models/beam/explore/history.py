@@ -9,8 +9,8 @@ from models.beam.response.settling import settle
 from models.beam.start import initial_gaps, initial_state, one_system, wear_shares
 from models.beam.structure.modal import beams
 from models.beam.units import watt, wear_per_work
-from models.beam.wear.accelerated_life import LOOKS, run_life
-from models.beam.wear.regimes import CONFIRMED, WINDOW, changes_of, confirmed_regimes
+from models.beam.wear.regimes import CONFIRMED, ROUND, changes_of, confirmed_regimes
+from models.beam.wear.worn_beams import LOOKS, wear_down
 
 
 def wear_history(
@@ -18,8 +18,7 @@ def wear_history(
 ) -> xr.Dataset:
     """Follow one beam while its gaps wear to the last of the settings' depths.
 
-    This is one accelerated life. Its times approach those of infinitely slow wear as `periods`
-    grows; the model's outputs are extrapolated to this limit.
+    Times approach those of infinitely slow wear as `periods` and `looks` grow.
 
     Parameters
     ----------
@@ -27,9 +26,10 @@ def wear_history(
         Each field a float.
     settings : Settings
     periods : int
-        Forcing periods in which the site that wears faster reaches the last depth.
+        Forcing periods in which the site that wears faster reaches the last depth where the
+        response is aperiodic; where it is periodic, the gaps grow from look to look.
     looks : int
-        Number of intervals into which these periods are divided, of at least 32 periods each. A
+        Number of intervals into which the life is divided, each of at least 32 of these periods. A
         regime counts if it lasts a tenth of them.
 
     Returns
@@ -47,9 +47,9 @@ def wear_history(
         random.
     """
     check_counts(periods=periods, looks=looks)
-    if periods < looks * WINDOW:
+    if periods < looks * 2 * ROUND:
         raise ValueError(
-            f"{looks} looks of {WINDOW} periods need more than {periods} periods: the regime "
+            f"{looks} looks of {2 * ROUND} periods need more than {periods} periods: the regime "
             "could not be identified"
         )
     p = equal_rows(params, 1)
@@ -58,8 +58,18 @@ def wear_history(
     state = initial_state(propagator, system, p)
     settled = settle(propagator, system, state, gaps)
     growths = np.asarray(settings.depths) / x0[:, None]
-    life = run_life(
-        propagator, system, state, gaps, settled.work, wear_shares(p), growths, periods, looks
+    life = wear_down(
+        propagator,
+        system,
+        state,
+        gaps,
+        settled.work,
+        settled.regime,
+        wear_shares(p),
+        growths,
+        periods,
+        settings.accuracy,
+        looks,
     ).history
     seen = np.flatnonzero(np.isfinite(life.time[0]))
     regime = confirmed_regimes(life.regime, CONFIRMED * max(1, looks // LOOKS))

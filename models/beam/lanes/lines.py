@@ -57,10 +57,8 @@ class Lines(NamedTuple):
     modes: Array
 
     @staticmethod
-    def room(is_random: bool, modes: int) -> "Lines":
-        """Return room for the lines of a block, or none."""
-        if not is_random:
-            return Lines(np.empty(0), np.empty((0, 3)), np.empty((2, 0)))
+    def room(modes: int) -> "Lines":
+        """Return room for the lines of a block."""
         return Lines(aligned(COUNT * _LINE * LANES), np.empty((COUNT, 3)), np.empty((2, modes)))
 
 
@@ -75,8 +73,6 @@ def draw_lines(load, state, first, steps, lines):
 
     Spare lanes repeat the last row.
     """
-    if not lines.slots.size:
-        return False
     lines.slots[:] = 0.0
     last = state.shape[0] - 1
     is_random = False

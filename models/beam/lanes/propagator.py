@@ -4,7 +4,7 @@ import numpy as np
 
 from models.beam.lanes.layout import CLOCK, X1
 from models.beam.lanes.lines import Lines, Load
-from models.beam.lanes.steps import advance_blocks, room
+from models.beam.lanes.steps import advance_blocks, advance_loaded_blocks, room
 from models.beam.lanes.systems import System
 from models.beam.lanes.tangents import carry
 from models.beam.structure.modal import Array
@@ -23,20 +23,23 @@ def advance(
     n, _, m = system.modes.shape
     beams = system.beams
     record = Record.empty(n, periods, system.steps if trace else 0)
-    advance_blocks(
+    told = (
         system.modes,
         system.sigma,
         system.response,
-        Load(beams.load, system.oscillators, system.begin, beams.forcing),
         state,
         gaps,
         growth,
         system.wave[0],
         system.wave[1],
         room(m, system.steps),
-        Lines.room(bool(beams.is_random.any()), system.oscillators.shape[2]),
         tuple(record),
     )
+    if beams.is_random.any():
+        load = Load(beams.load, system.oscillators, system.begin, beams.forcing)
+        advance_loaded_blocks(*told, load, Lines.room(system.oscillators.shape[2]))
+    else:
+        advance_blocks(*told)
     # Steps too long for the ringing of a long contact amplify it: this is no motion of the beam.
     lost = np.flatnonzero(~(np.abs(state[:, 2 * m + X1]) <= _LOST * (1 + system.free_reach)))
     for field in (state, *record):

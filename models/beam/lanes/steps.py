@@ -25,7 +25,7 @@ import numpy as np
 from models.beam.lanes.layout import CLOCK, UNROLL, X1, X2, P, modes_of, padded
 from models.beam.lanes.lines import add_lines, draw_lines, in_fours, redraw_lines
 from models.beam.structure.modal import Array
-from models.numerics.blocks import LANES, aligned
+from models.numerics.blocks import LANES, aligned, copy
 from models.numerics.fma import fma
 from models.numerics.jit import inlined, kernel, lean
 
@@ -192,46 +192,67 @@ def _swing(head, cosine, sine, drive):
 
 
 @kernel
-def advance_blocks(
-    system_modes, sigma, response, load, state, gaps, growth, cosine, sine, room, lines, record
-):
-    """Advance all beams over the periods of their record, a block of lanes at a time."""
-    work, strobe, peak, trace = record
-    w, head, drive = room
-    n, periods, _ = work.shape
-    steps = cosine.size
+def _take_period(w, head, drive, steps, before, growth, first, period, record):
+    """Advance a block by one period, and let its gaps grow; `before` is room for a lane each."""
+    work, strobe, _, trace = record
     groups = w.size // (UNROLL * _MODE * LANES)
+    rows = min(LANES, len(work) - first)
+    for lane in range(LANES):
+        head[_WORK_R * LANES + lane] = 0.0
+        head[_WORK_L * LANES + lane] = 0.0
+    traced = rows if trace.size else 0
+    path = trace[first : first + traced, period * steps : (period + 1) * steps]
+    _take_steps(w, head, groups, drive, 0, steps - 1, path)
+    copy(head[X2 * LANES : (X2 + 1) * LANES], before)
+    _take_steps(w, head, groups, drive, steps - 1, steps, path)
+    _forget(w)
+    for lane in range(rows):
+        row = first + lane
+        work[row, period, 0] = head[_WORK_R * LANES + lane]
+        work[row, period, 1] = head[_WORK_L * LANES + lane]
+        x = head[X1 * LANES + lane]
+        strobe[row, period, 0] = x
+        strobe[row, period, 1] = (
+            (3 * x - 4 * head[X2 * LANES + lane] + before[lane]) * steps / (4 * np.pi)
+        )
+        head[_RIGHT * LANES + lane] += growth[row, 0] * work[row, period, 0]
+        head[_LEFT * LANES + lane] += growth[row, 1] * work[row, period, 1]
+
+
+@kernel
+def advance_blocks(system_modes, sigma, response, state, gaps, growth, cosine, sine, room, record):
+    """Advance all beams over the periods of their record, a block of lanes at a time."""
+    w, head, drive = room
+    n, periods, _ = record[0].shape
     before = np.empty(LANES)
     for first in range(0, n, LANES):
         _load(system_modes, sigma, response, state, gaps, first, w, head)
-        rows = min(LANES, n - first)
-        traced = rows if trace.size else 0
-        is_random = draw_lines(load, state, first, steps, lines)
         _swing(head, cosine, sine, drive)
         for period in range(periods):
-            for lane in range(LANES):
-                head[_WORK_R * LANES + lane] = 0.0
-                head[_WORK_L * LANES + lane] = 0.0
+            _take_period(w, head, drive, cosine.size, before, growth, first, period, record)
+        _store(w, head, first, state, gaps, record[2])
+    for row in range(n):
+        state[row, CLOCK] += periods
+
+
+@kernel
+def advance_loaded_blocks(
+    system_modes, sigma, response, state, gaps, growth, cosine, sine, room, record, load, lines
+):
+    """Do the same where some beams have a random load."""
+    w, head, drive = room
+    n, periods, _ = record[0].shape
+    before = np.empty(LANES)
+    for first in range(0, n, LANES):
+        _load(system_modes, sigma, response, state, gaps, first, w, head)
+        _swing(head, cosine, sine, drive)
+        is_random = draw_lines(load, state, first, cosine.size, lines)
+        for period in range(periods):
             if is_random:
-                redraw_lines(load, state, first, period, steps, lines, w, _MODE * LANES)
+                redraw_lines(load, state, first, period, cosine.size, lines, w, _MODE * LANES)
                 _swing(head, cosine, sine, drive)
                 add_lines(load, state, first, period, lines, drive)
-            path = trace[first : first + traced, period * steps : (period + 1) * steps]
-            _take_steps(w, head, groups, drive, 0, steps - 1, path)
-            before[:] = head[X2 * LANES : (X2 + 1) * LANES]
-            _take_steps(w, head, groups, drive, steps - 1, steps, path)
-            _forget(w)
-            for lane in range(rows):
-                row = first + lane
-                work[row, period, 0] = head[_WORK_R * LANES + lane]
-                work[row, period, 1] = head[_WORK_L * LANES + lane]
-                x = head[X1 * LANES + lane]
-                strobe[row, period, 0] = x
-                strobe[row, period, 1] = (
-                    (3 * x - 4 * head[X2 * LANES + lane] + before[lane]) * steps / (4 * np.pi)
-                )
-                head[_RIGHT * LANES + lane] += growth[row, 0] * work[row, period, 0]
-                head[_LEFT * LANES + lane] += growth[row, 1] * work[row, period, 1]
-        _store(w, head, first, state, gaps, peak)
+            _take_period(w, head, drive, cosine.size, before, growth, first, period, record)
+        _store(w, head, first, state, gaps, record[2])
     for row in range(n):
         state[row, CLOCK] += periods

@@ -174,7 +174,8 @@ def _distances(strobe, size):
             for k in range(1, LONGEST_PERIOD + 1):
                 apart = max(abs(x - strobe[row, at - k, 0]), abs(v - strobe[row, at - k, 1]))
                 distance[row, k - 1] = max(distance[row, k - 1], apart)
-        distance[row] /= size[row]
+        for k in range(LONGEST_PERIOD):
+            distance[row, k] /= size[row]
     return distance
 
 

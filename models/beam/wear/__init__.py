@@ -2,12 +2,14 @@
 
 Reading order; a module imports only those above it:
 
-    regimes             the regime of a response that drifts with wear, and its changes
-    lost_stability      orbits made unstable by wear
-    growth              growth of the gaps, and its record
-    accelerated_life    one life, many times faster than in reality
-    extrapolation       the limit of ever slower lives
-    lives               lifetimes in that limit
-    fitted_wear         the wear of a site along the path, from noisy means
-    random_lives        lifetimes under a random load
+    regimes         the regime of a response that drifts with wear, and its changes
+    progress        how far each beam has worn: times, errors and looks noted on the way
+    endings         the end of wear
+    flows           the gaps grow all the time, where there is no stable orbit
+    steps           the gaps grow by a step and are held, near a stable orbit
+    rounds          what each beam does next, and what the last round has shown
+    worn_beams      many beams, until they are worn down
+    lives           their lifetimes
+    fitted_wear     the wear of a site along the path, from noisy means
+    random_lives    lifetimes under a random load
 """

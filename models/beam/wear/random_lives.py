@@ -39,7 +39,7 @@ def find_random_lives(
     Parameters
     ----------
     propagator, system, state, gaps, work, share, growths
-        As in `models.beam.wear.accelerated_life.run_life`.
+        As in `models.beam.wear.worn_beams.wear_down`.
     error : ndarray, shape (n, 2)
         Standard error of `work`.
     accuracy : float

@@ -1,8 +1,8 @@
-"""The regime of a wearing beam, look by look, despite the drift, and its changes.
+"""The regime of a wearing beam, and its changes.
 
-The strobe points of a beam whose gaps grow never return exactly: they drift. But those of a
-response of period k drift uniformly: the step from each to the k-th after it is constant within a
-look. That is the criterion here; the result hardly depends on its tolerance.
+A response near an orbit of k periods returns nearly to where it was k periods before. How nearly,
+and whether the distance shrinks, shows if it approaches one; the slow drift due to wear is far
+smaller than the distances of a response that approaches none.
 """
 
 from typing import NamedTuple
@@ -11,14 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from models.beam.response.response import APERIODIC, ASYMMETRIC, NO_IMPACT, PERIODIC, SYMMETRIC
-from models.beam.response.settling import LONGEST_PERIOD
 from models.beam.structure.modal import Array
-from models.numerics.jit import kernel
+from models.numerics.jit import kernel, lean
 
-WINDOW = 2 * LONGEST_PERIOD  # periods of a look, at least, for its regime to be known
+ROUND = 16  # periods between two judgements of a response
+LONGEST_PERIOD = ROUND // 2
 CONFIRMED = 3  # looks in a row that a regime must last to count
 UNKNOWN = -1
-_STEADY = 1e-2  # unevenness of the drift, relative to the response
+_NEAR = 2e-2  # distance from the point k periods before, relative to the response
+_ALIKE = 4.0  # ratio of distances that do not tell periods apart: a spiral onto an orbit of one
+_SHRINKING = 0.9  # factor of that distance from one round to the next
+_STILL = 1e-7  # distance that need not shrink
 _SYMMETRIC = 1e-2  # difference of the sites' work, relative to their sum: looser because of wear
 
 
@@ -28,13 +31,13 @@ class History(NamedTuple):
     Attributes
     ----------
     time : ndarray, shape (n, L)
-        In the unit of `models.beam.wear.accelerated_life.Run.time`; NaN after the end of the run.
+        In the unit of `models.beam.wear.worn_beams.Worn.time`; NaN after the end of the run.
     gaps : ndarray, shape (n, L, 2)
         [X0]
     work : ndarray, shape (n, L, 2)
-        Mean dimensionless work per period during the look.
+        Mean dimensionless work per period.
     regime : ndarray of int8, shape (n, L)
-        Index into `models.beam.parameters.REGIMES`, `UNKNOWN` where the look was too short.
+        Index into `models.beam.parameters.REGIMES`, `UNKNOWN` after the end of the run.
     """
 
     time: Array
@@ -50,34 +53,53 @@ class History(NamedTuple):
         return History(time, gaps, work, np.full((n, looks), UNKNOWN, np.int8))
 
 
-@kernel
-def regime_of(strobe, work):
-    """Return the regime from the last `WINDOW` strobe points and works of one beam."""
-    periods = len(strobe)
-    scale = right = left = 0.0
-    for j in range(periods - WINDOW, periods):
-        scale = max(scale, abs(strobe[j, 0]), abs(strobe[j, 1]))
-        right += work[j, 0]
-        left += work[j, 1]
+@lean
+def watch(strobe, apart):
+    """Compare the strobe points of a round with those k periods before.
+
+    Parameters
+    ----------
+    strobe : ndarray, shape (`ROUND`, 2)
+    apart : ndarray, shape (`LONGEST_PERIOD`,)
+        Largest distances of points 1, 2, ... periods apart in the round before; updated.
+
+    Returns
+    -------
+    period : int
+        Of the orbit that the response is near to, 0 if there is none.
+    nearing : bool
+        Whether it comes closer to an orbit.
+    """
+    size = 0.0
+    for t in range(ROUND):
+        size = max(size, abs(strobe[t, 0]), abs(strobe[t, 1]))
+    period, nearing, nearest = 0, False, np.inf
+    for k in range(LONGEST_PERIOD, 0, -1):
+        distance = 0.0
+        for t in range(LONGEST_PERIOD, ROUND):
+            x = abs(strobe[t, 0] - strobe[t - k, 0])
+            v = abs(strobe[t, 1] - strobe[t - k, 1])
+            distance = max(distance, x, v)
+        distance /= size
+        nearest = min(nearest, distance)
+        if distance <= _NEAR:
+            nearing |= distance <= _STILL or distance < _SHRINKING * apart[k - 1]
+        apart[k - 1] = distance
+    if nearest <= _NEAR:
+        for k in range(LONGEST_PERIOD, 0, -1):
+            if apart[k - 1] <= max(_NEAR, _ALIKE * nearest):
+                period = k
+    return period, nearing
+
+
+@lean
+def regime_of(period, right, left):
+    """Return the regime of a response near an orbit of k periods, from the work at each site."""
     if right + left == 0.0:
         return NO_IMPACT
-    if _drifts_evenly(strobe, 1, _STEADY * scale):
+    if period == 1:
         return SYMMETRIC if abs(right - left) <= _SYMMETRIC * (right + left) else ASYMMETRIC
-    for lag in range(2, LONGEST_PERIOD + 1):
-        if _drifts_evenly(strobe, lag, _STEADY * scale):
-            return PERIODIC
-    return APERIODIC
-
-
-@kernel
-def _drifts_evenly(strobe, lag, tolerance):
-    first = len(strobe) - LONGEST_PERIOD
-    for c in range(2):
-        drift = strobe[first, c] - strobe[first - lag, c]
-        for j in range(first + 1, len(strobe)):
-            if not abs(strobe[j, c] - strobe[j - lag, c] - drift) <= tolerance:
-                return False
-    return True
+    return PERIODIC if period > 1 else APERIODIC
 
 
 @kernel

@@ -80,6 +80,8 @@ ROWS = SHARE + WATCHED
 
 LONGEST_PERIOD = 64
 """Number of common periods among which a repetition is sought."""
+TO_REPEAT = 2 * LONGEST_PERIOD
+"""Number of common periods in which a motion with the longest period is seen to repeat."""
 
 
 class Block(NamedTuple):
@@ -93,7 +95,7 @@ class Block(NamedTuple):
         TERMS coefficients of each series, of powers of the time in units of the step.
     memory : ndarray
         Everything else; see the rows above.
-    ring : ndarray, shape (LANES, LONGEST_PERIOD, MEASURED)
+    ring : ndarray, shape (LANES, TO_REPEAT, MEASURED)
         (u, v, x, |i|, |p|) at the last common periods.
     """
 
@@ -109,5 +111,5 @@ class Block(NamedTuple):
             aligned((PLAIN + MEASURED * columns) * LANES),
             aligned((SHARED + MEASURED * columns) * TERMS * LANES),
             aligned(ROWS * LANES),
-            np.empty((LANES, LONGEST_PERIOD, MEASURED)),
+            np.empty((LANES, TO_REPEAT, MEASURED)),
         )

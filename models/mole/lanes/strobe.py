@@ -8,10 +8,10 @@ from models.mole.lanes.modes import mole_of
 from models.mole.lanes.rows import GOING, PERIOD, REACHED_END, REPEATING, SCALES
 from models.numerics.jit import lean
 
-REPEAT = 1e-8
-"""Of the scales of u, v, x, and of i and p by resistance and supply. Weak chaos may stay within
-3e-5 of a cycle and, for hundreds of periods, return to within 1e-7."""
-_ALIKE = 1e-6  # a divisor of the period at which the motion repeats this closely is the period
+REPEAT = 1e-8  # of the scales of u, v, x, and of i and p by resistance and supply
+_ALIKE = 1e-6
+"""How closely a whole period must repeat, and a divisor of the period to be the period. Motion that
+drifts past a cycle returns to within 1e-8 where it hardly depends on its past, 1e-5 elsewhere."""
 
 
 @lean
@@ -20,28 +20,34 @@ def _repetition(lane, q, m, y, ring):
 
     Current and voltage may return with opposite sign: only their squares act on the bar.
     """
-    here = (
-        y[at.U * LANES + lane],
-        y[at.V * LANES + lane],
-        y[at.X * LANES + lane],
-        abs(y[at.CURRENT * LANES + lane]),
-        abs(y[at.P * LANES + lane]),
-    )
-    entries = int(m[at.ENTRIES * LANES + lane])
-    length = len(ring)
+    last, length = int(m[at.ENTRIES * LANES + lane]), len(ring)
+    here = ring[last % length]
+    here[0] = y[at.U * LANES + lane]
+    here[1] = y[at.V * LANES + lane]
+    here[2] = y[at.X * LANES + lane]
+    here[3] = abs(y[at.CURRENT * LANES + lane])
+    here[4] = abs(y[at.P * LANES + lane])
+    m[at.ENTRIES * LANES + lane] = last + 1
     found = 0
-    for back in range(1, min(entries, length) + 1):
-        if found == 0 and _distance(q, ring[(entries - back) % length], here) < REPEAT:
+    for back in range(1, min(last + 1, length) // 2 + 1):
+        close = found == 0 and _distance(q, ring[(last - back) % length], here) < REPEAT
+        if close and _whole_period(q, ring, last, back):
             found = back
     for back in range(1, found):
         # Approached from alternating sides, an orbit appears to have twice its period.
-        if found % back == 0 and _distance(q, ring[(entries - back) % length], here) < _ALIKE:
+        if found % back == 0 and _distance(q, ring[(last - back) % length], here) < _ALIKE:
             found = back
             break
-    for j in range(MEASURED):
-        ring[entries % length, j] = here[j]
-    m[at.ENTRIES * LANES + lane] = entries + 1
     return found
+
+
+@lean
+def _whole_period(q, ring, last, back):
+    """Return whether the states since the one `back` before the last have repeated, too."""
+    length, largest = len(ring), 0.0
+    for i in range(last - back + 1, last):
+        largest = max(largest, _distance(q, ring[(i - back) % length], ring[i % length]))
+    return largest < _ALIKE
 
 
 @lean

@@ -6,7 +6,7 @@ common period, it ends when the tangent flow has contracted the start to a milli
 
 import numpy as np
 
-from models.mole.lanes.block import LONGEST_PERIOD, MEASURED
+from models.mole.lanes.block import LONGEST_PERIOD, MEASURED, TO_REPEAT
 from models.mole.lanes.rows import GROWTH, OUTCOME, REPEATING
 from models.mole.response.machines import Machines
 from models.mole.response.measured import Counts, Response
@@ -40,6 +40,7 @@ def settle(machines: Machines, transient: int) -> tuple[Counts, Counts]:
     alone = common == 0
     if transient:
         reached = machines.run(rows, np.full(len(rows), transient))
+        # This shows periods up to half of these; `settle_late` finds the longer ones.
         longest = transient + (LONGEST_PERIOD + 1) * common
         other = reached[alone[reached]]
         rows = reached[~alone[reached]]
@@ -89,10 +90,10 @@ def settle_late(machines: Machines, rows: Counts, known: Response, latest: float
     """
     mean, error = mean_and_error(known.growth[rows])
     system = machines.system
-    some = (system.common[rows] > 0) & (mean < SURE * error)
+    some = (system.common[rows] > 0) & (mean <= SURE * error) & np.isfinite(known.time[rows])
     rows, converges = rows[some], (mean < -SURE * error)[some]
     more = np.ceil(latest * system.control_frequency[rows]).astype(np.int64)
-    more = np.maximum(np.where(converges, more, 0), (LONGEST_PERIOD + 1) * system.common[rows])
+    more = np.maximum(np.where(converges, more, 0), TO_REPEAT * system.common[rows])
     rows = rows[machines.run(rows, machines.periods(rows) + more, repeat=True)]
     rows = rows[machines.record[rows, OUTCOME] == REPEATING]
     known.forget(rows)

@@ -75,36 +75,13 @@ class Rigid(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Accelerations, and intermediate results that their derivatives need.
-
-    Attributes
-    ----------
-    x, y, alpha, psi_1, psi_2 : float
-        Accelerations [m s-2, rad s-2].
-    kloss_1, kloss_2 : float
-        Motor torques before bearing loss [N m].
-    g_1, h_1, g_2, h_2 : float
-        Third components of e_i and n_i [m].
-    inverse : tuple of six floats
-        Upper triangle of S^-1, by rows.
-    share_1, share_2 : float
-        1/(slip^2 + lag^2) of the Kloss torques [s2 rad-2].
-    """
+    """Accelerations x'', y'' [m s-2], alpha'', psi_1'', psi_2'' [rad s-2]."""
 
     x: Any
     y: Any
     alpha: Any
     psi_1: Any
     psi_2: Any
-    kloss_1: Any
-    kloss_2: Any
-    g_1: Any
-    h_1: Any
-    g_2: Any
-    h_2: Any
-    inverse: Any
-    share_1: Any
-    share_2: Any
 
 
 @inlined
@@ -169,19 +146,4 @@ def accelerations(m, c_1, s_1, c_2, s_2, x, y, alpha, vx, vy, va, w_1, w_2):
     aa = fma(b_aa, k_a, fma(b_xa, k_x, b_ya * k_y)) * scale
     psi_1 = fma(m.mobility_1, q_1, -r_1 * fma(g_1, aa, fma(c_1, ay, -s_1 * ax)))
     psi_2 = fma(m.mobility_2, q_2, r_2 * fma(g_2, aa, fma(c_2, ay, -s_2 * ax)))
-    return Motion(
-        ax,
-        ay,
-        aa,
-        psi_1,
-        psi_2,
-        kloss_1,
-        kloss_2,
-        g_1,
-        h_1,
-        g_2,
-        h_2,
-        (b_xx * scale, b_xy * scale, b_xa * scale, b_yy * scale, b_ya * scale, b_aa * scale),
-        share_1,
-        share_2,
-    )
+    return Motion(ax, ay, aa, psi_1, psi_2)

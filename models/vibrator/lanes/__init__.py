@@ -6,6 +6,7 @@ Reading order; a module imports only those above it:
     machines       n machines, prepared and started
     dynamics       their accelerations, with the fewest operations
     steps          steps of fixed length, of order 5 and 8
+    derivatives    how the accelerations change with the state
     notes          what is recorded of a step
     fixed_steps    n machines advanced: the hot loop
     following      n machines followed step by step

@@ -6,10 +6,10 @@ Convergence is linear, but an iteration costs only the motion itself.
 import numpy as np
 from numpy.typing import NDArray
 
-from models.numerics.blocks import LANES, aligned
+from models.numerics.blocks import LANES, aligned, copy
 from models.numerics.fma import fma
 from models.numerics.jit import kernel
-from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load
+from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, Part, load, turn_back
 from models.vibrator.lanes.steps import AT, SIZE, prepare, step_5
 from models.vibrator.lanes.tangents import ANCHOR
 
@@ -79,13 +79,10 @@ def _approach(constants, state, time, guess, image, inverse, steps, mirror, turn
             for lane in range(LANES):
                 h[lane] = t[lane] / steps
             prepare(c, h, w)
-            y[:] = at
+            copy(at, y)
             for _ in range(steps):
                 step_5(w)
-            for i in range(STATE):
-                for lane in range(LANES):
-                    back[i * LANES + lane] = mirror[i] * y[i * LANES + lane]
-                    back[i * LANES + lane] -= turn if i == 3 or i == 4 else 0.0
+            turn_back(y, mirror, turn, back)
         for n in range(first, min(first + LANES, state.shape[0])):
             close[n] = last[n - first] == 0.0
             if close[n]:
@@ -101,8 +98,7 @@ def approach(
     image: Array,
     inverse: Array,
     steps: int,
-    mirror: Array,
-    turn: float,
+    part: Part,
 ) -> NDArray[np.bool_]:
     """Improve guesses near an orbit in place; leave the others unchanged.
 
@@ -121,10 +117,8 @@ def approach(
         Of the derivatives of image less start.
     steps : int
         In that time.
-    mirror : ndarray, shape (10,)
-        Signs with which the components return.
-    turn : float
-        Angle by which the vibrators turn [rad].
+    part : Part
+        Of a revolution.
 
     Returns
     -------
@@ -146,5 +140,6 @@ def approach(
         aligned(LANES),
     )
     factors, guess = inverse.reshape(n, STATE * STATE), time[:, None].copy()
+    mirror, turn = part.mirror, part.turn
     _approach(constants, state, time, guess, image, factors, steps, mirror, turn, close, work)
     return close

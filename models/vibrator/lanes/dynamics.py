@@ -24,7 +24,7 @@ _X, _Y, _ALPHA, _PSI_1, _PSI_2 = (_AT.at + i * LANES for i in range(DEGREES))
 _VX, _VY, _VA, _W_1, _W_2 = (_AT.speed + i * LANES for i in range(DEGREES))
 _AX, _AY, _AA, _A_1, _A_2 = (_AT.rise + i * LANES for i in range(DEGREES))
 _PASSED = 9  # numbers that one loop passes to the next
-_C_1, _S_1, _C_2, _S_2, _F_X, _F_Y, _F_A, _Q_1, _Q_2 = (_AT.end + i * LANES for i in range(_PASSED))
+C_1, S_1, C_2, S_2, _F_X, _F_Y, _F_A, _Q_1, _Q_2 = (_AT.end + i * LANES for i in range(_PASSED))
 _CONSTANTS = 37
 (
     _ANGLE,
@@ -125,10 +125,10 @@ def accelerate(w):
     for lane in range(LANES):
         c_1, s_1 = cosine_sine(w[_ANGLE + lane] + w[_PSI_1 + lane])
         c_2, s_2 = cosine_sine(w[_ANGLE + lane] - w[_PSI_2 + lane])
-        w[_C_1 + lane], w[_S_1 + lane] = c_1, s_1
-        w[_C_2 + lane], w[_S_2 + lane] = c_2, s_2
+        w[C_1 + lane], w[S_1 + lane] = c_1, s_1
+        w[C_2 + lane], w[S_2 + lane] = c_2, s_2
     for lane in range(LANES):
-        c_1, s_1, c_2, s_2 = w[_C_1 + lane], w[_S_1 + lane], w[_C_2 + lane], w[_S_2 + lane]
+        c_1, s_1, c_2, s_2 = w[C_1 + lane], w[S_1 + lane], w[C_2 + lane], w[S_2 + lane]
         alpha, va, w_1, w_2 = w[_ALPHA + lane], w[_VA + lane], w[_W_1 + lane], w[_W_2 + lane]
         lag_1, lag_2 = w[_TOP_1 + lane] - w_1, w[_TOP_2 + lane] - w_2
         kloss_1 = w[_TORQUE_1 + lane] * lag_1 / fma(lag_1, lag_1, w[_SLIP_1 + lane])
@@ -151,7 +151,7 @@ def accelerate(w):
         w[_F_Y + lane] = fma(n_2, s_2, fma(n_1, s_1, p_y))
         w[_F_A + lane] = fma(n_2, h_2, fma(n_1, h_1, p_a))
     for lane in range(LANES):
-        c_1, s_1, c_2, s_2 = w[_C_1 + lane], w[_S_1 + lane], w[_C_2 + lane], w[_S_2 + lane]
+        c_1, s_1, c_2, s_2 = w[C_1 + lane], w[S_1 + lane], w[C_2 + lane], w[S_2 + lane]
         g_1 = fma(w[_X_1 + lane], c_1, w[_Y_1 + lane] * s_1)
         g_2 = fma(w[_X_2 + lane], c_2, w[_Y_2 + lane] * s_2)
         both = fma(g_1, g_2, fma(c_1, c_2, s_1 * s_2))

@@ -3,7 +3,7 @@
 import numpy as np
 
 from models.numerics.blocks import LANES, aligned
-from models.numerics.jit import kernel
+from models.numerics.jit import inlined, kernel
 from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.notes import (
     CONSTANTS_ROOM,
@@ -21,8 +21,8 @@ from models.vibrator.lanes.steps import AT, SIZE, prepare, step_5, step_8
 _DEAD = 1e-140
 
 
-@kernel
-def _advance(constants, h, state, target, steps, accurate, band, notes, work):
+@inlined
+def _advance(take_step, constants, h, state, target, steps, band, notes, work):
     c, w, note, step_size, aim = work
     y = w[AT.position : AT.position + STATE * LANES]
     for first in range(0, state.shape[0], LANES):
@@ -39,14 +39,21 @@ def _advance(constants, h, state, target, steps, accurate, band, notes, work):
         prepare(c, step_size, w)
         begin(w, aim, note)
         for step in range(steps):
-            if accurate:
-                step_8(w)
-            else:
-                step_5(w)
+            take_step(w)
             note_step(c, w, note)
             note_entries(w, aim, float(step), band, note)
         store(y, first, state)
         store(note, first, notes)
+
+
+@kernel
+def _advance_5(constants, h, state, target, steps, band, notes, work):
+    _advance(step_5, constants, h, state, target, steps, band, notes, work)
+
+
+@kernel
+def _advance_8(constants, h, state, target, steps, band, notes, work):
+    _advance(step_8, constants, h, state, target, steps, band, notes, work)
 
 
 def advance(
@@ -93,5 +100,6 @@ def advance(
         aligned(LANES),
     )
     aim = target[:, None]
-    _advance(machines.constants, h[:, None], state, aim, steps, accurate, band, notes, work)
+    run = _advance_8 if accurate else _advance_5
+    run(machines.constants, h[:, None], state, aim, steps, band, notes, work)
     return notes

@@ -1,8 +1,9 @@
 """The largest Floquet multiplier of periodic orbits, sixteen machines at a time.
 
-By Gelfand's formula the spectral radius of A is the limit of |A^n|^(1/n). Each squaring doubles n,
-and an error in the k-th squaring is weighted by 2^-k. Unlike an eigenvalue solver, this is
-straight-line algebra.
+Squaring A repeatedly leaves only what grows fastest: as a rule one eigenvalue or a pair, which
+traces determine. Where more remain, Gelfand's formula holds: the spectral radius is the limit of
+|A^n|^(1/n), and an error in the k-th squaring is weighted by 2^-k. Unlike an eigenvalue solver,
+this is straight-line algebra.
 """
 
 import numpy as np
@@ -14,6 +15,8 @@ from models.vibrator.lanes.packed import STATE, Array
 from models.vibrator.lanes.tangents import ANCHOR, COLUMNS
 
 _SQUARINGS = 40  # |A^n| may differ from radius^n by a factor c: an error of log(c)/2^40 is left
+_FEWEST = 8  # the 256th power: a third eigenvalue 6 % smaller has faded to 1e-7
+_FADED = 1e-7  # difference of two estimates; the later one errs by the square of it
 _WHOLE = COLUMNS * COLUMNS * LANES
 
 
@@ -30,10 +33,10 @@ def _entry(w, o, row):
 
 
 @kernel
-def _square(a, square, out, next_square):
-    """Set `out` to the square of a over that of its norm, and find the squared norm of `out`."""
+def _square(a, square, out, next_square, trace):
+    """Set `out` to the square of a over that of its norm, and find its squared norm and trace."""
     for lane in range(LANES):
-        next_square[lane] = 0.0
+        next_square[lane] = trace[lane] = 0.0
     for i in range(COLUMNS):
         o = i * COLUMNS * LANES
         for lane in range(LANES):
@@ -54,6 +57,7 @@ def _square(a, square, out, next_square):
                 entry = _entry(a, j * LANES + lane, row)
                 out[o + j * LANES + lane] = entry
                 total = fma(entry, entry, total)
+                trace[lane] += entry if j == i else 0.0
             next_square[lane] += total
 
 
@@ -76,19 +80,54 @@ def _load(end, first, w, square):
         square[lane] = total
 
 
+@inlined
+def _larger(trace, next_trace):
+    """Return the larger modulus of two eigenvalues from their sum and the sum of their squares."""
+    part = 0.5 * next_trace - 0.25 * trace * trace  # their squared distance over four
+    root = np.sqrt(abs(part))
+    product = 0.5 * (trace * trace - next_trace)
+    return 0.5 * abs(trace) + root if part >= 0.0 else np.sqrt(abs(product))
+
+
 @kernel
-def _radius(end, out, a, b, squares):
+def _settle(k, squares, traces, level, radius):
+    """Note the spectral radius of the k-th power where two estimates agree; return how many do not.
+
+    If a third eigenvalue contributed, the estimate of the next power would not be the square.
+    """
+    some = 0
+    for lane in range(LANES):
+        square, next_square = squares[k - 2, lane], squares[k - 1, lane]
+        early = _larger(traces[k - 2, lane], square * traces[k - 1, lane])
+        late = _larger(traces[k - 1, lane], next_square * traces[k, lane])
+        agree = abs(early * early - square * late) < _FADED * early * early
+        new = agree & (level[lane] > k)
+        radius[lane] = late if new else radius[lane]
+        level[lane] = k - 1.0 if new else level[lane]
+        some += 0 if level[lane] < k else 1
+    return some
+
+
+@kernel
+def _radius(end, out, work):
+    a, b, squares, traces, level, radius = work
     for first in range(0, end.shape[0], LANES):
         _load(end, first, a, squares[0])
-        for k in range(0, _SQUARINGS, 2):
-            _square(a, squares[k], b, squares[k + 1])
-            _square(b, squares[k + 1], a, squares[k + 2])
-        radius = squares[_SQUARINGS]
+        level[:] = _SQUARINGS + 1.0
+        done = 0
+        while done < _SQUARINGS:
+            _square(a, squares[done], b, squares[done + 1], traces[done + 1])
+            _square(b, squares[done + 1], a, squares[done + 2], traces[done + 2])
+            done += 2
+            if done > _FEWEST and _settle(done, squares, traces, level, radius) == 0:
+                break
         for lane in range(LANES):
-            radius[lane] = np.sqrt(radius[lane])
-        for k in range(_SQUARINGS - 1, -1, -1):
+            if level[lane] > _SQUARINGS:
+                level[lane], radius[lane] = done, np.sqrt(squares[done, lane])
+        for k in range(done - 1, -1, -1):
             for lane in range(LANES):
-                radius[lane] = np.sqrt(squares[k, lane] * radius[lane])
+                smaller = np.sqrt(squares[k, lane] * radius[lane])
+                radius[lane] = smaller if k < level[lane] else radius[lane]
         for n in range(first, min(first + LANES, end.shape[0])):
             out[n] = radius[n - first]
 
@@ -107,6 +146,7 @@ def largest_multiplier(end: Array) -> Array:
         The largest modulus of the Floquet multipliers except the trivial 1.
     """
     out = np.empty(len(end))
-    squares = aligned((_SQUARINGS + 1) * LANES).reshape(-1, LANES)
-    _radius(end, out, aligned(_WHOLE), aligned(_WHOLE), squares)
+    squares, traces = aligned(2 * (_SQUARINGS + 1) * LANES).reshape(2, -1, LANES)
+    work = aligned(_WHOLE), aligned(_WHOLE), squares, traces, aligned(LANES), aligned(LANES)
+    _radius(end, out, work)
     return out

@@ -17,20 +17,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from models.numerics.linear import product, solve
+from models.numerics.linear import inverse, product, solve
 from models.vibrator.lanes.chords import CLOSE_ENOUGH, approach
 from models.vibrator.lanes.following import disphasing
 from models.vibrator.lanes.multiplier import largest_multiplier
-from models.vibrator.lanes.packed import STATE, Array
+from models.vibrator.lanes.packed import HALF, WHOLE, Array, Part
 from models.vibrator.lanes.tangents import FREE, revolve
 
 ITERATIONS = 10
 _CLOSE = 1e-6  # of a revolution: after a step this small only rounding errors are left
+_BOUND = 1e12  # of motion and derivatives
 _BOLDEST = 0.5  # longest step of psi_2 [rad]
 
 _QUIET = 0.5  # angular velocity of the body over that of the vibrators: bearing losses keep sign
-_TURN = np.where(np.isin(np.arange(STATE), (3, 4)), 2 * np.pi, 0.0)
-_MIRROR = np.where(np.isin(np.arange(STATE), (0, 1, 2, 5, 6, 7)), -1.0, 1.0)  # half a turn later
 
 
 class Orbits(NamedTuple):
@@ -76,27 +75,27 @@ def find_orbits(constants: Array, state: Array, period: Array, steps: int) -> Or
     -------
     Orbits
     """
-    out = _find(constants, state, period, steps, 2)
+    out = _find(constants, state, period, steps, HALF)
     speed = 2 * np.pi / out.period
     spin = np.hypot(out.state[:, 7], out.state[:, 2] * speed)
     rest = np.flatnonzero(~(out.found & (spin < _QUIET * speed)))
     if len(rest):
-        whole = _find(constants[rest], state[rest], period[rest], steps, 1)
+        whole = _find(constants[rest], state[rest], period[rest], steps, WHOLE)
         for field, found in zip(out, whole, strict=True):
             field[rest] = found
     return out
 
 
-def _find(constants: Array, state: Array, period: Array, steps: int, parts: int) -> Orbits:
-    """Find orbits that consist of one or two equal parts."""
-    n, steps = len(state), -(-steps // parts)
-    out = Orbits(np.zeros(n, bool), state.copy(), period / parts, *np.full((3, n), np.nan))
+def _find(constants: Array, state: Array, period: Array, steps: int, part: Part) -> Orbits:
+    """Find orbits that consist of equal parts."""
+    n, steps = len(state), -(-steps // part.parts)
+    out = Orbits(np.zeros(n, bool), state.copy(), period / part.parts, *np.full((3, n), np.nan))
     shortest = 0.2 * out.period
-    kept, close = _approach(constants, out, steps, parts)
+    kept, close = _approach(constants, out, steps, part)
     left = np.arange(n)
     for _ in range(ITERATIONS):
         start, time = out.state[left], out.period[left]
-        end = _returned(revolve(constants[left], start, time, steps), parts)
+        end = revolve(constants[left], start, time, steps, part)
         sound = _is_sound(end)
         left, start, time, end = left[sound], start[sound], time[sound], end[sound]
         if not len(left):
@@ -110,27 +109,24 @@ def _find(constants: Array, state: Array, period: Array, steps: int, parts: int)
         done = regular & (size < np.where(close[left], CLOSE_ENOUGH, _CLOSE))
         done &= out.period[left] > 0
         out.found[left[done]] = True
-        out.multiplier[left[done]] = largest_multiplier(end[done]) ** parts
+        out.multiplier[left[done]] = largest_multiplier(end[done]) ** part.parts
         close[left] = False
         left = left[regular & ~done & (out.period[left] > shortest[left])]
         if not len(left):
             break
     angle, ripple = disphasing(constants, out.state, out.period, steps)
-    return out._replace(period=parts * out.period, angle=angle, ripple=ripple)
+    return out._replace(period=part.parts * out.period, angle=angle, ripple=ripple)
 
 
 def _approach(
-    constants: Array, out: Orbits, steps: int, parts: int
+    constants: Array, out: Orbits, steps: int, part: Part
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Improve guesses near an orbit; return the inverses used, and where they have served."""
-    end = _returned(revolve(constants, out.state, out.period, max(steps // 3, 1)), parts)
-    inverse, regular = solve(_matrix(end), np.tile(np.eye(STATE), (len(end), 1, 1)))
-    inverse[~(regular & _is_sound(end))] = np.nan
-    mirror = _MIRROR if parts == 2 else np.ones(STATE)
-    turn = 2 * np.pi / parts
+    end = revolve(constants, out.state, out.period, max(steps // 3, 1), part)
+    kept, regular = inverse(_matrix(end))
+    kept[~(regular & _is_sound(end))] = np.nan
     image = end[:, :, 0]
-    close = approach(constants, out.state, out.period, image, inverse, steps, mirror, turn)
-    return inverse, close
+    return kept, approach(constants, out.state, out.period, image, kept, steps, part)
 
 
 def _steps(
@@ -145,17 +141,9 @@ def _steps(
     return step, regular
 
 
-def _returned(end: Array, parts: int) -> Array:
-    """Return states after a part, and their derivatives, turned back by it."""
-    if parts == 2:
-        end *= _MIRROR[:, None]
-    end[:, :, 0] -= _TURN / parts
-    return end
-
-
 def _is_sound(end: Array) -> NDArray[np.bool_]:
     """Return which motions and derivatives are finite and within bounds."""
-    return np.abs(end).max(axis=(1, 2)) < 1e12
+    return (end.max(axis=(1, 2)) < _BOUND) & (end.min(axis=(1, 2)) > -_BOUND)
 
 
 def _matrix(end: Array) -> Array:

@@ -1,12 +1,13 @@
-"""Rows of rigid machines in lanes: their constants, states and rates of change."""
+"""Rows of rigid machines in lanes: their constants, states and parts of a revolution."""
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from models.numerics.blocks import LANES
 from models.numerics.jit import inlined, kernel
-from models.numerics.sincos import cosine_sine
-from models.vibrator.equations.rigid import Rigid, accelerations
+from models.vibrator.equations.rigid import Rigid
 
 Array = NDArray[np.float64]
 
@@ -53,36 +54,6 @@ def machine(c, lane):
     )
 
 
-@inlined
-def set_slopes(c, h, y, k, lane):
-    """Set k to the rates of change of one lane, times the step; return what they depend on."""
-    m, step = machine(c, lane), h[lane]
-    c_1, s_1 = cosine_sine(m.working_angle + y[3 * LANES + lane])
-    c_2, s_2 = cosine_sine(m.working_angle - y[4 * LANES + lane])
-    x, y_, alpha = y[lane], y[LANES + lane], y[2 * LANES + lane]
-    vx, vy, va = y[5 * LANES + lane], y[6 * LANES + lane], y[7 * LANES + lane]
-    w_1, w_2 = y[8 * LANES + lane], y[9 * LANES + lane]
-    motion = accelerations(m, c_1, s_1, c_2, s_2, x, y_, alpha, vx, vy, va, w_1, w_2)
-    k[lane] = step * vx
-    k[LANES + lane] = step * vy
-    k[2 * LANES + lane] = step * va
-    k[3 * LANES + lane] = step * w_1
-    k[4 * LANES + lane] = step * w_2
-    k[5 * LANES + lane] = step * motion.x
-    k[6 * LANES + lane] = step * motion.y
-    k[7 * LANES + lane] = step * motion.alpha
-    k[8 * LANES + lane] = step * motion.psi_1
-    k[9 * LANES + lane] = step * motion.psi_2
-    return m, step, motion, c_1, s_1, c_2, s_2, va, w_1, w_2
-
-
-@kernel
-def slopes(c, h, y, k):
-    """Set k to the rates of change of the states y of all lanes, times the step."""
-    for lane in range(LANES):
-        set_slopes(c, h, y, k, lane)
-
-
 @kernel
 def load(table, first, out):
     """Load up to LANES rows of an (n, q) table into lanes; spare lanes repeat the last row."""
@@ -98,3 +69,36 @@ def store(lanes, first, table):
     for n in range(first, min(first + LANES, table.shape[0])):
         for i in range(table.shape[1]):
             table[n, i] = lanes[i * LANES + n - first]
+
+
+class Part(NamedTuple):
+    """One of one or two equal parts of a revolution; the second mirrors the first.
+
+    The equations are the same for the opposite displacement of the body and vibrators turned by pi.
+
+    Attributes
+    ----------
+    parts : int
+        Of a revolution.
+    mirror : ndarray, shape (10,)
+        Signs with which the components of the state return.
+    turn : float
+        Angle by which the vibrators turn [rad].
+    """
+
+    parts: int
+    mirror: Array
+    turn: float
+
+
+WHOLE = Part(1, np.ones(STATE), 2 * np.pi)
+HALF = Part(2, np.where(np.isin(np.arange(STATE), (0, 1, 2, 5, 6, 7)), -1.0, 1.0), np.pi)
+
+
+@kernel
+def turn_back(y, mirror, turn, out):
+    """Set `out` to the states y of all lanes after a part, turned back by it."""
+    for i in range(STATE):
+        angle = turn if i == 3 or i == 4 else 0.0
+        for lane in range(LANES):
+            out[i * LANES + lane] = mirror[i] * y[i * LANES + lane] - angle

@@ -6,7 +6,7 @@ its neighbours. See `models.numerics.nystrom`.
 
 from models.numerics.blocks import LANES
 from models.numerics.jit import kernel
-from models.numerics.nystrom import STAGES, layout, stepper
+from models.numerics.nystrom import STAGES, combiner, layout, stepper
 from models.numerics.tableaux import DORMAND_PRINCE_8, TSITOURAS_5
 from models.vibrator.lanes import dynamics
 from models.vibrator.lanes.packed import machine
@@ -18,6 +18,7 @@ SIZE = dynamics.END + STAGES * dynamics.DEGREES * LANES
 STABLE = 0.8
 """Step times the fastest rate of a machine; the methods are stable with a margin."""
 
+combine_5 = combiner(dynamics.DEGREES, dynamics.END, TSITOURAS_5)
 step_5 = stepper(dynamics.DEGREES, dynamics.END, TSITOURAS_5, dynamics.accelerate)
 step_8 = stepper(dynamics.DEGREES, dynamics.END, DORMAND_PRINCE_8, dynamics.accelerate)
 

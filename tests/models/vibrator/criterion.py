@@ -57,19 +57,7 @@ def _potential(p: Rows, q: Motion) -> NDArray[np.float64]:
 def integral(p: Rows, speed: ArrayLike, angle: ArrayLike) -> NDArray[np.float64]:
     """Return D of eq. (1) at a given speed and phase difference.
 
-    Parameters
-    ----------
-    p : Params
-        Each field a number or an ndarray of shape (n,).
-    speed : array_like, shape (n,)
-        Of both vibrators [rad s-1].
-    angle : array_like, shape (n,)
-        dphi [rad].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [J]; L_1 - L_2 = -2 dD/d dphi.
+    In joules, with L_1 - L_2 = -2 dD/d dphi; arguments as of `steady_motion`.
     """
     p, (w, dphi) = broadcast(p, speed, angle)
     p = p._replace(damping_ratio=0 * w, mount_damping_ratio=0 * w, feed_mass=0 * w)
@@ -78,20 +66,7 @@ def integral(p: Rows, speed: ArrayLike, angle: ArrayLike) -> NDArray[np.float64]
 
 
 def minimising_angle(p: Rows, speed: ArrayLike) -> NDArray[np.float64]:
-    """Return the phase difference that minimises D, at which identical motors lock.
-
-    Parameters
-    ----------
-    p : Params
-        Each field a number or an ndarray of shape (n,).
-    speed : array_like, shape (n,)
-        Of both vibrators [rad s-1].
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        dphi in (-pi, pi] [rad].
-    """
+    """Return dphi in (-pi, pi] that minimises D, at which identical motors lock [rad]."""
     # D(dphi) is a constant plus a first harmonic, so three values determine it.
     thirds = 2 * np.pi / 3 * np.arange(3)
     harmonic = sum(integral(p, speed, a) * np.exp(1j * a) for a in thirds)

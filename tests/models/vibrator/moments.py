@@ -27,19 +27,7 @@ def vibratory_moments(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the mean moments with which the vibrating body drives the two rotors.
 
-    Parameters
-    ----------
-    p : Params
-        Each field a number or an ndarray of shape (n,).
-    speed : array_like, shape (n,)
-        Of both vibrators [rad s-1].
-    angle : array_like, shape (n,)
-        dphi = psi_1 - psi_2 [rad].
-
-    Returns
-    -------
-    moment_1, moment_2 : ndarray, shape (n,)
-        L_i in the direction of rotation of vibrator i [N m].
+    L_1 and L_2 in the direction of rotation [N m]; arguments as of `steady_motion`.
     """
     p, (speed, angle) = broadcast(p, speed, angle)
     out = np.empty((2, len(speed)))

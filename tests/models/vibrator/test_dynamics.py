@@ -1,6 +1,7 @@
-"""The accelerations with the fewest operations against those of the plain algebra."""
+"""The accelerations with the fewest operations, and their derivatives."""
 
 import numpy as np
+import pytest
 from machines import plausible
 
 from models.numerics.blocks import LANES, aligned
@@ -9,10 +10,17 @@ from models.numerics.nystrom import layout
 from models.vibrator.equations import rigid_motion
 from models.vibrator.equations.system import systems
 from models.vibrator.lanes import dynamics
+from models.vibrator.lanes.derivatives import FACTORS, SUPPORTS, change, linearise, support
 from models.vibrator.lanes.packed import machine, pack
 
 AT = layout(dynamics.DEGREES)
 STEP = 3e-3
+MACHINES = systems(
+    plausible(
+        LANES, seed=8, mount_stiffness=np.inf, mount_rotational_stiffness=np.inf, feed_mass=0.0
+    )
+).rigid
+CONSTANTS = pack(MACHINES).T.ravel()
 
 
 @kernel
@@ -22,20 +30,62 @@ def _rises(constants, w):
     dynamics.accelerate(w)
 
 
-def test_they_are_those_of_the_plain_algebra():
+@kernel
+def _changes(constants, w, factors, supports, z, v, out):
+    linearise(constants, w, factors)
+    support(constants, w[AT.step : AT.end], supports)
+    both = np.concatenate((factors, supports))
+    for lane in range(LANES):
+        at = z[0, lane], z[1, lane], z[2, lane], z[3, lane], z[4, lane]
+        rate = v[0, lane], v[1, lane], v[2, lane], v[3, lane], v[4, lane]
+        changed = change(both, FACTORS + lane, lane, at, rate)
+        for i in range(5):
+            out[i, lane] = changed[i]
+
+
+def states():
+    """Return states at any angle, speeds of either sign, bearings far from changing theirs."""
     rng = np.random.default_rng(7)
-    p = plausible(
-        LANES, seed=8, mount_stiffness=np.inf, mount_rotational_stiffness=np.inf, feed_mass=0.0
-    )
-    m, w = systems(p), aligned(dynamics.END)
     position = rng.uniform(-1, 1, (5, LANES)) * np.array([[0.01], [0.01], [0.01], [30], [30]])
-    speed = rng.uniform(-1, 1, (5, LANES)) * np.array([[1], [1], [1], [200], [200]])
-    speed[4, ::4] = -speed[2, ::4] * rng.uniform(0.5, 1.5, len(speed[4, ::4]))  # of either sign
-    w[AT.at : AT.speed], w[AT.speed : AT.rise] = position.ravel(), speed.ravel()
-    _rises(pack(m.rigid).T.ravel(), w)
-    risen = w[AT.rise : AT.step].reshape(5, LANES)
+    speed = rng.uniform(-1, 1, (5, LANES))
+    speed[3:] = rng.choice([-1.0, 1.0], (2, LANES)) * rng.uniform(10, 200, (2, LANES))
+    return np.concatenate([position, speed])
+
+
+def risen(state):
+    """Return the accelerations, and the block of lanes in which they were evaluated."""
+    w = aligned(dynamics.END)
+    w[AT.step : AT.end], w[AT.at : AT.rise] = STEP, state.ravel()
+    _rises(CONSTANTS, w)
+    return w[AT.rise : AT.step].reshape(5, LANES) / STEP, w
+
+
+def test_they_are_those_of_the_plain_algebra():
+    state = states()
+    state[9, ::4] = -state[7, ::4] * np.linspace(0.5, 1.5, LANES // 4)  # bearings of either sign
+    found, _ = risen(state)
     for i in range(LANES):
         expected = np.empty(5)
-        state = np.concatenate([position[:, i], speed[:, i]])
-        rigid_motion.acceleration(m.row(i).rigid, state, expected)
-        np.testing.assert_allclose(risen[:, i], STEP * expected, rtol=1e-11)
+        one = type(MACHINES)._make(float(field[i]) for field in MACHINES)
+        rigid_motion.acceleration(one, np.ascontiguousarray(state[:, i]), expected)
+        np.testing.assert_allclose(found[:, i], expected, rtol=1e-11)
+
+
+@pytest.mark.parametrize("variable", range(10))
+def test_derivatives_are_those_of_the_accelerations(variable):
+    """By differences of fourth order; in the body's motion the accelerations are linear."""
+    size = 1e-2 if variable in (3, 4) else 0.2 if variable in (8, 9) else 1.0
+    state = states()
+    step = size * (np.arange(10) == variable)[:, None]
+    near, far = (risen(state + k * step)[0] - risen(state - k * step)[0] for k in (1, 2))
+    expected = (8 * near - far) / (12 * size)
+    # The body is described at the centre of the supports, rates and accelerations over a step.
+    z, v = np.zeros((2, 5, LANES))
+    (z if variable < 5 else v)[variable % 5] = 1.0 if variable < 5 else STEP
+    z[0] += MACHINES.support_offset * z[2]
+    v[0] += MACHINES.support_offset * v[2]
+    found, (_, w) = np.empty((5, LANES)), risen(state)
+    _changes(CONSTANTS, w, np.empty(FACTORS), np.empty(SUPPORTS), z, v, found)
+    found[0] -= MACHINES.support_offset * found[2]
+    off = np.abs(found / STEP**2 - expected)
+    assert np.all(off < 1e-7 * np.abs(expected).max(axis=0))

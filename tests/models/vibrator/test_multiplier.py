@@ -6,6 +6,7 @@ import pytest
 from models.vibrator.lanes.multiplier import largest_multiplier
 from models.vibrator.lanes.tangents import ANCHOR, COLUMNS, FREE
 
+KINDS = ["real", "complex pair", "opposite", "two pairs", "close third"]
 RADII = np.array([0.03, 0.7, 0.999999, 1.000001, 1.3, 40.0])
 
 
@@ -35,6 +36,13 @@ def matrices(kind):
             angle = rng.uniform(0.1, 3.0)
             turn = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
             a[:2, :2] = radius * np.array(turn)
+        elif kind == "two pairs":
+            a[:4, :4] = 0.0
+            for i, angle in ((0, 0.4), (2, 2.1)):
+                turn = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+                a[i : i + 2, i : i + 2] = radius * np.array(turn)
+        elif kind == "close third":
+            a[0, 0], a[1, 1], a[2, 2] = radius, -radius * 0.99999, 0.9999 * radius
         elif kind == "opposite":
             a[0, 0], a[1, 1] = radius, -radius
         else:
@@ -43,7 +51,7 @@ def matrices(kind):
     return basis @ core @ np.linalg.inv(basis)
 
 
-@pytest.mark.parametrize("kind", ["real", "complex pair", "opposite"])
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("decades", [0, 8])
 def test_it_is_the_spectral_radius(kind, decades):
     """In units that differ by up to so many decades."""

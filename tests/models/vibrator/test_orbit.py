@@ -10,13 +10,13 @@ from models.vibrator.equations.system import systems
 from models.vibrator.exact import propagator
 from models.vibrator.lanes import orbit, tangents
 from models.vibrator.lanes.following import follow
-from models.vibrator.lanes.packed import pack
+from models.vibrator.lanes.packed import HALF, STATE, WHOLE, pack
 from models.vibrator.parameters import Params
 from models.vibrator.theory.averaged import disphasing, steady_motion
 
 RIGID = {"mount_stiffness": np.inf, "mount_rotational_stiffness": np.inf, "feed_mass": 0.0}
 MACHINES = plausible(10, seed=1, **RIGID)
-TURN = np.where(np.isin(np.arange(orbit.STATE), (3, 4)), 2 * np.pi, 0.0)
+TURN = np.where(np.isin(np.arange(STATE), (3, 4)), 2 * np.pi, 0.0)
 
 
 def guess(p, off=0.0):
@@ -24,7 +24,7 @@ def guess(p, off=0.0):
     at = disphasing(p)
     w, angle = at.speed, at.angle + off
     motion = steady_motion(p, w, angle)
-    state = np.zeros((len(w), orbit.STATE))
+    state = np.zeros((len(w), STATE))
     for i, amplitude in enumerate(motion[:3]):
         state[:, i], state[:, 5 + i] = amplitude.real, (1j * w * amplitude).real
     state[:, 4], state[:, 8], state[:, 9] = -angle, w, w
@@ -53,7 +53,7 @@ def passage(m, start, period):
     scales = 1e-5 * propagator.scales_of(m, rigid_motion.DEGREES)
     columns = []
     for i in tangents.FREE:
-        change = scales * (np.arange(orbit.STATE) == i)
+        change = scales * (np.arange(STATE) == i)
         above, below = (
             propagator.propagate(m, start + s * change, 2 * period, 1e-13, turns=1).state
             for s in (1, -1)
@@ -91,26 +91,31 @@ def test_the_disphasing_angle_converges_with_order_5():
     assert np.all(np.log2(errors[:-1] / errors[1:]) > 4.8)
 
 
-def test_derivatives_of_a_revolution_are_those_of_nearby_ones():
+@pytest.mark.parametrize("part", [WHOLE, HALF])
+def test_derivatives_of_a_part_are_those_of_nearby_ones(part):
     (state, period), constants = guess(MACHINES), pack(systems(MACHINES).rigid)
-    end = tangents.revolve(constants, state, period, 24)
-    np.testing.assert_allclose(
-        end[:, :, 0], follow(constants, state, period, 24)[:, -1], rtol=1e-12, atol=1e-13
-    )
+    end = tangents.revolve(constants, state, period, 24, part)
+    turn = TURN / part.parts
+    plain = part.mirror * follow(constants, state, period, 24)[:, -1] - turn
+    np.testing.assert_array_equal(end[:, :, 0], plain)
     sizes = np.repeat([1e-6, 1e-4], 5)
     for column, i in enumerate(tangents.FREE):
-        change = sizes * (np.arange(orbit.STATE) == i)
+        change = sizes * (np.arange(STATE) == i)
         above, below = (follow(constants, state + s * change, period, 24)[:, -1] for s in (1, -1))
-        expected = (above - below) / (2 * sizes[i])
+        expected = part.mirror * (above - below) / (2 * sizes[i])
         scale = np.abs(expected).max(axis=0)
         assert np.all(np.abs(end[:, :, 1 + column] - expected) < 1e-5 * scale)
+    later, sooner = (follow(constants, state, period + s, 24)[:, -1] for s in (1e-7, -1e-7))
+    rates = part.mirror * (later - sooner) / 2e-7
+    scale = np.abs(rates).max(axis=0)
+    assert np.all(np.abs(end[:, :, -1] - rates) < 1e-4 * scale)
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-3, 0.3])
 def test_coming_close_with_old_derivatives_leads_to_the_same_orbits(off, monkeypatch):
     """Near guesses, and those too far for it."""
     quick = find(MACHINES, 24, off)
-    nothing = np.zeros((10, orbit.STATE, orbit.STATE)), np.zeros(10, bool)
+    nothing = np.zeros((10, STATE, STATE)), np.zeros(10, bool)
     monkeypatch.setattr(orbit, "_approach", lambda *_: nothing)
     newton = find(MACHINES, 24, off)
     assert newton.found.all()
@@ -124,13 +129,13 @@ def test_coming_close_spares_derivatives(monkeypatch):
     """Half a turn with coarse ones, and one with true ones, from the theory's proposal."""
     calls = []
 
-    def counted(constants, state, period, steps):
-        calls.append(steps)
-        return tangents.revolve(constants, state, period, steps)
+    def counted(constants, state, time, steps, part):
+        calls.append((steps, part.parts))
+        return tangents.revolve(constants, state, time, steps, part)
 
     monkeypatch.setattr(orbit, "revolve", counted)
     assert find(MACHINES, 24).found.all()
-    assert calls == [4, 12]
+    assert calls == [(4, 2), (12, 2)]
 
 
 def test_following_ends_where_the_orbit_does():
@@ -146,7 +151,7 @@ def test_following_ends_where_the_orbit_does():
 
 def test_half_a_turn_later_the_body_is_at_the_opposite_displacement():
     orbits = find(MACHINES, 192)
-    mirror = np.where(np.isin(np.arange(orbit.STATE), (0, 1, 2, 5, 6, 7)), -1.0, 1.0)
+    mirror = np.where(np.isin(np.arange(STATE), (0, 1, 2, 5, 6, 7)), -1.0, 1.0)
     for i in range(10):
         m = systems(MACHINES).row(i)
         motion = propagator.propagate(m, orbits.state[i], orbits.period[i] / 2, 1e-13)
@@ -175,7 +180,7 @@ def assert_found_or_said(p, state, period):
 def test_from_a_guess_far_away_an_orbit_is_found_or_none():
     rng = np.random.default_rng(8)
     p = plausible(60, seed=9, **RIGID)
-    state = rng.normal(size=(60, orbit.STATE)) * np.repeat([1e-2, 1.0], 5)
+    state = rng.normal(size=(60, STATE)) * np.repeat([1e-2, 1.0], 5)
     state[:, 3], state[:, 4] = 0.0, rng.uniform(-np.pi, np.pi, 60)
     state[:, 8:] = rng.uniform(-20, 400, size=(60, 2))
     orbits = assert_found_or_said(p, state, 10 ** rng.uniform(-3, 0, 60))

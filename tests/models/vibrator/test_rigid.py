@@ -1,16 +1,14 @@
-"""The algebra of the rigid machine: accelerations as Lagrange's, and their derivatives."""
+"""The algebra of the rigid machine: accelerations as Lagrange's."""
 
 import math
 
 import lagrange
 import numpy as np
 import paper
-import pytest
 from machines import at, plausible
 
 from models.numerics.jit import kernel
 from models.vibrator.equations.rigid import accelerations
-from models.vibrator.equations.rigid_derivatives import derivatives
 from models.vibrator.equations.system import systems
 
 MACHINES = plausible(
@@ -19,23 +17,19 @@ MACHINES = plausible(
 
 
 @kernel
-def _evaluate(m, state, out, by_state):
+def _evaluate(m, state, out):
     x, y, alpha = state[0], state[1], state[2]
     vx, vy, va, w_1, w_2 = state[5], state[6], state[7], state[8], state[9]
     c_1, s_1 = math.cos(m.working_angle + state[3]), math.sin(m.working_angle + state[3])
     c_2, s_2 = math.cos(m.working_angle - state[4]), math.sin(m.working_angle - state[4])
     motion = accelerations(m, c_1, s_1, c_2, s_2, x, y, alpha, vx, vy, va, w_1, w_2)
-    out[0], out[1], out[2], out[3], out[4] = motion[:5]
-    columns = derivatives(m, motion, c_1, s_1, c_2, s_2, va, w_1, w_2)
-    for i in range(10):
-        for j in range(5):
-            by_state[j, i] = columns[i][j]
+    out[0], out[1], out[2], out[3], out[4] = motion
 
 
 def evaluate(m, state):
-    out, by_state = np.full(5, np.nan), np.full((5, 10), np.nan)
-    _evaluate(m, state, out, by_state)
-    return out, by_state
+    out = np.full(5, np.nan)
+    _evaluate(m, state, out)
+    return out
 
 
 def rigid(p):
@@ -57,7 +51,7 @@ def test_accelerations_are_lagranges():
         q, v = np.append(state[:5], [0, 0]), np.append(state[5:], [0, 0])
         expected = lagrange.acceleration(at(MACHINES, i), False, False, 0.0, q, v)[:5]
         np.testing.assert_allclose(
-            evaluate(m, state)[0], expected, rtol=0, atol=1e-12 * abs(expected).max()
+            evaluate(m, state), expected, rtol=0, atol=1e-12 * abs(expected).max()
         )
 
 
@@ -69,19 +63,5 @@ def test_accelerations_are_those_of_the_printed_equations():
         p = at(centred, i)
         expected = paper.rates(0.0, paper.from_axis(p, state), p)[5:]
         np.testing.assert_allclose(
-            evaluate(m, state)[0], expected, rtol=0, atol=1e-12 * abs(expected).max()
+            evaluate(m, state), expected, rtol=0, atol=1e-12 * abs(expected).max()
         )
-
-
-@pytest.mark.parametrize("variable", range(10))
-def test_derivatives_are_those_of_the_accelerations(variable):
-    """By differences of fourth order; in the body's motion the accelerations are linear."""
-    change = np.zeros(10)
-    change[variable] = 1e-2 if variable in (3, 4) else 0.2 if variable in (8, 9) else 1.0
-    for m, state in zip(rigid(MACHINES), random_states(30, 3), strict=True):
-        near, far = (
-            evaluate(m, state + k * change)[0] - evaluate(m, state - k * change)[0] for k in (1, 2)
-        )
-        expected = (8 * near - far) / (12 * change[variable])
-        column = evaluate(m, state)[1][:, variable]
-        np.testing.assert_allclose(column, expected, rtol=0, atol=1e-7 * abs(expected).max())

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from uq.analysis.statistics.statistic import Context, Kind, Reader, Statistic
+from uq.clusters import Clusters
 from uq.estimate import NOTHING, Estimate
 from uq.indices.targets import number_of
 from uq.intervals import (
@@ -67,7 +68,8 @@ def between_share(
         where fewer than two regimes have enough rows, all values are equal, or their tail is too
         heavy for a variance. Its interval is, for independent rows, by the normal law of the
         estimate's influence function, and unknown where an F-test finds no difference between the
-        regimes: there the estimate has no normal law. For replicates it is from their scatter.
+        regimes: there the estimate has no normal law. For replicates it is from their scatter;
+        where samples have several rows there is none.
 
     References
     ----------
@@ -84,6 +86,8 @@ def between_share(
         return NOTHING
     if replicate is None:
         value, low, high = _independent(value, deviation, residual, regime.max() + 1)
+    elif isinstance(replicate, Clusters):  # that of few rows scatters otherwise
+        low, high = UNKNOWN
     else:
         of = replicate[kept]
         found = np.array([_split(y[of == r], regime[of == r])[0] for r in np.unique(of)])

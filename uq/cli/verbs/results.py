@@ -110,6 +110,17 @@ def sensitivity(
     print_json(plain(found)) if json else show(found)
 
 
+def levels(
+    result: given.ResultFile,
+    output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    json: given.Json = False,
+) -> None:
+    """Show how much scatter is shared, own, or due to chance."""
+    from uq.cli import levels
+
+    levels.levels(result, output, json)
+
+
 def convergence(
     result: given.ResultFile,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,

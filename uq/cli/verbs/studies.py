@@ -2,17 +2,14 @@
 
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from uq.cli import forgo_dask, say_when_interrupted
 from uq.cli import options as given
+from uq.cli import say_when_interrupted
 from uq.errors import InputError
 from uq.running.options import RunOptions
-
-if TYPE_CHECKING:
-    from uq.study.definition import Study
 
 
 def models(
@@ -89,8 +86,9 @@ def plan(
 ) -> None:
     """Estimate what a study will take, from a few of its rows."""
     from uq.cli.plan import plan as show_plan
+    from uq.cli.run import loaded
 
-    show_plan(_loaded(study, model, samples), workers, json)
+    show_plan(loaded(study, model, samples), workers, json)
 
 
 def run(
@@ -114,12 +112,10 @@ def run(
     quiet: given.Quiet = False,
 ) -> int:
     """Run a study, or resume it where it stopped; show the summary."""
-    asked = _loaded(study, model, samples)
-    if scheduler is None and workers != 0:  # then only other processes run code of the model
-        forgo_dask()
-    from uq.cli.run import carried_out, end
+    from uq.cli.run import carried_out, end, loaded
     from uq.running.runner import finished, output_path, run_study
 
+    asked = loaded(study, model, samples)
     target = output_path(asked, output)
     if not fresh and (ds := finished(asked, target)) is not None:
         note = f"{target} is already complete; nothing was computed (--fresh recomputes it)"
@@ -162,11 +158,3 @@ def rare_event(
         loaded, output, *limits[0], method, samples, replicates, workers, scheduler
     )
     return show(ds, json, loaded.analysis.max_failed)
-
-
-def _loaded(path: str, model: str | None, samples: int | None) -> "Study":
-    """Return a study, with another number of samples if one is given."""
-    from uq.study.definition import load_study
-
-    study = load_study(path, model)
-    return study if samples is None else study.with_samples(samples)

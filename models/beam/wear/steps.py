@@ -1,0 +1,180 @@
+"""Steps: near a stable orbit the gaps grow by a step, and are held until the response has settled.
+
+The time that a step takes is the integral of dx over the rate of wear, known at its ends. A step
+over which the rate changes too much is taken back, and another is made from the state kept at its
+beginning: where the branch changed, half as far.
+"""
+
+import numpy as np
+
+from models.beam.response.response import APERIODIC
+from models.beam.wear.endings import was_last
+from models.beam.wear.flows import begin_flow
+from models.beam.wear.progress import (
+    BACK,
+    FLOWING,
+    HOLDING,
+    KEEP,
+    ONWARD,
+    SMALLEST_STEP,
+    STEPPING,
+    control,
+    scale,
+    wear_on,
+)
+from models.numerics.jit import lean
+
+_TIGHT = 0.1  # error of a step over the accuracy asked for
+_GENEROUS = 0.125  # of it, below which the next step is twice as long
+_SMOOTH = 1 / 6  # error of a step without a change of branch, over the one with it
+_JUMP = 0.2  # change of a rate, other than expected, that may be one of branch
+_FEWEST, _LEFT, _MOST = 3, 8, 16  # rounds held: near an orbit, away from any, at most
+_CALM, _QUIET = 1e-4, 1e-8  # change of work from round to round when settled; need not shrink
+_SHRINKING = 0.8  # factor of that change from one round to the next
+
+
+@lean
+def begin_hold(i, life, now):
+    """Prepare for the first round in which the gaps of beam i are held."""
+    life.mode[i] = HOLDING
+    life.rounds[i] = 0
+    for s in range(2):
+        life.last[i, s] = now[s]
+        life.change[i, s] = np.inf
+        life.total[i, s] = 0.0
+
+
+@lean
+def hold(i, life, out, now, grown, period, nearing, regime, accuracy, largest, spacing):
+    """Hold the gaps until the response has settled; then accept the step, or take it back."""
+    calm = _is_calm(i, life, now)
+    life.rounds[i] += 1
+    held = life.rounds[i]
+    for s in range(2):
+        life.last[i, s] = now[s]
+        life.total[i, s] = now[s] + (life.total[i, s] if held > _LEFT // 2 else 0.0)
+    settled = period == 0 or (nearing and calm)
+    if held < (_FEWEST if period > 0 else _LEFT) or (held < _MOST and not settled):
+        return ONWARD
+    orbital = period > 0
+    if not orbital:
+        regime = APERIODIC
+        for s in range(2):
+            now[s] = life.total[i, s] / (held - _LEFT // 2 + 1)
+    site = control(i, life, out)
+    smooth = orbital and regime == life.regime[i] and _is_even(i, life, out, now, grown)
+    error = _step_error(i, life, out, now, grown, _SMOOTH if smooth else 1.0)
+    planned = life.rate[i, site] * life.span[i]
+    divisible = planned > 1.5 * SMALLEST_STEP * scale(i, life) and not was_last(
+        i, life, out, now, grown
+    )
+    if error > _TIGHT * accuracy and divisible and settled:
+        life.mode[i] = STEPPING
+        if smooth:
+            life.step[i] /= 2
+        else:
+            life.change_at[i] = life.grown[i, site] + planned
+        return BACK
+    _accept(i, life, out, now, grown, smooth, regime, spacing)
+    life.mode[i] = STEPPING if orbital else FLOWING
+    if not orbital:
+        begin_flow(i, life)
+    elif error < _GENEROUS * _TIGHT * accuracy:
+        life.step[i] = min(largest, 2 * life.step[i])
+    if not smooth or life.grown[i, site] >= life.change_at[i]:
+        life.change_at[i] = np.inf
+    return KEEP
+
+
+@lean
+def _is_calm(i, life, now):
+    """Return whether the sum of the sites' wear, and their difference, change less and less."""
+    whole = now[0] + now[1]
+    calm = True
+    for s in range(2):
+        sign = 1 - 2 * s
+        change = abs(now[0] - life.last[i, 0] + sign * (now[1] - life.last[i, 1]))
+        change = change / whole if whole > 0 else 0.0
+        calm &= change < _CALM and (change <= _SHRINKING * life.change[i, s] or change < _QUIET)
+        life.change[i, s] = change
+    return calm
+
+
+@lean
+def _expected(i, life, site, grown):
+    """Return the inverse rate of a site after a step, extrapolated from the step before."""
+    inverse, before = 1 / life.rate[i, site], life.rate_before[i, site]
+    run = life.grown[i, site] - life.grown_before[i, site]
+    if before <= 0 or run <= 0:
+        return inverse
+    return inverse + (inverse - 1 / before) / run * grown
+
+
+@lean
+def _is_even(i, life, out, now, grown):
+    """Return whether no rate has changed so much that it may have jumped."""
+    even = True
+    for s in range(2):
+        if grown[s] > 0 and life.rate[i, s] > 0 and not out.reached[i, s, -1]:
+            change = abs(
+                life.rate[i, s] * _expected(i, life, s, grown[s]) - life.rate[i, s] / now[s]
+            )
+            even &= change <= _JUMP
+    return even
+
+
+@lean
+def _step_error(i, life, out, now, grown, factor):
+    """Return the error of a step relative to the lives still to be found; note it for each site.
+
+    If the rate jumps somewhere on the way, the error of the trapezoidal rule is up to half the
+    difference of the inverse rates times the step. Where the rate is smooth, its deviation from the
+    extrapolated one takes the place of the difference, and the error is a fraction of this.
+    """
+    largest = 0.0
+    for s in range(2):
+        rate = life.rate[i, s]
+        life.error[i, s] = 0.0
+        if grown[s] <= 0 or rate <= 0 or out.reached[i, s, -1]:
+            continue
+        expected = _expected(i, life, s, grown[s])
+        goal = life.growths[i, 0]
+        for depth in range(life.growths.shape[1]):
+            if not out.reached[i, s, depth]:
+                goal = life.growths[i, depth]
+                break
+        whole = life.clock[i] + max(grown[s], goal - life.grown[i, s]) / rate
+        error = whole
+        if now[s] > 0:
+            error = min(whole, factor * grown[s] * abs(1 / now[s] - expected) / 2)
+        life.error[i, s] = error
+        largest = max(largest, error / whole)
+    return largest
+
+
+@lean
+def _accept(i, life, out, now, grown, smooth, regime, spacing):
+    """Let the time of a step pass."""
+    site = control(i, life, out)
+    other = 1 - site
+    rate, after = life.rate[i, site], now[site]
+    time = 0.0
+    if grown[site] > 0 and rate > 0:
+        begin = 1 / rate
+        end = 1 / after if after > 0 else begin
+        time = grown[site] * (begin + end) / 2
+        run = life.grown[i, site] - life.grown_before[i, site]
+        if smooth and life.rate_before[i, site] > 0 and run > 0:
+            slope = (begin - 1 / life.rate_before[i, site]) / run
+            curvature = ((end - begin) / grown[site] - slope) / (run + grown[site])
+            time -= curvature * grown[site] ** 3 / 6
+        ends = life.rate[i, other] * begin + now[other] * end
+        grown[other] = grown[site] * ends / 2
+    for s in range(2):
+        life.step_error[i, s] += life.error[i, s] ** 2
+        life.grown_before[i, s] = life.grown[i, s]
+        life.rate_before[i, s] = life.rate[i, s] if smooth else 0.0
+    life.regime[i] = regime
+    wear_on(i, life, out, time, grown, now, spacing)
+    for s in range(2):
+        life.rate[i, s] = now[s]

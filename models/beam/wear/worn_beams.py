@@ -1,0 +1,116 @@
+"""Many beams whose gaps grow until they are worn down."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from models.beam.response.response import APERIODIC, NO_IMPACT
+from models.beam.response.settling import TURNS
+from models.beam.structure.modal import Array
+from models.beam.structure.propagation import FIRST_MODE, Propagator, System
+from models.beam.wear.progress import (
+    BACK,
+    FIRST_STEP,
+    FLOWING,
+    KEEP,
+    OVER,
+    STEPPING,
+    Progress,
+    Worn,
+)
+from models.beam.wear.regimes import ROUND
+from models.beam.wear.rounds import judge, plan
+from models.numerics.elementary import log1p
+
+LOOKS = 32  # while the faster gap grows to the last depth
+LONGEST_STEP = 0.22  # relative growth of a gap
+OVERTIME = 4  # a flow may last this many times its intended periods
+_ENOUGH = 8192  # further periods
+_SILENCE = 64  # periods without contact, at least, after which a beam that can avoid contact will
+
+
+def wear_down(
+    propagator: Propagator,
+    system: System,
+    state: Array,
+    gaps: Array,
+    work: Array,
+    regime: NDArray[np.int8],
+    share: Array,
+    growths: Array,
+    periods: int,
+    accuracy: float,
+    looks: int = LOOKS,
+) -> Worn:
+    """Let the gaps of n beams grow.
+
+    Parameters
+    ----------
+    propagator : Propagator
+    system : System
+        Prepared by it.
+    state : ndarray, shape (n, k)
+        Settled at the initial gaps; not changed.
+    gaps : ndarray, shape (n, 2)
+        Initial, in X0; not changed.
+    work : ndarray, shape (n, 2)
+        Mean dimensionless work per period at the initial gaps.
+    regime : ndarray of int8, shape (n,)
+        At the initial gaps; index into `models.beam.parameters.REGIMES`.
+    share : ndarray, shape (n, 2)
+        Wear coefficient of each site over that of the right site.
+    growths : ndarray, shape (n, D)
+        Gap growths to reach, increasing, in X0.
+    periods : int
+        In which the faster site reaches the last growth in a flow.
+    accuracy : float
+        Relative, of the lives; sets the largest error of a step.
+    looks : int
+        While the faster site reaches the last growth. No step is longer than from one to the next
+        if there are more than `LOOKS`.
+
+    Returns
+    -------
+    Worn
+    """
+    n, depths = growths.shape
+    out = Worn.nothing(n, depths, looks * OVERTIME)
+    whole = float(log1p(2 * growths[:1, -1] / growths[:1, 0])[0]) if n else 1.0
+    pace, spacing = whole * ROUND / periods, whole / looks
+    largest = LONGEST_STEP if looks <= LOOKS else spacing
+    settled = (regime != APERIODIC) & (regime != NO_IMPACT)
+    life = Progress.beginning(
+        gaps,
+        share,
+        growths,
+        system.free_reach,
+        np.maximum(_SILENCE, TURNS * system.beams.turn),
+        work * share,
+        regime,
+        np.where(settled, STEPPING, FLOWING).astype(np.int8),
+        min(FIRST_STEP, largest),
+    )
+    left, now, here = np.arange(n), state.copy(), gaps.copy()
+    kept, kept_gaps = state.copy(), gaps.copy()
+    for _ in range((OVERTIME * periods + _ENOUGH) // ROUND):
+        growth, push = np.empty((len(left), 2)), np.empty(len(left))
+        verdict = np.empty(len(left), np.int8)
+        plan(left, life, out, here, pace, growth, push)
+        now[:, FIRST_MODE] += push
+        record = propagator.advance(system, now, here, growth, ROUND)
+        judge(
+            left, life, out, here, record.work, record.strobe, accuracy, largest, spacing, verdict
+        )
+        good, back = verdict == KEEP, verdict == BACK
+        kept[good], kept_gaps[good] = now[good], here[good]
+        now[back], here[back] = kept[back], kept_gaps[back]
+        going = life.mode[left] != OVER
+        if not going.all():
+            rows = np.flatnonzero(going)
+            left, now, here, system = left[rows], now[rows], here[rows], system.take(rows)
+            kept, kept_gaps = kept[rows], kept_gaps[rows]
+        if not len(left):
+            break
+    missing = ~out.reached
+    until = np.where(out.ended, np.inf, life.clock)[:, None, None]
+    out.time[missing] = (until + 0 * out.time)[missing]
+    return out

@@ -1,0 +1,93 @@
+"""Lives of beams whose wear follows known laws: smooth, with a jump, with noise, or ending."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from models.beam.response.response import APERIODIC, SYMMETRIC
+from models.beam.structure.propagation import Record
+from models.beam.wear.lives import PERIODS
+from models.beam.wear.worn_beams import wear_down
+
+
+class Law:
+    """A propagator whose work at each site is a function of the gaps, with or without noise."""
+
+    def __init__(self, work, noise=0.0):
+        self.work, self.noise = work, noise
+        self.random, self.periods = np.random.default_rng(5), 0
+
+    def advance(self, system, state, gaps, growth, periods):
+        record = Record.empty(len(gaps), periods)
+        self.periods += periods
+        for period in range(periods):
+            spread = self.noise * self.random.standard_normal((len(gaps), 1))
+            record.work[:, period] = self.work(gaps) * np.exp(spread)
+            record.strobe[:, period] = 1.0 + spread
+            gaps += growth * record.work[:, period]
+        return record
+
+
+def system(n):
+    beams = SimpleNamespace(turn=np.full(n, 8.0))
+    return SimpleNamespace(free_reach=np.full(n, 1.5), beams=beams, take=lambda rows: system(n))
+
+
+def lives(law, growths, n=1, regime=SYMMETRIC, accuracy=0.1):
+    gaps = np.ones((n, 2))
+    return wear_down(
+        law,
+        system(n),
+        np.zeros((n, 3)),
+        gaps,
+        law.work(gaps),
+        np.full(n, regime, np.int8),
+        np.ones((n, 2)),
+        np.tile(growths, (n, 1)),
+        round(PERIODS / accuracy),
+        accuracy,
+    )
+
+
+def test_smooth_laws_are_integrated_in_few_steps_and_within_the_stated_errors():
+    """Rates 4 x_1 and 3 x_2^2 make lives ln(1 + g)/4 and g/(1 + g)/3 of the growth g."""
+    growths = np.array([0.5, 1.0])
+    law = Law(lambda gaps: np.stack([4 * gaps[:, 0], 3 * gaps[:, 1] ** 2], axis=1))
+    found = lives(law, growths)
+    known = np.stack([np.log1p(growths) / 4, growths / (1 + growths) / 3])
+    assert found.time[0] == pytest.approx(known, rel=3e-3)
+    assert (np.abs(found.time[0] - known) <= found.error[0]).all()
+    assert (found.error[0] < 0.02 * known).all()
+    assert law.periods < 700
+
+
+@pytest.mark.parametrize("at", [0.13, 0.37, 0.6, 0.93])
+@pytest.mark.parametrize("accuracy", [0.1, 0.01])
+def test_a_jump_of_the_rate_is_located_as_accurately_as_asked(at, accuracy):
+    law = Law(lambda gaps: np.where(gaps - 1 < at, 1.0, 4.0))
+    found = lives(law, [1.0], accuracy=accuracy)
+    known = at + (1 - at) / 4
+    off = np.abs(found.time[0, :, 0] - known)
+    assert (off <= found.error[0, :, 0]).all()
+    assert (found.error[0, :, 0] <= accuracy * known).all()
+    assert law.periods < 2000
+
+
+def test_lives_in_noise_lie_within_their_errors():
+    law = Law(lambda gaps: 2.0 * gaps, noise=0.5)
+    mean = np.exp(0.5**2 / 2)
+    found = lives(law, [1.0], n=64, regime=APERIODIC)
+    off = np.abs(found.time[:, :, 0] - np.log(2) / (2 * mean))
+    assert np.mean(off <= found.error[:, :, 0]) > 0.9
+    assert np.median(found.error[:, :, 0]) < 0.1 * np.log(2) / (2 * mean)
+    assert (found.history.regime[:, :16] == APERIODIC).all()
+
+
+def test_a_gap_that_grows_beyond_the_tip_s_reach_never_grows_further():
+    law = Law(lambda gaps: np.maximum(0.0, 1.55 - gaps.max(axis=1, keepdims=True)) + 0 * gaps)
+    found = lives(law, [0.2, 0.4, 1.0])
+    known = np.log(0.55 / (0.55 - np.array([0.2, 0.4])))
+    assert found.time[0, 0, :2] == pytest.approx(known, rel=0.02)
+    assert np.isposinf(found.time[0, :, 2]).all() and not found.reached[0, :, 2].any()
+    assert found.ended[0]

@@ -1,0 +1,24 @@
+"""Studies of samples with several units and repeats."""
+
+from computed import UNIFORM, computed, once, study_of
+
+LEVELS = {"x1": "shared", "x2": "own", "x3": "chance"}
+
+
+def nested(levels=LEVELS, model=None, uncertain=None, analysis=None, **design):
+    """Return a study of the linear function, or of a sample model, with an input on each level."""
+    inputs = {name: UNIFORM | {"level": level} for name, level in levels.items()}
+    table = {"method": "monte-carlo", "samples": 16, "units": 3, "repeats": 2, "seed": 5}
+    tables = {
+        "study": {"name": "nested", "model": "linear"},
+        "design": table | design,
+        "uncertain": inputs | (uncertain or {}),
+        "analysis": analysis or {},
+    }
+    return study_of(tables, model)
+
+
+@once
+def nested_result(**options):
+    """Return its result."""
+    return computed(nested(**options))

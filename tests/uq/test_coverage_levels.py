@@ -1,0 +1,17 @@
+"""Intervals of samples with several rows hold the truth, as `benchmarks.coverage` counts it."""
+
+import pytest
+
+from benchmarks.coverage import nested
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.mark.parametrize("name", list(nested.EFFECTS))
+def test_shares_of_random_effects(name):
+    assert [line for line in nested.effects(name, 1000) if line.unexplained] == []
+
+
+@pytest.mark.parametrize("name", list(nested.SIZES))
+def test_statistics_of_all_rows(name):
+    assert [line for line in nested.statistics(name, 300) if line.unexplained] == []

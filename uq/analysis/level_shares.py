@@ -1,0 +1,286 @@
+"""Shares of the variance: shared by the units of a sample, own to a unit, due to chance."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from uq.analysis.statistics.counts import stated_error
+from uq.analysis.switching import switching
+from uq.contract import Floats
+from uq.designs.levels import CHANCE, LEVELS, OWN, SHARED
+from uq.errors import InputError
+from uq.estimate import Estimate
+from uq.indices.targets import Target, lightened, split_name, targets
+from uq.nested_variance import NestedShares, nested_shares
+from uq.rows.elements import (
+    analysis_of,
+    elements_of,
+    has_independent_samples,
+    independent_rows,
+    named_elements,
+    output_names,
+    shown_outputs,
+    why_no_statistics,
+)
+from uq.rows.nesting import (
+    Nesting,
+    levels_of,
+    levels_that_vary,
+    nesting_of,
+    size_in_words,
+)
+from uq.rows.variables import error_name
+from uq.tails import lacks_variance
+
+SOLVER = "solver"
+"""The share of the error that each row states; the other shares contain it."""
+
+SOURCES = (*LEVELS, SOLVER)
+
+NONE, ALL = Estimate(0.0, 0.0, 0.0), Estimate(1.0, 1.0, 1.0)
+
+_ONE_REPEAT = Estimate(
+    reason="a single repeat does not tell chance from what is own to a unit; set repeats = 2"
+)
+_ONE_UNIT = Estimate(
+    reason="a single unit does not tell what is shared from what is own; set units = 2"
+)
+_ONE_ROW = Estimate(
+    reason="a single row a sample does not tell what is shared from chance; set repeats = 2"
+)
+INCLUDES_CHANCE = "that chance counts as own"
+NO_ERROR = "the model states no numerical error of it"
+NO_ERROR_OF = "the numerical error is that of the output, not of its {form}"
+
+
+@dataclass(frozen=True)
+class LevelShares:
+    """Shares of the variance of one target.
+
+    Attributes
+    ----------
+    shares : dict of str to Estimate
+        By the names in `SOURCES`.
+    variance : float
+        NaN where there is none.
+    left_out : int
+        Samples with too few values.
+    notes : tuple of str
+        What replaces the output.
+    """
+
+    shares: Mapping[str, Estimate]
+    variance: float = np.nan
+    left_out: int = 0
+    notes: tuple[str, ...] = ()
+
+    @property
+    def sentences(self) -> list[str]:
+        """Why shares or intervals are missing, and what replaces the output."""
+        reasons: dict[str, list[str]] = {}
+        for name, one in self.shares.items():
+            if one.reason:
+                reasons.setdefault(one.reason, []).append(name)
+        said = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
+        if self.left_out:
+            said.append(f"{self.left_out} samples have too few values and are left out")
+        return [*self.notes, *said]
+
+
+@dataclass(frozen=True)
+class ByLevel:
+    """What a result says of its levels.
+
+    Attributes
+    ----------
+    samples, units, repeats : int
+    inputs : dict of str to str
+        Level of each input.
+    outputs : dict of str to LevelShares
+        By name of the target: the output, ``log(life)``, ``P(life<t)``.
+    another_regime : Estimate or None
+        Probability that a repeat ends in another regime; None without regimes.
+    switching : ndarray, shape (n,)
+        The same of each row; NaN where it is not known.
+    """
+
+    samples: int
+    units: int
+    repeats: int
+    inputs: Mapping[str, str]
+    outputs: Mapping[str, LevelShares]
+    another_regime: Estimate | None
+    switching: Floats
+
+    @property
+    def size(self) -> str:
+        """Samples, units and repeats in words."""
+        return size_in_words(self.samples, self.units, self.repeats)
+
+    def inputs_on(self, level: str) -> list[str]:
+        """Return the inputs on a level."""
+        return [name for name, own in self.inputs.items() if own == level]
+
+
+def by_level(ds: xr.Dataset, output: str | None = None) -> ByLevel:
+    """Estimate the shares of the variance by level.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str, optional
+        Only this output, or this element of one; by default those that the study shows.
+
+    Returns
+    -------
+    ByLevel
+
+    Raises
+    ------
+    InputError
+        When the rows do not follow the laws of the inputs, or there is no such output.
+    """
+    if why := why_no_statistics(ds):
+        raise InputError(f"no shares: the rows of a '{ds.attrs['design']}' design {why}")
+    rows = independent_rows(ds)
+    place, varying = nesting_of(rows), levels_that_vary(rows)
+    replicate = None if has_independent_samples(rows) else place.replicate
+    known = output_names(rows)
+    shown = [one for one in shown_outputs(rows, analysis_of(rows)) if not _is_error(one, known)]
+    chosen = elements_of(rows, shown) if output is None else named_elements(rows, output)
+    found = {}
+    for target in targets(chosen, analysis_of(rows).thresholds):
+        light = target if target.event else lightened(target)
+        found[light.name] = _shares(rows, light, place, varying, replicate)
+    switches = "regime" in known and output is None
+    mean, each = switching(rows, place, varying) if switches else (None, np.empty(0))
+    return ByLevel(place.samples, place.units, place.repeats, levels_of(rows), found, mean, each)
+
+
+def _is_error(name: str, known: Collection[str]) -> bool:
+    return name in {error_name(one) for one in known}
+
+
+def _shares(
+    rows: xr.Dataset,
+    target: Target,
+    place: Nesting,
+    varying: Collection[str],
+    replicate: Any,
+) -> LevelShares:
+    reason = target.refused
+    if not reason and not target.event and lacks_variance(target.values):
+        reason = "the tail is too heavy for a variance to apportion"
+    if reason:
+        return LevelShares({name: Estimate(reason=reason) for name in SOURCES}, notes=target.notes)
+    errors, why_none = _errors(rows, target)
+    table = place.table(np.where(np.isfinite(target.values), target.values, np.nan))
+    own = None if errors is None else place.table(errors)
+    found = shares_of(table, varying, own, replicate)
+    if errors is None:
+        found = replace(found, shares={**found.shares, SOLVER: Estimate(reason=why_none)})
+    return replace(found, notes=target.notes)
+
+
+def _errors(rows: xr.Dataset, target: Target) -> tuple[Floats | None, str]:
+    """Return the numerical error of each row, of a logarithm the relative one; or why none."""
+    stated = None if target.element is None else stated_error(rows, target.element)
+    if stated is None or target.element is None:
+        return None, NO_ERROR
+    form = split_name(target.name)[0]
+    if form == "log":
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.abs(stated.values / target.element.values), ""
+    if form:
+        return None, NO_ERROR_OF.format(form={"P": "event"}.get(form, form))
+    return np.abs(stated.values), ""
+
+
+def shares_of(
+    table: Floats,
+    varying: Collection[str],
+    errors: Floats | None = None,
+    replicate: Any = None,
+) -> LevelShares:
+    """Estimate the shares of the variance of one number per row.
+
+    Parameters
+    ----------
+    table : ndarray, shape (samples, units, repeats)
+        NaN where there is none.
+    varying : collection of str
+        The levels on which something varies; the share of the others is known to be zero.
+    errors : ndarray, shape (samples, units, repeats), optional
+        Numerical error of each, as a standard deviation.
+    replicate : ndarray of int, shape (samples,), optional
+        Where only replicates are independent.
+
+    Returns
+    -------
+    LevelShares
+    """
+    names = tuple(level for level in LEVELS if level in varying)
+    if replicate is not None:
+        replicate = _reduced(np.broadcast_to(replicate[:, None, None], table.shape), names)
+        replicate = replicate[:, 0, 0]
+    errors = None if errors is None else _reduced(errors, names)
+    found = nested_shares(_reduced(table, names), errors, replicate)
+    shares = {SHARED: found.outer, OWN: found.middle, CHANCE: found.inner}
+    if found.variance > 0:
+        shares = dict.fromkeys(LEVELS, NONE) | _told_apart(found, names, table.shape)
+    return LevelShares(shares | {SOLVER: found.error}, found.variance, found.left_out)
+
+
+def _reduced(table: Any, names: Collection[str]) -> Any:
+    """Return what is independent, its units and their repeats, without levels on which none vary.
+
+    Without chance, the repeats of a unit are one row; without anything own, units are repeats; with
+    nothing shared, samples do not matter. Of two levels the inner one takes the place of units.
+    """
+    if CHANCE not in names:
+        first = np.isfinite(table).argmax(axis=2)
+        table = np.take_along_axis(table, first[..., None], axis=2)
+    samples, units, repeats = table.shape
+    if names == (SHARED,):
+        return table[:, :1]
+    if len(names) < 2:
+        return table.reshape(-1, 1, 1)
+    if OWN not in names:
+        return table.reshape(samples, -1, 1)
+    if SHARED not in names:
+        return table.reshape(samples * units, repeats, 1)
+    return table if units > 1 else table.reshape(samples, repeats, 1)
+
+
+def _told_apart(
+    found: NestedShares, names: tuple[str, ...], shape: tuple[int, ...]
+) -> dict[str, Estimate]:
+    """Return the shares of the levels on which something varies."""
+    _, units, repeats = shape
+    match names:
+        case (only,):
+            return {only: ALL}
+        case ("shared", "own"):
+            return _outer_and_inner(found, names) if units > 1 else dict.fromkeys(names, _ONE_UNIT)
+        case ("shared", "chance"):
+            apart = units * repeats > 1
+            return _outer_and_inner(found, names) if apart else dict.fromkeys(names, _ONE_ROW)
+        case ("own", "chance"):
+            if repeats > 1:
+                return _outer_and_inner(found, names)
+            return {OWN: replace(ALL, assumes=INCLUDES_CHANCE), CHANCE: _ONE_REPEAT}
+    if units == 1:
+        chance = found.middle if repeats > 1 else _ONE_REPEAT
+        return {SHARED: _ONE_UNIT, OWN: _ONE_UNIT, CHANCE: chance}
+    if repeats == 1:
+        own = replace(found.middle, assumes=INCLUDES_CHANCE)
+        return {SHARED: found.outer, OWN: own, CHANCE: _ONE_REPEAT}
+    return {SHARED: found.outer, OWN: found.middle, CHANCE: found.inner}
+
+
+def _outer_and_inner(found: NestedShares, names: tuple[str, ...]) -> dict[str, Estimate]:
+    return dict(zip(names, (found.outer, found.middle), strict=True))

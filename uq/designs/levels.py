@@ -1,0 +1,62 @@
+"""Levels: which rows of a sample share the value of an input.
+
+A sample consists of units, a unit of repeats. An input on the level ``shared`` has one value in all
+rows of a sample, on the level ``own`` one in each unit, on the level ``chance`` one in each repeat.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+SHARED, OWN, CHANCE = "shared", "own", "chance"
+
+LEVELS = {
+    SHARED: "one value for all units of a sample",
+    OWN: "one for each unit",
+    CHANCE: "anew in each repeat",
+}
+"""Level -> its meaning, from the outermost to the innermost."""
+
+MAX_ROWS_OF_A_SAMPLE = 1_000_000
+"""Units times repeats."""
+
+
+def coordinates(levels: Sequence[str], units: int, repeats: int) -> NDArray[np.intp]:
+    """Return which coordinate of a sample's point gives each input of its rows.
+
+    Parameters
+    ----------
+    levels : sequence of str
+        Of each of the d inputs.
+    units, repeats : int
+
+    Returns
+    -------
+    ndarray, shape (units * repeats, d)
+        The first row takes the first d coordinates, in the order of the inputs, so that a sample of
+        one row is a point of the plain design. Further units, then further repeats, take those
+        that follow.
+    """
+    return _coordinates(tuple(levels), units, repeats)
+
+
+@lru_cache(maxsize=4)
+def _coordinates(levels: tuple[str, ...], units: int, repeats: int) -> NDArray[np.intp]:
+    kind = np.array(levels)
+    own, chance = np.flatnonzero(kind == OWN), np.flatnonzero(kind == CHANCE)
+    places = np.tile(np.arange(len(levels)), (units, repeats, 1))
+    first, count = len(levels), (units - 1) * len(own)
+    places[1:, :, own] = first + np.arange(count).reshape(units - 1, 1, len(own))
+    rows = places.reshape(-1, len(levels))
+    first, count = first + count, (len(rows) - 1) * len(chance)
+    rows[1:, chance] = first + np.arange(count).reshape(len(rows) - 1, len(chance))
+    rows.setflags(write=False)
+    return rows
+
+
+def dimension(levels: Sequence[str], units: int, repeats: int) -> int:
+    """Return the number of coordinates of a sample's point."""
+    own, chance = (sum(level == name for level in levels) for name in (OWN, CHANCE))
+    return len(levels) + (units - 1) * own + (units * repeats - 1) * chance

@@ -1,0 +1,47 @@
+"""What is shared, own, or due to chance, in a report."""
+
+from typing import NamedTuple
+
+from uq.analysis.findings import Findings
+from uq.analysis.level_shares import SOURCES
+from uq.estimate import Estimate
+from uq.methods.indices import S1
+from uq.report.cells import Cell, Table
+from uq.rows.nesting import is_nested
+from uq.wording import percent_with_interval
+
+
+class Levels(NamedTuple):
+    """The shares of the variance by level.
+
+    Attributes
+    ----------
+    size : str
+        Samples, units and repeats.
+    table : Table
+    notes : list of str
+    """
+
+    size: str
+    table: Table
+    notes: list[str]
+
+
+def levels_of(findings: Findings) -> Levels | None:
+    """Return the shares of a result; None where no sample has several rows."""
+    if not is_nested(findings.ds):
+        return None
+    found = findings.levels
+    rows, notes = [], []
+    for name, one in found.outputs.items():
+        rows.append((Cell(name), *(_cell(one.shares[source]) for source in SOURCES)))
+        notes += [f"{sentence} ({name})" for sentence in one.sentences]
+    if (another := found.another_regime) is not None:
+        said = another.reason or percent_with_interval(another)
+        notes.append(f"probability that a repeat ends in another regime: {said}")
+    return Levels(found.size, Table("Shares of the variance", ("output", *SOURCES), rows), notes)
+
+
+def _cell(share: Estimate) -> Cell:
+    key = share.value if share.value == share.value else None
+    return Cell(S1.text(share.value), S1.interval(share), key)
