@@ -54,7 +54,7 @@ INTEGRALS = 4
 SUM = 16
 
 # Guards, positive while the mode lasts: of the stop, of the bar's and of the mole's friction. Their
-# coefficients; their values and rates at the beginning, in the middle and at the end of a step.
+# coefficients; their values and slopes at the beginning, in the middle and at the end of a step.
 TOUCH, BAR, MOLE = range(3)
 GUARDS = 3
 OPEN, BAR_SLIP, MOLE_SLIP, BAR_HOLD, MOLE_HOLD = range(20, 25)

@@ -25,7 +25,11 @@ def happen(which, q, lane, m, y, columns):
         see(q, lane, m, y)
     elif which == BAR and bar == 0:
         # The force has just reached its limit: the direction of slip is known.
-        m[at.BAR_MODE * LANES + lane] = 1 if force + bar_hold(q, mole).offset > 0 else -1
+        bar = 1.0 if force + bar_hold(q, mole).offset > 0 else -1.0
+        m[at.BAR_MODE * LANES + lane] = bar
+        if mole == 0 and q.mole_limit == 0:
+            # No friction holds the mole, on which the force is still zero.
+            m[at.MOLE_MODE * LANES + lane] = -bar
     elif which == MOLE and mole == 0:
         m[at.MOLE_MODE * LANES + lane] = 1 if mole_hold(q, bar).offset - force > 0 else -1
     else:

@@ -20,7 +20,7 @@ _SERIES = TERMS * LANES
 _U, _V, _F = at.U_S * _SERIES, at.V_S * _SERIES, at.FORCE_S * _SERIES
 _GUARD, _HERE = at.GUARD_S * _SERIES, at.HERE_S * _SERIES
 _PLACE = _HERE + 4 * LANES
-_LENGTH = 1 / (LOOKS - 1)
+_LENGTH = 1 / (LOOKS - 1)  # between two looks, of a step
 
 
 @lean
@@ -62,9 +62,10 @@ def _bracket(g, place, several, lane, m, y, w):
     j = (at.VALUE + GUARDS * place + g) * LANES + lane
     k = (at.RATE + GUARDS * place + g) * LANES + lane
     g_0, g_1 = m[j - GUARDS * LANES], m[j]
-    d_0, d_1 = m[k - GUARDS * LANES] * _LENGTH, m[k] * _LENGTH
-    right = place * _LENGTH
-    left, side = right - _LENGTH, 1.0
+    d_0, d_1 = m[k - GUARDS * LANES], m[k]
+    length = _LENGTH * m[at.MOST * LANES + lane]
+    right = place * length
+    left, side = right - length, 1.0
     if g != TOUCH and m[(at.BAR_HOLD + g - BAR) * LANES + lane] > 0:
         j = (g - BAR) * LANES + lane
         offset, both = m[at.BAR_OFFSET * LANES + j], 2 * m[at.BAR_LIMIT * LANES + j]
@@ -79,7 +80,7 @@ def _bracket(g, place, several, lane, m, y, w):
                 return left, bottom, 0.5 * (left + bottom), -side
     if g_1 < 0 and g_0 > 0:
         here = crossing(g_0, d_0, g_1, d_1) if several else g_0 / (g_0 - g_1)
-        return left, right, left + _LENGTH * here, side
+        return left, right, left + length * here, side
     if g_1 < 0:
         # Just begun, it opens and closes before the look, or never opens.
         _pose(g, side, lane, m, y)
@@ -104,8 +105,9 @@ def _dip(g, side, left, g_0, d_0, g_1, d_1, lane, m, y, w):
     bottom, lowest = dip(g_0, d_0, g_1, d_1)
     if lowest < _GRAZE * min(g_0, g_1):
         _pose(g, side, lane, m, y)
-        bottom, lowest = _bottom(lane, left + bottom * _LENGTH, m, w)
-        if lowest < 0 and left < bottom < left + _LENGTH:
+        length = _LENGTH * m[at.MOST * LANES + lane]
+        bottom, lowest = _bottom(lane, left + bottom * length, m, w)
+        if lowest < 0 and left < bottom < left + length:
             return bottom
     return -1.0
 

@@ -22,7 +22,7 @@ _SERIES = TERMS * LANES
 _U, _V, _F = at.U_S * _SERIES, at.V_S * _SERIES, at.FORCE_S * _SERIES
 _HERE = at.HERE_S * _SERIES  # u, v, F and the slope of F somewhere
 _PLACE = _HERE + 4 * LANES
-_LENGTH = 1 / (LOOKS - 1)
+_LENGTH = 1 / (LOOKS - 1)  # between two looks, of a step
 
 
 @lean
@@ -49,12 +49,12 @@ def limit_step(m, w):
 @lean
 def _dips(g_0, d_0, g_1, d_1):
     """Return whether a guard falls far and rises again: its tangents at both ends meet low."""
-    meet = -d_0 * d_1 * _LENGTH > _DIP * (d_1 * g_0 - d_0 * g_1)
+    meet = -d_0 * d_1 > _DIP * (d_1 * g_0 - d_0 * g_1)
     return (d_0 < 0) & (d_1 > 0) & meet
 
 
 def _judge(place: int) -> Callable[..., None]:
-    """Return the kernel that sets the guards at one place, and their rates.
+    """Return the kernel that sets the guards at one place, and their change until the next.
 
     It marks lanes in which a guard falls below zero between the previous place and this.
     """
@@ -63,13 +63,14 @@ def _judge(place: int) -> Callable[..., None]:
     @lean
     def judge(m, y, w):
         for lane in range(LANES):
-            h = m[at.STEP * LANES + lane]
+            length = _LENGTH * m[at.MOST * LANES + lane]
+            h = length * m[at.STEP * LANES + lane]
             u, v = w[_HERE + lane], w[_HERE + LANES + lane]
-            force, change = w[_HERE + 2 * LANES + lane], w[_HERE + 3 * LANES + lane]
+            force, change = w[_HERE + 2 * LANES + lane], length * w[_HERE + 3 * LANES + lane]
             m[(at.PRESSED + place) * LANES + lane] = force
             ratio, drift = m[at.RATIO * LANES + lane], h * m[at.DRIFT * LANES + lane]
             x = fma(ratio, v - y[at.V * LANES + lane], y[at.X * LANES + lane])
-            x = fma(drift, place * _LENGTH, x)
+            x = fma(drift, place, x)
             rate = h * fma(m[at.A * LANES + lane], force, m[at.B * LANES + lane])
             open_ = m[at.OPEN * LANES + lane]
             m[values + TOUCH * LANES + lane] = open_ * (m[at.GAP * LANES + lane] - u)
@@ -122,17 +123,20 @@ _judge_begin, _judge_middle, _judge_end = _judge(0), _judge(1), _judge(2)
 
 @lean
 def look(m, y, w):
-    """Set the guards and their rates along the series; mark lanes in which one may end."""
+    """Set the guards and their rates along the step; mark lanes in which one may end.
+
+    Beyond the step, where the series is wrong, they may seem to hold.
+    """
     for lane in range(LANES):
         w[_HERE + lane], w[_HERE + LANES + lane] = w[_U + lane], w[_V + lane]
         w[_HERE + 2 * LANES + lane] = w[_F + lane]
         w[_HERE + 3 * LANES + lane] = w[_F + LANES + lane]
-        w[_PLACE + lane] = _LENGTH
+        w[_PLACE + lane] = _LENGTH * m[at.MOST * LANES + lane]
     _judge_begin(m, y, w)
     _evaluate(w)
     _judge_middle(m, y, w)
     for lane in range(LANES):
-        w[_PLACE + lane] = 1.0
+        w[_PLACE + lane] = m[at.MOST * LANES + lane]
     _evaluate(w)
     _judge_end(m, y, w)
 

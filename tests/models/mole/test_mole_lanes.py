@@ -99,6 +99,25 @@ def test_slips_shorter_than_a_step_are_found(
     assert record[0, PROGRESS] == pytest.approx(motion.state.y[5], abs=2 * tolerance * SIZES[0])
 
 
+def test_without_friction_on_the_ground_momentum_is_conserved():
+    """Bars that stick or not, some thrown back by the stop; voltages up to thirty times nominal."""
+    n = 256
+    fields = {
+        "bar_friction": RNG.choice([0.0, 1e-3, 0.1, 0.6, 9.0], n),
+        "supply_voltage": RNG.choice([20.0, 82.02, 600.0, 2500.0], n),
+        "supply_phase": RNG.uniform(-np.pi, np.pi, n),
+        "initial_displacement": RNG.uniform(-0.05, 0.02, n),
+        "mole_friction": np.zeros(n),
+    }
+    p = Params(**{k: np.broadcast_to(v, n) for k, v in (Params()._asdict() | fields).items()})
+    record = go(machines(np.transpose(p), 1e-8), 30)
+    share = p.bar_mass / (p.bar_mass + p.mole_mass)
+    u, v, x = record[:, :3].T
+    np.testing.assert_allclose(x, -share * v, rtol=0, atol=1e-11)
+    moved = -share * (u - p.initial_displacement)
+    np.testing.assert_allclose(record[:, PROGRESS], moved, rtol=0, atol=1e-9)
+
+
 def test_moles_anywhere_within_the_bounds_move_as_the_exact_propagator():
     """Bars flung far and fast, every other one through a narrow coil."""
     bounds = [MODEL.parameter(name).bounds for name in MODEL.parameter_names]
