@@ -1,0 +1,105 @@
+"""What to do, by rules: mend, add rows, measure, tighten, or nothing."""
+
+from collections.abc import Iterator, Sequence
+
+from uq.analysis.findings import Findings
+from uq.conclusions.parts import Advice, Contribution, Quantity
+from uq.conclusions.settling import MOST, rows_in_words, unsettled
+from uq.conclusions.sources import ASSUMED, mark
+from uq.conclusions.tightening import tightened
+from uq.conclusions.words import called_together
+from uq.rows.elements import analysis_of
+from uq.rows.results import failed
+
+
+def advise(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:
+    """Yield what to do, the most urgent first.
+
+    Parameters
+    ----------
+    findings : Findings
+    quantities : sequence of Quantity
+        The one that the study is about first.
+    """
+    found = [
+        *_mend(findings),
+        *_measure(findings, quantities),
+        *_tighten(findings, quantities),
+        *_add_rows(findings, quantities),
+    ]
+    if quantities and not any(one.rule != "tighten" for one in found):
+        found += [
+            Advice(
+                "nothing",
+                "Nothing: what the study asks is settled, and no law that matters is"
+                " an assumption.",
+            )
+        ]
+    yield from found
+
+
+def _mend(findings: Findings) -> Iterator[Advice]:
+    ds = findings.ds
+    lost, rows = int(failed(ds).sum()), ds.sizes["sample"]
+    most = analysis_of(ds).max_failed
+    if rows and lost > most * rows:
+        yield Advice(
+            "failed",
+            f"Mend the {lost} failed rows first: the study allows {100 * most:g} % to fail;"
+            " 'uq rerun --failed' computes them again, if necessary with other settings.",
+        )
+
+
+def leading(quantities: Sequence[Quantity]) -> Contribution | None:
+    """Return what contributes most to what the study is about."""
+    for quantity in quantities[:1]:
+        of_events = (event.ranking for event in quantity.events)
+        for ranking in (*of_events, quantity.ranking):
+            if ranking is not None and ranking.leads:
+                return ranking.leader
+    return None
+
+
+def _measure(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:
+    leader = leading(quantities)
+    if leader is None:
+        return
+    ds = findings.ds
+    assumed = tuple(n for n in leader.inputs if mark(str(ds[n].attrs["source"])) == ASSUMED)
+    if assumed:
+        one = len(assumed) == 1
+        words = called_together(assumed)
+        yield Advice(
+            "measure",
+            f"Measure {words} first: {'it matters' if one else 'they matter'} most, and"
+            f" {'its law is' if one else 'their laws are'} assumed.",
+            assumed,
+        )
+
+
+def _tighten(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:
+    leader = leading(quantities)
+    if leader is None:
+        return
+    found = list(tightened(findings.ds, quantities[0], leader.inputs))
+    is_life = quantities[0].promise is not None and quantities[0].promise.is_life
+    told = [one for one in found if not one.reason and (one.lengthens or not is_life)]
+    refused = [one for one in found if one.reason]
+    for one in (told or refused)[:1]:
+        yield Advice("tighten", one.sentence, leader.inputs, tightened=one)
+
+
+def _add_rows(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:
+    rows = findings.ds.sizes["sample"]
+    open_ones = [one for quantity in quantities for one in unsettled(quantity)]
+    if not open_ones or not rows:
+        return
+    worst = max(open_ones, key=lambda one: one.factor)
+    needed = min(worst.factor, MOST) * rows
+    many = "more than" if worst.factor > MOST else "about"
+    more = f"; {len(open_ones) - 1} more are not settled" if len(open_ones) > 1 else ""
+    yield Advice(
+        "rows",
+        f"Compute {many} {rows_in_words(needed)} rows instead of {rows}: {worst.what}{more}.",
+        rows=int(needed) + 1,
+    )
