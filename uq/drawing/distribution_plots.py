@@ -110,7 +110,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
             top = base + np.histogram(own, edges)[0] / max(int(mask.sum()), 1)
             panel.stairs(top, edges, baseline=base, fill=True, color=colour, label=name)
             base = top
-        panel.set(ylim=(0, None), ylabel="Share of rows\nper bin")
+        panel.set(ylim=(0, None), ylabel="Share of\nrows per bin")
         entitle(panel, [element], of=label(ds, element))
     panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name))
     if wide:
