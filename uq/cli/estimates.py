@@ -9,8 +9,10 @@ import pandas as pd
 
 from uq import json_form
 from uq.analysis.convergence import enough, running_estimates
+from uq.analysis.findings import Findings
 from uq.analysis.twin import Sharpened, TwoFidelities, with_twin
 from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.conclusions.advice import verdict
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.wording import estimated, failed_interval, interval, known
@@ -82,6 +84,9 @@ def convergence(result: Path, output: str | None, json: bool) -> None:
     if json:
         print_json({"outputs": {name: _json(one, errors.get(name)) for name, one in found.items()}})
         return
+    if output is None:
+        for line in verdict(Findings(ds)):
+            paragraph(line, indent=0)
     for name, estimates in found.items():
         heading(f"\n{name}")
         for label, sizes in estimates.items():
