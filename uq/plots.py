@@ -23,6 +23,7 @@ from uq.drawing.figure import write
 from uq.drawing.index_plot import index_bars as index_bars
 from uq.drawing.input_plot import inputs as inputs
 from uq.drawing.motion_plot import history as history
+from uq.drawing.motion_plot import motion as motion
 from uq.drawing.motion_plot import phase_portrait as phase_portrait
 from uq.drawing.motion_plot import section as section
 from uq.drawing.response_plot import basins as basins

@@ -81,11 +81,15 @@ def failed_interval(bounds: Estimate | None, per: float = 1.0) -> str:
     return f"from {low} on" if high == "-" else f"{low} to {high}"
 
 
-def estimated(label: str, per: float = 1.0) -> str:
-    """Return the label of an estimate: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours."""
+def estimated(label: str, per: float = 1.0, is_magnitude: bool = False) -> str:
+    """Return the label of an estimate: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours.
+
+    That of an angle's magnitude is ``P(|.| > 12)``.
+    """
+    of = "|.| " if is_magnitude else ""
     return re.sub(
         r"^P\(([<>])(.+?)\)",
-        lambda found: f"P({found[1]} {number(float(found[2]) / per)})",
+        lambda found: f"P({of}{found[1]} {number(float(found[2]) / per)})",
         label,
     )
 

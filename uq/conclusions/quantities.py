@@ -154,7 +154,8 @@ def _sides(
 ) -> tuple[bool, bool]:
     """Return whether a lower and an upper bound are what matters."""
     if element.is_lifetime:
-        return True, False
+        early = bool(element.declared.success)  # the latest time of a success is what matters
+        return not early, early
     if element.is_angle:
         return False, True
     middle = _quantile(described, MIDDLE).value
@@ -204,7 +205,8 @@ def _events(
             continue
         own = unit_for(element.units, one.at)
         at = own.text(one.at)
-        said = f"end within {at}" if element.is_lifetime else f"exceed {at}"
+        verb = "succeed" if element.declared.success else "end"
+        said = f"{verb} within {at}" if element.is_lifetime else f"exceed {at}"
         said += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{one.at!r})"
         yield event(findings, target, said, one)

@@ -23,6 +23,7 @@ from uq.drawing.elements_plot import (
 from uq.drawing.figure import Drawing
 from uq.drawing.panel import arrows, column, figure_of, finish, is_wide, logarithmic, roomy
 from uq.drawing.style import INK, MARK, ROWS, WIDTH, styled, thinned
+from uq.drawing.symbols import literal, typeset
 from uq.drawing.words import as_label, label, rows_in_words
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
@@ -127,9 +128,11 @@ def lifetime(
 ) -> Figure:
     """Draw the probability that a life has ended against time, with its 95 % bands.
 
+    If the end is a success, the axes say what has happened by then, and what has not yet.
+
     The dark band is pointwise; the light one, where there is one, is simultaneous: it covers the
     whole curve. Marks with intervals show B1, B10 and B50, the times by which 1, 10 and 50 % have
-    ended. Dotted lines are the lower tolerance bounds that the study asks for. The right axis shows
+    ended. Dotted lines are the tolerance bounds that the study asks for. The right axis shows
     the survival probability.
 
     Parameters
@@ -167,11 +170,14 @@ def lifetime(
                 panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
                 bands[meaning] = True
         described = known.get(element.name)
-        bound = described.find("tolerance", "lower") if described else None
+        side = "upper" if element.declared.success else "lower"
+        bound = described.find("tolerance", side) if described else None
         if bound is not None and np.isfinite(bound.estimate.value):
             panel.axvline(bound.estimate.value / unit.size, color=colour, ls=":", lw=1.2)
             bands["dotted: tolerance bound"] = True
-    panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
+    success = chosen[0].declared.success
+    event = typeset(literal(success)) if success else "the life has ended"
+    panel.set(ylim=(0, 1.02), ylabel=f"Probability that\n{event}")
     panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
     if is_wide(ends):
         logarithmic(panel)
@@ -180,7 +186,7 @@ def lifetime(
     for i, element in enumerate(chosen):
         _mark(panel, element, replicates_of(rows), unit, curve_style(i, element, chosen)[0])
     other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
-    other.set_ylabel("Survival probability")
+    other.set_ylabel("Probability of not yet" if success else "Survival probability")
     entitle(panel, chosen, *bands)
     return finish(panel)
 

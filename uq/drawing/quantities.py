@@ -45,7 +45,7 @@ def with_quantities(ds: xr.Dataset) -> xr.Dataset:
     if "trajectory" not in ds:
         return ds
     trajectory = ds["trajectory"]
-    series = trajectory.drop_vars(["unit", "meaning"]).to_dataset("quantity")
+    series = trajectory.reset_coords(drop=True).to_dataset("quantity")
     for one in trajectory.transpose("quantity", "time"):
         words = {"units": one["unit"].item(), "long_name": one["meaning"].item()}
         series[one["quantity"].item()].attrs = words

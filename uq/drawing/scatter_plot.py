@@ -38,6 +38,7 @@ from uq.units import unit_of
 _MOST_INPUTS = 3
 _MOST_POINTS = 3000
 _IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
+_EMPTY = 0.05  # around a mean without a row, over the height of the panel, that interrupts a line
 _GAP = 0.1  # between neighbouring rows, over the width of the panel, that interrupts a line
 
 
@@ -147,8 +148,10 @@ def _conditional(
     else:
         line = np.array([values[rows].mean() for rows in slices])
         ends = [intervals.mean_interval(values[rows]) for rows in slices]
-    line = np.where(np.isfinite(line), line, np.nan)
-    low, high = np.array(ends, dtype=float).T
+    apart = [np.min(np.abs(values[rows] - at)) for rows, at in zip(slices, line, strict=True)]
+    empty = np.array(apart) > _EMPTY * np.ptp(axes.get_ylim())
+    line = np.where(np.isfinite(line) & ~empty, line, np.nan)
+    low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
     # A gap between neighbouring rows interrupts the line: it says nothing of what lies there.
     inside = np.sort(x)
     jumps = np.flatnonzero(np.diff(inside) > _GAP * np.ptp(axes.get_xlim()))

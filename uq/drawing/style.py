@@ -7,6 +7,8 @@ import numpy as np
 
 WIDTH = 84 / 25.4
 """One column of a journal [inch]."""
+PAGE = 174 / 25.4
+"""Both columns [inch]."""
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")

@@ -15,7 +15,7 @@ from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
 from uq.units import typical, unit_of
-from uq.wording import number, percent, percent_interval
+from uq.wording import in_unit, percent, percent_interval
 
 
 def status_table(ds: xr.Dataset, summary: Summary) -> Table:
@@ -79,7 +79,7 @@ class Outcome:
 
     def in_its_unit(self, value: float) -> str:
         """Return a number of this element, and its unit."""
-        return f"{number(value / self.unit.size)} {self.unit_cell.text}".strip()
+        return in_unit(value, self.unit)
 
     def per(self, one: Statistic) -> float:
         """Return the length of the unit in which a statistic is shown."""
@@ -139,7 +139,8 @@ def _rows(
             yield outcome.label, outcome.unit_cell, *cells
         else:
             note = "; ".join(filter(None, (one.more for one in here.values())))
-            place = Cell(outcome.in_its_unit(at), key=at)
+            sign = "magnitude " if outcome.declared.is_angle else ""
+            place = Cell(f"{sign}{outcome.in_its_unit(at)}", key=at)
             yield outcome.label, place, *cells, Cell(note)
 
 

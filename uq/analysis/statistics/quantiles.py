@@ -50,11 +50,12 @@ def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
         p = B_LIVES[name]
         yield Statistic(
             ("b_lives", name),
-            name,
+            f"{100 * p:g} % by" if element.declared.success else name,
             found,
             element.units,
             LIFE,
             rows_needed=None if found.assumes else rows_needed(element, p),
+            column=name,
             estimator=quantile_of(element, p),
         )
     for label, rows in (("never ending", element.never), ("censored", element.censored)):
