@@ -32,6 +32,7 @@ def test_everything_promised_is_there():
             "open_result",
             "simulate",
             "summary",
+            "trace",
             "sensitivity",
             "survival",
             "what_if",

@@ -211,6 +211,10 @@ LAWS = {
     "truncate": (NORMAL | {"truncate": [-2.0, 1.5]}, "z"),
     "uniform": ({"distribution": "uniform", "lower": -1.0, "upper": 2.0}, "z"),
     "triangular": ({"distribution": "triangular", "lower": -1.0, "mode": 0.0, "upper": 2.0}, "z"),
+    "triangular scale": (
+        {"distribution": "triangular", "lower": 0.5, "mode": 1.0, "upper": 2.0},
+        "a",
+    ),
     "cv": ({"distribution": "lognormal", "mean": 1.0, "cv": 0.4}, "a"),
     "sigma": ({"distribution": "lognormal", "median": 1.0, "sigma": 0.4}, "a"),
     "loguniform": ({"distribution": "loguniform", "lower": 0.3, "upper": 2.0}, "a"),

@@ -27,6 +27,7 @@ _READERS = (
     "convergence",
     "compare",
     "what-if",
+    "trace",
     "plot",
     "report",
 )

@@ -27,6 +27,7 @@ VERBS = (
     results.compare,
     results.what_if,
     results.twin,
+    results.trace,
     studies.rare_event,
     results.plot,
     results.report,

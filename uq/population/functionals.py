@@ -28,6 +28,11 @@ class Population:
     element : Element
     part : ndarray of int, shape (n,), or None
         The independent part of each row.
+
+    References
+    ----------
+    J. M. Hammersley, "Conditional Monte Carlo", J. ACM 3, 73-76 (1956): a row is the law of a life
+    given all that is not integrated exactly.
     """
 
     element: Element

@@ -1,13 +1,15 @@
 """Sensitivities in a report: one table for each target of each method."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from math import isfinite
 from typing import NamedTuple
 
 import xarray as xr
 
 from uq.analysis.findings import Findings
+from uq.analysis.tracing.keys import key_of
 from uq.drawing.index_plot import subject
 from uq.errors import InputError
 from uq.estimate import Estimate
@@ -79,12 +81,15 @@ def _method(findings: Findings, name: str, drawn: Drawn) -> Method:
     if found.groups_dropped:
         used += f"; {found.groups_dropped} groups with missing values dropped"
     subjects = (
-        _subject(findings.ds, one, drawn[name, target]) for target, one in found.targets.items()
+        _subject(findings.ds, name, one, drawn[name, target])
+        for target, one in found.targets.items()
     )
     return Method(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(ds: xr.Dataset, found: TargetIndices, drawn: Sequence[Picture]) -> Subject:
+def _subject(
+    ds: xr.Dataset, method: str, found: TargetIndices, drawn: Sequence[Picture]
+) -> Subject:
     name, indices = found.name, found.indices
     words = subject(ds, name)
     words = words[:1].upper() + words[1:]
@@ -92,21 +97,29 @@ def _subject(ds: xr.Dataset, found: TargetIndices, drawn: Sequence[Picture]) -> 
         return Subject(name, words, refused=found.refused)
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
     listed = ((f"Indices of {name}", kinds), (f"Second order, of {name}", pairs))
-    tables = tuple(_table(caption, one, indices.nulls) for caption, one in listed if one)
+    traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
+    tables = tuple(_table(caption, one, indices.nulls, traced) for caption, one in listed if one)
     if indices.noise:
-        line = [(Cell("noise"), _cell(S1, indices.noise))]
+        line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
         tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
     return Subject(name, words, "", tables, tuple(drawn), indices.notes)
 
 
-def _table(caption: str, values: Values, nulls: Mapping[IndexKind, Null]) -> Table:
-    rows = [
-        (Cell(label), *(_cell(kind, one) for kind, one in zip(values, estimates, strict=True)))
-        for label, estimates in lines(values, nulls)
-    ]
+def _table(
+    caption: str,
+    values: Values,
+    nulls: Mapping[IndexKind, Null],
+    traced: Callable[..., str],
+) -> Table:
+    def cells(label: str, estimates: Sequence[Estimate]) -> Iterator[Cell]:
+        for kind, one in zip(values, estimates, strict=True):
+            dummy = ("dummy", f"{kind.key}{'_any' * label.startswith('(largest')}")
+            yield _cell(kind, one, traced(*((kind.key, label) if label in values[kind] else dummy)))
+
+    rows = [(Cell(label), *cells(label, found)) for label, found in lines(values, nulls)]
     return Table(caption, ("input", *(kind.key for kind in values)), rows)
 
 
-def _cell(kind: IndexKind, one: Estimate) -> Cell:
+def _cell(kind: IndexKind, one: Estimate, traced: str) -> Cell:
     key = one.value if isfinite(one.value) else None
-    return Cell(kind.text(one.value), kind.interval(one), key)
+    return Cell(kind.text(one.value), kind.interval(one), key, traced)

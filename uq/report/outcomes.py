@@ -9,6 +9,7 @@ import xarray as xr
 from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary
+from uq.analysis.tracing.keys import key_of
 from uq.contract import Output, Status
 from uq.drawing.words import element_in_words, unbroken
 from uq.estimate import Estimate
@@ -25,7 +26,8 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
     for label, found in summary.status.items():
         example = str(ds["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
         share = found / max(summary.samples, 1)
-        cells = (Cell(str(found), key=float(found)), Cell(percent(share), key=share))
+        count = Cell(str(found), key=float(found), traced=key_of("status", label))
+        cells = (count, Cell(percent(share), key=share))
         rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
     header = ("status", "rows", "share", "meaning", "first message")
     return without_empty_columns(Table("Status of all rows", header, rows))
@@ -34,7 +36,11 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
 def regime_table(summary: Summary) -> Table:
     """Return the share of each regime among the independent rows."""
     rows = [
-        (Cell(one.label), Cell(f"{count}", key=float(count)), _share(one.estimate))
+        (
+            Cell(one.label),
+            Cell(f"{count}", key=float(count), traced=key_of(*one.key, "count")),
+            _share(one.estimate)._replace(traced=key_of(*one.key, "share")),
+        )
         for one in summary.regimes.values()
         for count in [one.facts["count"]]
     ]
@@ -147,11 +153,12 @@ def _rows(
 def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
     if one is None:
         return Cell("")
+    traced = key_of("outputs", outcome.name, *one.key)
     if listing.by:  # the small print has its own column
-        return cell(replace(one.best, more=""))
+        return cell(replace(one.best, more=""))._replace(traced=traced)
     if one.estimate.reason and isnan(one.estimate.value) and one.rows_needed is None:
         return Cell("none", one.estimate.reason)
-    return cell(one, outcome.per(one))
+    return cell(one, outcome.per(one))._replace(traced=traced)
 
 
 _WORDS = {

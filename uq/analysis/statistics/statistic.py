@@ -192,6 +192,9 @@ class Statistic:
         The JSON of a `FACT`.
     estimator : Estimator, optional
         How it depends on the rows, for the difference between two studies with paired rows.
+    by : tuple of callable
+        The functions that compute it, whose docstrings state what they estimate and cite the
+        source; by default its maker.
     """
 
     key: tuple[str, ...]
@@ -212,6 +215,7 @@ class Statistic:
     notes: tuple[str, ...] = ()
     facts: Mapping[str, Any] = field(default_factory=dict)
     estimator: Estimator | None = None
+    by: tuple[Callable[..., Any], ...] = ()
 
     def is_read_by(self, reader: Reader) -> bool:
         """Whether this reader shows it."""

@@ -9,7 +9,9 @@ import numpy as np
 from uq import json_form
 from uq.analysis.estimators import Sample, share
 from uq.analysis.failed_rows import bounded
+from uq.analysis.kaplan_meier import kaplan_meier
 from uq.analysis.life_quantiles import ended_by
+from uq.analysis.lifetime import survival
 from uq.analysis.statistics.statistic import Context, Kind, Listing, Statistic, entry
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some, share_interval
@@ -98,6 +100,7 @@ def _probabilities(
             at=threshold,
             facts={"undefined": undefined},
             estimator=replace(share(_hits(threshold, place)), counts_hits=element.is_plain),
+            by=(share_of, share_interval) if element.is_plain else (Population,),
         )
         if not element.is_plain and sides is None:
             yield replace(one, estimate=Estimate(reason=_unknown_sides(element, threshold)))
@@ -121,7 +124,7 @@ def _by_kaplan_meier(
     return replace(
         one,
         estimate=Estimate(reason=reason),
-        otherwise=replace(one, label=label, estimate=guess),
+        otherwise=replace(one, label=label, estimate=guess, by=(ended_by, kaplan_meier, survival)),
         more="; ".join(filter(None, small)) if one.falls else "",
     )
 

@@ -48,6 +48,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
             rows_needed=needed if isnan(found.value) else None,
             column=f"tolerance_{name}",
             heading=name,
+            by=(tolerance_bounds,),
         )
     yield Statistic(
         ("tolerance", "rows_needed"),
@@ -56,4 +57,5 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         "rows",
         replace(COUNT, listing=listing, readers=COUNT.readers & ~Reader.TERMINAL),
         column="tolerance_rows_needed",
+        by=(rows_for_bound,),
     )

@@ -133,12 +133,13 @@ def sensitivity(
 ) -> None:
     """Show from which inputs the scatter comes."""
     from uq.cli.printing import print_json
-    from uq.cli.sensitivity import plain, show
+    from uq.cli.sensitivity import show
+    from uq.indices.as_json import sensitivity_json
     from uq.indices.sensitivities import sensitivities
     from uq.rows.results import open_result
 
     found = sensitivities(open_result(result), method, output, regime)
-    print_json(plain(found)) if json else show(found)
+    print_json(sensitivity_json(found)) if json else show(found)
 
 
 def levels(
@@ -212,6 +213,20 @@ def twin(
     from uq.cli import estimates
 
     estimates.twin(result, model, json)
+
+
+def trace(
+    result: given.ResultFile,
+    key: Annotated[
+        str, typer.Argument(metavar="KEY", help="Its path in JSON: outputs/life/quantiles/0.05.")
+    ],
+    model: given.ModelReference = None,
+    json: given.Json = False,
+) -> int:
+    """Show where a number comes from, and compute it again."""
+    from uq.cli import trace as tracing
+
+    return tracing.trace(result, key, model, json)
 
 
 def plot(
