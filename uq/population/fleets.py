@@ -146,13 +146,13 @@ class _MoreThan:
 
     def below(self, lives: Floats, time: float) -> Floats:
         ended = self.units.ended(time)
-        if self.units.are_alike:
-            kept = special.bdtr(self.allow, self.size, ended[:, 0])
-            kept = kept if self.allow < self.size else np.ones_like(kept)
+        if self.allow >= self.size:
+            more = np.zeros(ended[:, 0].shape)
+        elif self.units.are_alike:
+            more = special.bdtrc(self.allow, self.size, ended[:, 0])
         else:
-            kept = at_most(ended, self.size, self.allow)
-        found = np.clip(1 - kept @ self.units.weights, 0.0, 1.0)
-        return np.where(np.isnan(lives), 0.0, found)
+            more = 1 - at_most(ended, self.size, self.allow)
+        return np.where(np.isnan(lives), 0.0, np.clip(more @ self.units.weights, 0.0, 1.0))
 
 
 def units_of(rows: xr.Dataset, element: Element) -> Units:
