@@ -35,7 +35,7 @@ from uq.errors import InputError
 from uq.places import refuse_standard_output
 
 FIGURES: dict[str, Entry] = {
-    "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,)),
+    "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,), needs=("summary",)),
     "histogram": Entry(
         histogram, of.outputs, applies=(of.is_no_lifetime,), in_report=(of.in_one_regime,)
     ),

@@ -109,6 +109,16 @@ def test_heads_of_tables_are_printed_on_every_page(browser, report):
     assert shown and set(shown) == {"contents"}  # Chromium repeats no box of a button
 
 
+def test_a_printed_report_has_figures_instead_of_controls(browser, report):
+    browser.open(report)
+    shown = "[...document.querySelectorAll('#explore, #tolerances')].map(s => s.offsetHeight)"
+    assert min(browser.value(shown)) > 0
+    browser.do("Emulation.setEmulatedMedia", media="print")
+    hidden = browser.value(shown)
+    browser.do("Emulation.setEmulatedMedia", media="")
+    assert hidden == [0, 0]
+
+
 @pytest.mark.slow
 def test_a_report_of_one_row_is_shown_too(browser, tmp_path):
     path = tmp_path / "one.html"

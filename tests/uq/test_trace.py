@@ -87,6 +87,7 @@ def test_options_are_part_of_a_key():
     ds = every_kind()
     check(ds, "summary", {"regime": "fast"}, every=17)
     check(ds, "sensitivity", {"method": "pawn"}, every=31)
+    check(ds, "fleet", {"size": "1", "by": "0.7", "output": "life[side=left,depth=0.5]"}, every=3)
     check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
 
 

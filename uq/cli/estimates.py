@@ -5,8 +5,10 @@ from pathlib import Path
 
 from uq.analysis.as_json import convergence_json, twin_json
 from uq.analysis.converging import converging
+from uq.analysis.findings import Findings
 from uq.analysis.twin import with_twin
 from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.conclusions.advice import verdict
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.wording import estimated, failed_interval, interval, known
@@ -54,10 +56,14 @@ def _ends(one: Estimate) -> str:
 
 def convergence(result: Path, output: str | None, json: bool) -> None:
     """Show running estimates, and whether sampling is still the largest error."""
-    found = converging(open_result(result), output)
+    ds = open_result(result)
+    found = converging(ds, output)
     if json:
         print_json(convergence_json(found))
         return
+    if output is None:
+        for line in verdict(Findings(ds)):
+            paragraph(line, indent=0)
     for name, one in found.items():
         heading(f"\n{name}")
         for label, sizes in one.estimates.items():

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
-from uq import json_form
-from uq.analysis.fleet import Banded, Fleet, fleet_of, reasons
+from uq.analysis.fleet import Banded, fleet_of, reasons
+from uq.analysis.fleet_json import fleet_json
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.rows.results import open_result
 from uq.wording import duration, failed_interval, interval, known, number
@@ -18,7 +17,7 @@ def fleet(
     ds = open_result(result)
     found = fleet_of(ds, size, by, allow, output)
     if json:
-        print_json(plain(found))
+        print_json(fleet_json(found))
         return
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.design}")
     heading(f"\n{found.output}", f"the first of {size} ends [s]")
@@ -49,30 +48,3 @@ def _lines(label: str, one: Banded, is_time: bool) -> Iterator[tuple[str, str, s
         yield name, known(end), interval(end), duration(end.value) if is_time else ""
     if worst := failed_interval(one.failed):
         yield "  with failed rows", "", worst, ""
-
-
-def plain(found: Fleet) -> dict[str, Any]:
-    """Return numbers of fleets as plain data, for JSON."""
-    return {
-        "output": found.output,
-        "size": found.size,
-        "allow": found.allow,
-        "samples": found.samples,
-        "integrated": list(found.integrated),
-        "first": {"quantiles": {repr(p): _plain(one) for p, one in found.first.items()}},
-        "by": {
-            repr(time): {"failed": _plain(failed), "at_most_allowed": _plain(at_most)}
-            for time, (failed, at_most) in found.by.items()
-        },
-        "notes": found.notes,
-    }
-
-
-def _plain(one: Banded) -> dict[str, Any]:
-    entry = json_form.whole(one.estimate) | json_form.failed(one.failed)
-    for name, end in (("band_low", one.low), ("band_high", one.high)):
-        entry[name] = json_form.number(end.value)
-        entry |= {f"{name}_{key}": value for key, value in json_form.ends(end).items()}
-        if end.reason:
-            entry[f"{name}_reason"] = end.reason
-    return entry

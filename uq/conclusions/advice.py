@@ -4,7 +4,8 @@ from collections.abc import Iterator, Sequence
 
 from uq.analysis.findings import Findings
 from uq.conclusions.parts import Advice, Contribution, Quantity
-from uq.conclusions.settling import MOST, rows_in_words, unsettled
+from uq.conclusions.quantities import quantities
+from uq.conclusions.settling import MOST, Unsettled, rows_in_words, unsettled
 from uq.conclusions.sources import ASSUMED, mark
 from uq.conclusions.tightening import tightened
 from uq.conclusions.words import called_together
@@ -12,22 +13,22 @@ from uq.rows.elements import analysis_of
 from uq.rows.results import failed
 
 
-def advise(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:
+def advise(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     """Yield what to do, the most urgent first.
 
     Parameters
     ----------
     findings : Findings
-    quantities : sequence of Quantity
+    answered : sequence of Quantity
         The one that the study is about first.
     """
     found = [
         *_mend(findings),
-        *_measure(findings, quantities),
-        *_tighten(findings, quantities),
-        *_add_rows(findings, quantities),
+        *_measure(findings, answered),
+        *_tighten(findings, answered),
+        *_add_rows(findings, answered),
     ]
-    if quantities and not any(one.rule != "tighten" for one in found):
+    if answered and not any(one.rule != "tighten" for one in found):
         found += [
             Advice(
                 "nothing",
@@ -50,9 +51,9 @@ def _mend(findings: Findings) -> Iterator[Advice]:
         )
 
 
-def leading(quantities: Sequence[Quantity]) -> Contribution | None:
+def leading(answered: Sequence[Quantity]) -> Contribution | None:
     """Return what contributes most to what the study is about."""
-    for quantity in quantities[:1]:
+    for quantity in answered[:1]:
         of_events = (event.ranking for event in quantity.events)
         for ranking in (*of_events, quantity.ranking):
             if ranking is not None and ranking.leads:
@@ -60,8 +61,8 @@ def leading(quantities: Sequence[Quantity]) -> Contribution | None:
     return None
 
 
-def _measure(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:
-    leader = leading(quantities)
+def _measure(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
+    leader = leading(answered)
     if leader is None:
         return
     ds = findings.ds
@@ -77,29 +78,44 @@ def _measure(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Adv
         )
 
 
-def _tighten(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:
-    leader = leading(quantities)
+def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
+    leader = leading(answered)
     if leader is None:
         return
-    found = list(tightened(findings.ds, quantities[0], leader.inputs))
-    is_life = quantities[0].promise is not None and quantities[0].promise.is_life
+    found = list(tightened(findings.ds, answered[0], leader.inputs))
+    is_life = answered[0].promise is not None and answered[0].promise.is_life
     told = [one for one in found if not one.reason and (one.lengthens or not is_life)]
     refused = [one for one in found if one.reason]
     for one in (told or refused)[:1]:
         yield Advice("tighten", one.sentence, leader.inputs, tightened=one)
 
 
-def _add_rows(findings: Findings, quantities: Sequence[Quantity]) -> Iterator[Advice]:
+def verdict(findings: Findings) -> list[str]:
+    """Return whether the rows are enough, in sentences, the least settled first."""
     rows = findings.ds.sizes["sample"]
-    open_ones = [one for quantity in quantities for one in unsettled(quantity)]
+    open_ones = [one for quantity in quantities(findings) for one in unsettled(quantity)]
+    if not open_ones:
+        return ["Enough rows: what the study asks is settled."] if rows else []
+    return [
+        f"Not enough rows: {one.what}; {_needed(one, rows)} rows would settle it."
+        for one in sorted(open_ones, key=lambda one: -one.factor)
+    ]
+
+
+def _needed(one: Unsettled, rows: int) -> str:
+    many = "more than" if one.factor > MOST else "about"
+    return f"{many} {rows_in_words(min(one.factor, MOST) * rows)}"
+
+
+def _add_rows(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
+    rows = findings.ds.sizes["sample"]
+    open_ones = [one for quantity in answered for one in unsettled(quantity)]
     if not open_ones or not rows:
         return
     worst = max(open_ones, key=lambda one: one.factor)
-    needed = min(worst.factor, MOST) * rows
-    many = "more than" if worst.factor > MOST else "about"
     more = f"; {len(open_ones) - 1} more are not settled" if len(open_ones) > 1 else ""
     yield Advice(
         "rows",
-        f"Compute {many} {rows_in_words(needed)} rows instead of {rows}: {worst.what}{more}.",
-        rows=int(needed) + 1,
+        f"Compute {_needed(worst, rows)} rows instead of {rows}: {worst.what}{more}.",
+        rows=int(min(worst.factor, MOST) * rows) + 1,
     )

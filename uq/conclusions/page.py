@@ -9,28 +9,33 @@ from uq.conclusions.parts import Answer, Contribution, Quantity, Ranking, senten
 from uq.literals import plain
 
 STYLE = Markup("""
-.answer { display: grid; gap: .4rem 2rem; grid-template-columns: minmax(0, 1fr); }
+.answer { display: grid; gap: .3rem 2rem; grid-template-columns: minmax(0, 1fr); }
 @media (min-width: 60rem) {
-  .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr); }
+  .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr);
+    grid-template-rows: auto auto 1fr; align-items: start; }
+  .answer-verdict { grid-area: 1 / 1; }
+  .answer > figure { grid-area: 1 / 2 / 3 / 3; }
+  .answer-ranking { grid-area: 2 / 1 / 4 / 2; }
+  .answer-todo { grid-area: 3 / 2; }
 }
 .answer p, .answer ul { margin: .25rem 0; }
 .answer ul { padding-left: 1.2rem; }
 .answer h3 { margin: .5rem 0 .1rem; font-size: 1rem; }
-.answer .promise { font-size: 1.35rem; line-height: 1.3; font-weight: 600; }
-.answer .of, .answer .why, .answer .effect { opacity: .75; font-size: .875rem; }
-.answer .bar { display: grid; grid-template-columns: 11rem 1fr 8.5rem; gap: 0 .7rem;
+.answer .answer-promise { font-size: 1.35rem; line-height: 1.3; font-weight: 600; }
+.answer-why { opacity: .75; font-size: .875rem; }
+.answer-bar { display: grid; grid-template-columns: 11rem minmax(0, 1fr) auto; gap: 0 .7rem;
   align-items: center; margin: .3rem 0; }
-.answer .track { position: relative; height: .9rem; background: rgba(127, 127, 127, .15); }
-.answer .track > * { position: absolute; top: 0; bottom: 0; }
-.answer .fill { left: 0; background: #0072b2; }
-.answer .ends { border: solid currentColor; border-width: 0 1px; }
-.answer .ends::before { content: ""; position: absolute; left: 0; right: 0; top: calc(50% - .5px);
-  border-top: 1px solid currentColor; }
-.answer .bar .effect { grid-column: 1 / -1; }
-.answer .size { font-size: .875rem; white-space: nowrap; }
+.answer-track { position: relative; height: .9rem; background: rgba(127, 127, 127, .15); }
+.answer-track > * { position: absolute; top: 0; bottom: 0; }
+.answer-fill { left: 0; background: #0072b2; }
+.answer-ends { border: solid currentColor; border-width: 0 1px; }
+.answer-ends::before { content: ""; position: absolute; left: 0; right: 0;
+  top: calc(50% - .5px); border-top: 1px solid currentColor; }
+.answer-bar .answer-why { grid-column: 1 / -1; }
+.answer-size { font-size: .875rem; min-width: 8rem; }
 @media (max-width: 40rem) {
-  .answer .bar { grid-template-columns: 8.5rem 1fr 6.5rem; }
-  .answer .size { font-size: .8rem; }
+  .answer-bar { grid-template-columns: 8.5rem minmax(0, 1fr) auto; }
+  .answer-size { font-size: .8rem; min-width: 6.5rem; }
 }
 @media print { .answer { break-inside: avoid; } }
 """)
@@ -88,18 +93,18 @@ def _verdict(answer: Answer) -> Markup:
 def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
     promise = lead.promise
     if promise is not None and promise.sentence:
-        yield Markup('<p class="promise">{}</p>').format(plain(promise.sentence))
-    yield Markup('<p class="of">{}</p>').format(plain(f"{lead.words[:1].upper()}{lead.words[1:]}."))
+        yield Markup('<p class="answer-promise">{}</p>').format(plain(promise.sentence))
+    yield Markup('<p class="answer-why">{}</p>').format(
+        plain(f"{lead.words[:1].upper()}{lead.words[1:]}.")
+    )
     if promise is not None and promise.why:
-        yield Markup('<p class="why">{}</p>').format(plain(promise.why))
+        yield _small(promise.why)
     if lead.range is not None and lead.range.sentence:
         yield _line(lead.range.sentence)
     yield from (_line(one.with_cause) for one in lead.events if one.sentence)
     for other in answer.quantities[1:]:
         if other.output == lead.output and other.promise and other.promise.sentence:
-            yield Markup('<p class="why">{}: {}</p>').format(
-                plain(other.place), plain(other.promise.sentence)
-            )
+            yield _small(f"{other.place}: {other.promise.sentence}")
 
 
 def _ranking(answer: Answer) -> Markup:
@@ -111,7 +116,7 @@ def _ranking(answer: Answer) -> Markup:
     title = Markup("<h3>What it depends on</h3>")
     if ranking.leader is None:
         return _block("ranking", [title, _line(ranking.sentence)])
-    note = Markup('<p class="why">{}</p>').format(plain(sentence(ranking.what)))
+    note = _small(sentence(ranking.what))
     bars = (bar(one, ranking) for one in ranking.contributions[:_MOST_BARS])
     return _block("ranking", [title, *bars, note])
 
@@ -121,19 +126,21 @@ def bar(one: Contribution, ranking: Ranking) -> Markup:
     most = max(1.0 if one.share_of_variance else 0.0, ranking.contributions[0].value)
     first = one.indices[0]
     marks = [
-        Markup('<span class="fill" style="width:{:.1f}%"></span>').format(_at(one.value, most))
+        Markup('<span class="answer-fill" style="width:{:.1f}%"></span>').format(
+            _at(one.value, most)
+        )
     ]
     if first.has_interval:
         low, high = _at(first.low, most), _at(first.high, most)
         marks.append(
-            Markup('<span class="ends" style="left:{:.1f}%;width:{:.1f}%"></span>').format(
+            Markup('<span class="answer-ends" style="left:{:.1f}%;width:{:.1f}%"></span>').format(
                 low, high - low
             )
         )
-    effect = Markup('<span class="effect">{}</span>').format(plain(one.effect))
+    effect = Markup('<span class="answer-why">{}</span>').format(plain(one.effect))
     return Markup(
-        '<div class="bar"><span>{}</span><span class="track">{}</span>'
-        '<span class="size">{}</span>{}</div>'
+        '<div class="answer-bar"><span>{}</span><span class="answer-track">{}</span>'
+        '<span class="answer-size">{}</span>{}</div>'
     ).format(
         plain(f"{one.words[:1].upper()}{one.words[1:]}"),
         Markup("").join(marks),
@@ -155,8 +162,12 @@ def _to_do(answer: Answer) -> Markup:
 
 
 def _block(name: str, parts: list[Markup]) -> Markup:
-    return Markup('<div class="{}">{}</div>').format(name, Markup("").join(parts))
+    return Markup('<div class="answer-{}">{}</div>').format(name, Markup("").join(parts))
 
 
 def _line(text: str) -> Markup:
     return Markup("<p>{}</p>").format(plain(text))
+
+
+def _small(text: str) -> Markup:
+    return Markup('<p class="answer-why">{}</p>').format(plain(text))

@@ -110,7 +110,7 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
             top = base + np.histogram(own, edges)[0] / max(int(mask.sum()), 1)
             panel.stairs(top, edges, baseline=base, fill=True, color=colour, label=name)
             base = top
-        panel.set(ylim=(0, None), ylabel="Share of rows\nper bin")
+        panel.set(ylim=(0, None), ylabel="Share of\nrows per bin")
         entitle(panel, [element], of=label(ds, element))
     panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name))
     if wide:
@@ -123,14 +123,17 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
 
 
 @styled
-def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
+def lifetime(
+    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
+) -> Figure:
     """Draw the probability that a life has ended against time, with its 95 % bands.
 
     If the end is a success, the axes say what has happened by then, and what has not yet.
 
     The dark band is pointwise; the light one, where there is one, is simultaneous: it covers the
     whole curve. Marks with intervals show B1, B10 and B50, the times by which 1, 10 and 50 % have
-    ended. The right axis shows the survival probability.
+    ended. Dotted lines are the tolerance bounds that the study asks for. The right axis shows
+    the survival probability.
 
     Parameters
     ----------
@@ -138,6 +141,8 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
         A result.
     output : str
         A lifetime, or one element of it.
+    summary : Summary, optional
+        What `uq.analysis.summary.summarise` returns, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -151,6 +156,7 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     unit = display_unit("s", ends)
     (panel,) = column(axes, 2.3)
     bands: dict[str, bool] = {}  # in the order in which they are drawn
+    known = (summary or summarise(ds)).outputs
     for i, element in enumerate(chosen):
         curve = survival(ds, element.name)
         curve = curve.isel(time=thinned(curve.sizes["time"]))
@@ -163,6 +169,12 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
             if np.isfinite(low).any():
                 panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
                 bands[meaning] = True
+        described = known.get(element.name)
+        side = "upper" if element.declared.success else "lower"
+        bound = described.find("tolerance", side) if described else None
+        if bound is not None and np.isfinite(bound.estimate.value):
+            panel.axvline(bound.estimate.value / unit.size, color=colour, ls=":", lw=1.2)
+            bands["dotted: tolerance bound"] = True
     success = chosen[0].declared.success
     event = typeset(literal(success)) if success else "the life has ended"
     panel.set(ylim=(0, 1.02), ylabel=f"Probability that\n{event}")

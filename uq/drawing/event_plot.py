@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 
 from uq.conclusions.answer import answer
 from uq.conclusions.parts import Event
-from uq.drawing.panel import column, finish
-from uq.drawing.style import COLOURS, styled
+from uq.drawing.panel import column, finish, title
+from uq.drawing.style import INK, styled
 from uq.drawing.words import as_label, labelled
 from uq.errors import InputError
 
@@ -44,7 +44,7 @@ def event_probability(
     event = event or next((one for one in answer(ds).events if one.name == output), None)
     if event is None or event.curve is None:
         raise InputError(f"'{output}': no input is known to decide it, or the study does not ask")
-    curve, colour = event.curve, COLOURS[0]
+    curve, colour = event.curve, INK
     edges = curve.edges / event.over_unit.per
     value, low, high = np.array([one.numbers for one in curve.shares]).T
     (panel,) = column(axes, 2.1)
@@ -52,7 +52,8 @@ def event_probability(
     panel.fill_between(edges, *band, step="post", color=colour, alpha=0.25, lw=0)
     panel.stairs(value, edges, baseline=None, color=colour, lw=1.4)
     panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9)
-    panel.set(ylim=(-0.02, 1.02), ylabel=as_label(f"Share that {event.said}", width=30))
+    panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
+    title(panel, as_label(f"share: {event.said}", width=46))
     panel.set_xlabel(labelled(ds[event.over], event.over_unit.name))
     return finish(panel)
 

@@ -148,7 +148,10 @@ def _conditional(
     else:
         line = np.array([values[rows].mean() for rows in slices])
         ends = [intervals.mean_interval(values[rows]) for rows in slices]
-    apart = [np.min(np.abs(values[rows] - at)) for rows, at in zip(slices, line, strict=True)]
+    apart = [
+        np.min(np.abs(values[rows] - at)) if np.isfinite(at) else 0.0
+        for rows, at in zip(slices, line, strict=True)
+    ]
     empty = np.array(apart) > _EMPTY * np.ptp(axes.get_ylim())
     line = np.where(np.isfinite(line) & ~empty, line, np.nan)
     low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)

@@ -27,8 +27,9 @@ def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> st
 def _wrapped(text: str, width: int) -> str:
     """Wrap text by what is seen of it: a formula has less width than its source, and no break."""
     formulas = re.findall(_FORMULA, text)
-    seen = iter(re.sub(r"\\mathrm|\\\W|[\\${}_]", "", one) for one in formulas)
-    masked = re.sub(_FORMULA, lambda _: _MASK * max(1, len(next(seen)) // 2), text)
+    letters = (re.sub(r"\\mathrm|\\\W|[${}_]", "", one) for one in formulas)
+    seen = (re.sub(r"\\[A-Za-z]+", "x", one) for one in letters)
+    masked = re.sub(_FORMULA, lambda _: _MASK * len(next(seen)), text)
     whole = iter(formulas)
     return re.sub(f"{_MASK}+", lambda _: next(whole), textwrap.fill(masked, width))
 

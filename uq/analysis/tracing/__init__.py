@@ -5,7 +5,7 @@
 - `row_sets`: which rows, in few words.
 - `origin`: where a number comes from.
 - `verbs`: the verbs whose numbers have keys; each says its JSON, and the `origin` of a number in it
-  (`of_summary`, `of_indices`, `of_levels`, `of_running`, `of_twin`,
+  (`of_summary`, `of_indices`, `of_levels`, `of_fleet`, `of_running`, `of_twin`,
   `of_what_if`).
 - `tracing`: all of that for one key.
 """

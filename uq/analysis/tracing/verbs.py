@@ -5,7 +5,15 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from uq.analysis.tracing import of_indices, of_levels, of_running, of_summary, of_twin, of_what_if
+from uq.analysis.tracing import (
+    of_fleet,
+    of_indices,
+    of_levels,
+    of_running,
+    of_summary,
+    of_twin,
+    of_what_if,
+)
 from uq.analysis.tracing.keys import SUMMARY, Json, Options, Path, value_at
 from uq.analysis.tracing.origin import Origin
 
@@ -40,6 +48,7 @@ VERBS: dict[str, Verb] = {
     SUMMARY: Verb(of_summary.says, of_summary.origin, ("regime",)),
     "sensitivity": Verb(of_indices.says, of_indices.origin, ("method", "regime")),
     "levels": Verb(of_levels.says, of_levels.origin),
+    "fleet": Verb(of_fleet.says, of_fleet.origin, ("size", "by", "allow", "output")),
     "convergence": Verb(of_running.says, of_running.origin, (), of_running.again),
     "twin": Verb(of_twin.says, of_twin.origin),
     "what-if": Verb(of_what_if.says, of_what_if.origin, ("uncertain.", "dependence.")),

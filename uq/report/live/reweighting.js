@@ -112,7 +112,8 @@ class Reweighting {
     // Times between which the logarithm of lives grows by whole bins.
     const from = Math.log(scale.low) - low, to = Math.log(scale.high) - low;
     const every = Math.max(1, Math.round((to - from) / width / PLACES)), at = [], share = [];
-    const shares = Float64Array.from({length: Math.ceil((to - from) / width) + BINS + 2}, (_, i) => below(from + (i - BINS) * width));
+    const length = Math.ceil((to - from) / width) + BINS + 2;
+    const shares = Float64Array.from({length}, (_, i) => below(from + (i - BINS) * width));
     for (let place = 0; from + place * width <= to; place += every) {
       let ended = 0;
       for (let bin = 0; bin <= BINS; bin++) ended += bins[bin] * shares[BINS + place - bin];
