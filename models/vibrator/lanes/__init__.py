@@ -13,8 +13,7 @@ Reading order; a module imports only those above it:
     tangents       a revolution with its derivatives with respect to the start
     chords         Newton's method with derivatives that are kept
     multiplier     the largest Floquet multiplier of an orbit
-    newton         Newton's method for a block of lanes
-    orbit          the synchronous motion as a periodic orbit
+    orbit          the synchronous motion as a periodic orbit, by Newton's method
 
 It is a `models.numerics.propagator.Propagator`.
 """
