@@ -17,8 +17,9 @@ LAYERS = (
     ("inputs", "methods"),
     ("study",),
     ("rows",),
-    ("indices", "store"),
+    ("indices", "population", "store"),
     ("analysis", "running"),
+    ("conclusions",),
     ("drawing", "upkeep", "exploring"),
     ("report",),
     ("cli",),
@@ -28,7 +29,7 @@ LAYERS = (
 ``ground`` are the modules of ``uq`` itself; ``plots`` is the face of ``drawing``.
 """
 
-READERS = ("indices", "analysis", "drawing", "report")
+READERS = ("indices", "population", "analysis", "conclusions", "drawing", "report")
 """Packages that read results, and therefore import none of the `RUNNERS`."""
 
 RUNNERS = ("running", "upkeep", "exploring")

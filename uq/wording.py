@@ -2,15 +2,27 @@
 
 import re
 from math import floor, inf, isfinite, log10
-from typing import Any, NamedTuple
+from typing import Any
 
 from uq.estimate import Estimate
 from uq.literals import shown
+from uq.units import DEGREES, Unit, time_unit, unit_of
 
 
 def number(value: float | None) -> str:
     """Return a number for a table; a dash if there is none."""
     return "-" if value is None else f"{value:.5g}"
+
+
+def quantity(value: float, units: str) -> str:
+    """Return a value [units, as in CF] with the unit in which it is read: ``13.75 kN m-1``."""
+    return in_unit(value, unit_of(units, value))
+
+
+def in_unit(value: float, unit: Unit) -> str:
+    """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
+    space = "" if unit.name == DEGREES else " "
+    return f"{number(value / unit.size)}{space}{unit.name}".removesuffix(" 1")
 
 
 def duration(seconds: float | None) -> str:
@@ -69,11 +81,15 @@ def failed_interval(bounds: Estimate | None, per: float = 1.0) -> str:
     return f"from {low} on" if high == "-" else f"{low} to {high}"
 
 
-def estimated(label: str, per: float = 1.0) -> str:
-    """Return the label of an estimate: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours."""
+def estimated(label: str, per: float = 1.0, is_magnitude: bool = False) -> str:
+    """Return the label of an estimate: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours.
+
+    That of an angle's magnitude is ``P(|.| > 12)``.
+    """
+    of = "|.| " if is_magnitude else ""
     return re.sub(
         r"^P\(([<>])(.+?)\)",
-        lambda found: f"P({found[1]} {number(float(found[2]) / per)})",
+        lambda found: f"P({of}{found[1]} {number(float(found[2]) / per)})",
         label,
     )
 
@@ -138,40 +154,3 @@ def law(stated: Any) -> str:
         given.pop("values", None)  # a result keeps the file's name alone
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
     return f"{stated.distribution}({arguments})"
-
-
-class TimeUnit(NamedTuple):
-    """A unit of time, its length [s], and the time [s] from which it is used."""
-
-    name: str
-    seconds: float
-    used_from: float
-
-
-_DAY = 86400.0
-_YEAR = 365.25 * _DAY
-_TIME_UNITS = (
-    TimeUnit("seconds", 1.0, 0.0),
-    TimeUnit("hours", 3600.0, 3600.0),
-    TimeUnit("days", _DAY, 2 * _DAY),
-    TimeUnit("years", _YEAR, 2 * _YEAR),
-)
-
-
-def time_unit(seconds: float) -> TimeUnit:
-    """Return the usual unit of a time [s] that is not negative."""
-    return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]
-
-
-def unit_of(units: str, typical: float) -> TimeUnit:
-    """Return the unit in which to show an output: a time in one that suits a typical value.
-
-    Parameters
-    ----------
-    units : str
-        CF unit string of the output.
-    typical : float
-        NaN if unknown.
-    """
-    is_time = units == "s" and isfinite(typical)
-    return time_unit(abs(typical)) if is_time else TimeUnit(units, 1.0, 0.0)

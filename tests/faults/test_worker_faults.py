@@ -100,12 +100,14 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, monkeypatch, injec
             time.sleep(1.0)
             for worker in workers():
                 worker.kill()
-                worker.wait(PATIENCE)
+                wait_for(lambda worker=worker: worker not in workers())  # the run collects it
 
     thread = threading.Thread(target=kill_thrice)
     thread.start()
-    ds = compute(study, workers=1, chunk_rows=20)
-    thread.join()
+    try:
+        ds = compute(study, workers=1, chunk_rows=20)
+    finally:
+        thread.join()
     assert "KilledWorker" in failed
     injected("worker killed three times on a chunk")
     assert ds.identical(computed_here(study))

@@ -19,18 +19,23 @@ def test_everything_promised_is_there():
         set(uq.__all__)
         == set(dir(uq))
         == {
+            "answer",
             "basins",
             "labels",
+            "fleet",
             "levels",
             "life_fits",
             "load_study",
             "regimes",
+            "row",
             "run",
             "open_result",
             "simulate",
             "summary",
+            "trace",
             "sensitivity",
             "survival",
+            "what_if",
             "rare_event",
             "two_fidelities",
             "running_estimates",

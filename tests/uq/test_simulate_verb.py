@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 import xarray as xr
 from command_line import everything, strict_json
 
@@ -43,6 +44,13 @@ def test_simulate_as_json(uq):
     assert found["outputs"]["life"][0][0] == 1 / 1.1 + 0.5
     assert len(found["censored"]) == 4
     assert found["never"] == found["undefined"] == []
+
+
+@pytest.mark.parametrize("how", ["nan", "inf"])
+def test_a_setting_may_be_a_word_that_toml_reads_as_a_number(uq, how):
+    faults = ("--set", "x1=0.9", "--setting", "fail_above=0.5", "--setting", f"fail_how={how}")
+    found = strict_json(uq("simulate", "linear", "--json", *faults).out)
+    assert found["status"] == {"code": "non-finite", "meaning": f"'y' is {how}"}
 
 
 def test_a_failed_row_is_reported(uq):

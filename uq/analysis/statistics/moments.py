@@ -2,15 +2,19 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import isnan
+from math import isfinite, isnan, nan
 from typing import Any
 
 from uq import json_form
 from uq.analysis.estimators import MEAN, SD
 from uq.analysis.statistics.statistic import FACT, Context, Kind, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
-from uq.moments import Moments, moments
+from uq.intervals import mean_interval
+from uq.moments import Moments, moments, sd_interval, standard_deviation
+from uq.population.means import weighted_moments
+from uq.population.smoothing import Smoothed
 from uq.rows.elements import Element
+from uq.tails import heavier_tail
 
 
 def _numbers(one: Statistic) -> dict[str, Any]:
@@ -38,10 +42,13 @@ def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
     known = len(values) and not (element.never.any() or element.censored.any())
     nothing = Moments(NOTHING, NOTHING, None, None)
     found = moments(values, context.present(element)) if known else nothing
+    if known and context.weights is not None:
+        found = _weighted(element, context, context.weights, found)
     more = found.caution or ""
     unit = element.units
-    yield Statistic(("mean",), "mean", found.mean, unit, MOMENT, more=more, estimator=MEAN)
-    yield Statistic(("sd",), "sd", found.sd, unit, SPREAD, estimator=SD)
+    mean, sd = (moments, mean_interval), (standard_deviation, sd_interval)
+    yield Statistic(("mean",), "mean", found.mean, unit, MOMENT, more=more, estimator=MEAN, by=mean)
+    yield Statistic(("sd",), "sd", found.sd, unit, SPREAD, estimator=SD, by=sd)
     reasons = _reasons(found)
     tail = found.tail
     yield Statistic(
@@ -52,7 +59,23 @@ def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
         column="tail_k",
         notes=(*dict.fromkeys(reasons.values()), *filter(None, [found.caution])),
         facts={"tail": tail and tail._asdict(), "reasons": reasons, "caution": found.caution},
+        by=(heavier_tail,),
     )
+
+
+def _weighted(element: Element, context: Context, by: Smoothed, plain: Moments) -> Moments:
+    """Return the moments of weighted rows; the tail rules out what it does without weights."""
+    kept = element.present
+    both = weighted_moments(element.values[kept], by.weights[kept], context.present(element))
+    found = [
+        Estimate(one.value if isfinite(other.value) else nan, reason=other.reason)
+        if other.reason
+        else one
+        for one, other in zip(both, (plain.mean, plain.sd), strict=True)
+    ]
+    if by.refusal:
+        found = [Estimate(reason=by.refusal)] * 2
+    return Moments(found[0], found[1], plain.tail, plain.caution)
 
 
 def _reasons(found: Moments) -> dict[str, str]:

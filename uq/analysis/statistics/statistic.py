@@ -12,6 +12,7 @@ from uq import json_form
 from uq.analysis.estimators import Estimator
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some
+from uq.population.smoothing import Smoothed
 from uq.rows.elements import Element
 from uq.study.file import AnalysisTable
 from uq.wording import known, number
@@ -40,11 +41,14 @@ class Context:
         What the study asks for.
     replicate : ndarray of int, shape (n,), or None
         Of each row; None where rows are independent.
+    weights : Smoothed, optional
+        Of the rows with nothing integrated, where they stand for another study.
     """
 
     rows: xr.Dataset
     analysis: AnalysisTable
     replicate: Replicates
+    weights: Smoothed | None = None
 
     def present(self, element: Element) -> Replicates:
         """Return the replicate of each row in which the element has a value."""
@@ -180,9 +184,6 @@ class Statistic:
         The value of the output that it refers to.
     of : str
         The quantity that it describes, if not the output itself.
-    sentence : str
-        For the top of a report; ``{brief}``, ``{number}`` and ``{share}`` are its value, ``{at}``
-        as above.
     more : str
         Small print in a report.
     notes : tuple of str
@@ -191,6 +192,9 @@ class Statistic:
         The JSON of a `FACT`.
     estimator : Estimator, optional
         How it depends on the rows, for the difference between two studies with paired rows.
+    by : tuple of callable
+        The functions that compute it, whose docstrings state what they estimate and cite the
+        source; by default its maker.
     """
 
     key: tuple[str, ...]
@@ -207,11 +211,11 @@ class Statistic:
     falls: bool = False
     at: float | None = None
     of: str = ""
-    sentence: str = ""
     more: str = ""
     notes: tuple[str, ...] = ()
     facts: Mapping[str, Any] = field(default_factory=dict)
     estimator: Estimator | None = None
+    by: tuple[Callable[..., Any], ...] = ()
 
     def is_read_by(self, reader: Reader) -> bool:
         """Whether this reader shows it."""

@@ -9,10 +9,13 @@ import numpy as np
 from uq import json_form
 from uq.analysis.estimators import Sample, share
 from uq.analysis.failed_rows import bounded
+from uq.analysis.kaplan_meier import kaplan_meier
 from uq.analysis.life_quantiles import ended_by
+from uq.analysis.lifetime import survival
 from uq.analysis.statistics.statistic import Context, Kind, Listing, Statistic, entry
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some, share_interval
+from uq.population.functionals import Population
 from uq.rows.elements import Element, Mask
 
 SIDES = {"above": ">", "below": "<"}
@@ -95,11 +98,16 @@ def _probabilities(
             heading=f"P({side})",
             falls=side == "below",
             at=threshold,
-            sentence=_sentence(element, side),
             facts={"undefined": undefined},
-            estimator=share(_hits(threshold, place)),
+            estimator=replace(share(_hits(threshold, place)), counts_hits=element.is_plain),
+            by=(share_of, share_interval) if element.is_plain else (Population,),
         )
-        if sides is None:
+        if not element.is_plain and sides is None:
+            yield replace(one, estimate=Estimate(reason=_unknown_sides(element, threshold)))
+        elif not element.is_plain:
+            of = Population(element, replicate)
+            yield replace(one, estimate=(of.above, of.below)[place](threshold))
+        elif sides is None:
             yield _by_kaplan_meier(one, element, threshold, replicate)
         else:
             within = replicates_of_some(replicate, kept)
@@ -109,31 +117,29 @@ def _probabilities(
 def _by_kaplan_meier(
     one: Statistic, element: Element, threshold: float, replicate: Replicates
 ) -> Statistic:
-    unknown = element.unknown_sides(threshold)
-    reason = f"{unknown.sum()} of {unknown.size} rows were censored before that time"
+    reason = _unknown_sides(element, threshold)
     guess = ended_by(element, threshold, replicate)[one.falls]
     label = f"{one.label}, if" if one.falls else ""  # a terminal shows one side only
     small = (reason, f"by Kaplan-Meier, assuming {guess.assumes}", guess.reason)
     return replace(
         one,
         estimate=Estimate(reason=reason),
-        otherwise=replace(one, label=label, estimate=guess),
+        otherwise=replace(one, label=label, estimate=guess, by=(ended_by, kaplan_meier, survival)),
         more="; ".join(filter(None, small)) if one.falls else "",
     )
 
 
+def _unknown_sides(element: Element, threshold: float) -> str:
+    unknown = element.unknown_sides(threshold)
+    return f"{unknown.sum()} of {unknown.size} rows were censored before that time"
+
+
 def _hits(threshold: float, place: int) -> Callable[[Element], Sample | None]:
     def sample(element: Element) -> Sample | None:
+        if element.law is not None:
+            numbers = (element.above, element.below)[place](threshold)
+            return Sample(~element.failed, numbers)
         sides = event(element, threshold)
         return None if sides is None else Sample(~element.failed, sides[place].astype(float))
 
     return sample
-
-
-def _sentence(element: Element, side: str) -> str:
-    """Return the sentence of a report on a threshold: for lives, the share that has ended."""
-    if side != ("below" if element.is_lifetime else "above"):
-        return ""
-    if element.is_angle:
-        return "{share} exceed {at} in magnitude."
-    return "{share} end within {at}." if element.is_lifetime else "{share} exceed {at}."

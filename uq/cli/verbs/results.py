@@ -70,23 +70,54 @@ def verify(result: given.ResultFile, model: given.ModelReference = None) -> int:
     return upkeep.verify(result, model)
 
 
+def row(
+    result: given.ResultFile,
+    number: Annotated[
+        int | None, typer.Argument(min=0, metavar="N", help="Number of the row, from 0.")
+    ] = None,
+    lowest: Annotated[
+        str | None, typer.Option(metavar="OUTPUT", help="The row in which it is lowest.")
+    ] = None,
+    near_quantile: Annotated[
+        tuple[float, str] | None,
+        typer.Option(metavar="P OUTPUT", help="The row closest to this quantile."),
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="F.png", help="Draw its trajectory here.")
+    ] = None,
+    model: given.ModelReference = None,
+    json: given.Json = False,
+) -> int:
+    """Show one row, and compute it again."""
+    from uq.cli import row as single
+
+    return single.row(result, number, lowest, near_quantile, plot, model, json)
+
+
 def summary(
     result: given.ResultFile,
     regime: given.Regime = None,
     fits: Annotated[
         bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
     ] = False,
+    plain: Annotated[
+        bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
+    ] = False,
     json: given.Json = False,
 ) -> None:
     """Show how rows ended, and statistics of each output."""
     from uq.analysis.as_json import summary_json
+    from uq.analysis.findings import Findings
     from uq.analysis.summary import summarise
     from uq.cli import tables
     from uq.cli.printing import print_json
     from uq.rows.results import open_result
 
     ds = open_result(result)
-    found = summarise(ds, regime=regime, fits=fits)
+    if not (fits or json or plain) and regime is None:
+        tables.show_findings(Findings(ds))
+        return
+    found = summarise(ds, regime=regime, fits=fits, plain=plain)
     print_json(summary_json(found)) if json else tables.show_summary(ds, found)
 
 
@@ -102,12 +133,13 @@ def sensitivity(
 ) -> None:
     """Show from which inputs the scatter comes."""
     from uq.cli.printing import print_json
-    from uq.cli.sensitivity import plain, show
+    from uq.cli.sensitivity import show
+    from uq.indices.as_json import sensitivity_json
     from uq.indices.sensitivities import sensitivities
     from uq.rows.results import open_result
 
     found = sensitivities(open_result(result), method, output, regime)
-    print_json(plain(found)) if json else show(found)
+    print_json(sensitivity_json(found)) if json else show(found)
 
 
 def levels(
@@ -119,6 +151,23 @@ def levels(
     from uq.cli import levels
 
     levels.levels(result, output, json)
+
+
+def fleet(
+    result: given.ResultFile,
+    size: Annotated[int, typer.Option(min=1, metavar="N", help="Number of units.")],
+    by: Annotated[
+        list[float] | None,
+        typer.Option(metavar="T", help="A time [s]; default: the study's thresholds."),
+    ] = None,
+    allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,
+    output: Annotated[str | None, typer.Option(metavar="NAME", help="The life.")] = None,
+    json: given.Json = False,
+) -> None:
+    """Show when the first of many units ends."""
+    from uq.cli import fleet as fleets
+
+    fleets.fleet(result, size, by or [], allow, output, json)
 
 
 def convergence(
@@ -143,6 +192,20 @@ def compare(
     comparing.compare(first, second, json)
 
 
+def what_if(
+    result: given.ResultFile,
+    set_: Annotated[
+        list[str],
+        typer.Option("--set", metavar="uncertain.NAME.KEY=VALUE", help="May be repeated."),
+    ],
+    json: given.Json = False,
+) -> None:
+    """Show what the same rows say of inputs with other laws."""
+    from uq.cli import what_if as question
+
+    question.what_if(result, set_, json)
+
+
 def twin(
     result: given.ResultFile, model: given.ModelReference = None, json: given.Json = False
 ) -> None:
@@ -150,6 +213,20 @@ def twin(
     from uq.cli import estimates
 
     estimates.twin(result, model, json)
+
+
+def trace(
+    result: given.ResultFile,
+    key: Annotated[
+        str, typer.Argument(metavar="KEY", help="Its path in JSON: outputs/life/quantiles/0.05.")
+    ],
+    model: given.ModelReference = None,
+    json: given.Json = False,
+) -> int:
+    """Show where a number comes from, and compute it again."""
+    from uq.cli import trace as tracing
+
+    return tracing.trace(result, key, model, json)
 
 
 def plot(
