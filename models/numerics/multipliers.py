@@ -5,6 +5,8 @@ nearly of low dimension, and the largest eigenvalue on it is that power of the l
 conjugate pair, or several multipliers of equal modulus, need no special treatment.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -139,7 +141,7 @@ def _square(power, square):
             a = power[i, r]
             for j in range(width):
                 square[i, j] = fma(a, power[r, j], square[i, j])
-    return -np.log(inverse)
+    return -math.log(inverse)
 
 
 @lean

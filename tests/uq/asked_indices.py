@@ -43,4 +43,4 @@ def values(entry, kind):
 
 def of_plain_sample(method, x, y, quantiles):
     """Return the indices by one method of an output of a plain sample."""
-    return METHODS[method].indices(Sample.sensitivity_json(y, x, quantiles=quantiles))
+    return METHODS[method].indices(Sample.plain(y, x, quantiles=quantiles))

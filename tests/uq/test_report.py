@@ -125,7 +125,8 @@ def test_links_lead_somewhere_and_names_are_unique(text):
 
 
 def test_a_report_needs_no_network_and_no_other_file(text):
-    assert "://" not in text and "@import" not in text
+    svg = "http://www.w3.org/2000/svg"  # the name that browsers know the format by
+    assert "://" not in text.replace(svg, "") and "@import" not in text
     loaded = [(n, v) for n, v in Page(text).attributes if n in ("src", "href", "data", "srcset")]
     assert all(value.startswith(("#", "data:image/png")) for _, value in loaded)
     assert "link" not in Page(text).tags
@@ -138,7 +139,8 @@ def test_names_from_a_file_are_text():
     ds["status"].attrs["example_raised"] = f"{HOSTILE}\x1b[31m"
     ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)
     found = Page(page(ds, f"{HOSTILE}.nc"))
-    assert found.tags.count("script") == 1 and "img" not in found.tags
+    ours = Page(page(linear(samples=64), "out.nc")).tags.count("script")
+    assert found.tags.count("script") == ours and "img" not in found.tags
     assert not [name for name, _ in found.attributes if name.startswith("on")]
     assert found.words.count(HOSTILE) >= 6
     assert "\\u001b[31m" in found.words and "\x1b" not in found.words

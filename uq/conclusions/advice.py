@@ -1,16 +1,18 @@
 """What to do, by rules: mend, add rows, measure, tighten, or nothing."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from uq.analysis.findings import Findings
 from uq.conclusions.parts import Advice, Contribution, Quantity
 from uq.conclusions.quantities import quantities
 from uq.conclusions.settling import MOST, Unsettled, rows_in_words, unsettled
 from uq.conclusions.sources import ASSUMED, mark
-from uq.conclusions.tightening import tightened
+from uq.conclusions.tightening import changes_of, tightened
 from uq.conclusions.words import called_together
 from uq.rows.elements import analysis_of
 from uq.rows.results import failed
+
+Adviser = Callable[[Findings, Sequence[Quantity]], Iterator[Advice]]
 
 
 def advise(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
@@ -22,10 +24,21 @@ def advise(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]
     answered : sequence of Quantity
         The one that the study is about first.
     """
+    return _advise(findings, answered, _tighten(findings, answered))
+
+
+def advise_soon(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
+    """Yield what `advise` does, with a command that tells what tightening would change."""
+    return _advise(findings, answered, _ask(findings, answered))
+
+
+def _advise(
+    findings: Findings, answered: Sequence[Quantity], tighten: Iterator[Advice]
+) -> Iterator[Advice]:
     found = [
         *_mend(findings),
         *_measure(findings, answered),
-        *_tighten(findings, answered),
+        *tighten,
         *_add_rows(findings, answered),
     ]
     if answered and not any(one.rule != "tighten" for one in found):
@@ -88,6 +101,17 @@ def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
     refused = [one for one in found if one.reason]
     for one in (told or refused)[:1]:
         yield Advice("tighten", one.sentence, leader.inputs, tightened=one)
+
+
+def _ask(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
+    leader = leading(answered)
+    changes = None if leader is None else changes_of(findings.ds, answered[0], leader.inputs)
+    if leader is None or not changes:
+        return
+    given = " ".join(f"--set {name}={value:.6g}" for name, value in changes.items())
+    words = called_together(leader.inputs)
+    text = f"See what half the scatter of {words} would change: uq what-if OUT {given}"
+    yield Advice("tighten", text, leader.inputs)
 
 
 def verdict(findings: Findings) -> list[str]:

@@ -6,7 +6,7 @@ from weakref import WeakKeyDictionary
 import xarray as xr
 
 from uq.analysis.findings import Findings
-from uq.conclusions.advice import advise
+from uq.conclusions.advice import Adviser, advise, advise_soon
 from uq.conclusions.parts import Answer, Event
 from uq.conclusions.quantities import event, quantities
 from uq.rows.results import failed
@@ -42,14 +42,22 @@ def conclude(findings: Findings) -> Answer:
     findings : Findings
     """
     if findings not in _KNOWN:
-        _KNOWN[findings] = _concluded(findings)
+        _KNOWN[findings] = _concluded(findings, advise)
     return _KNOWN[findings]
+
+
+def conclude_soon(findings: Findings) -> Answer:
+    """Return the answer without what a tighter tolerance would change: a command tells that.
+
+    Weighing the rows takes half a second, most of it for loading scipy.stats.
+    """
+    return _concluded(findings, advise_soon)
 
 
 _KNOWN: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
 
 
-def _concluded(findings: Findings) -> Answer:
+def _concluded(findings: Findings, advise: Adviser) -> Answer:
     ds = findings.ds
     found = tuple(quantities(findings)) if findings.rows.sizes["sample"] else ()
     regimes = tuple(_regimes(findings))

@@ -40,6 +40,22 @@ def halved(law: Law) -> dict[str, float]:
     return {"lower": (lower + middle) / 2, "upper": (upper + middle) / 2}
 
 
+def changes_of(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> dict[str, float]:
+    """Return the entries of the study file that give inputs half their scatter.
+
+    None where nothing is promised of the quantity, or a law has no middle.
+    """
+    laws = study_file_of(ds).uncertain
+    changes: dict[str, float] = {}
+    for name in inputs:
+        law = laws[name]
+        changed = {} if isinstance(law, Tied) else halved(law)
+        if not changed:
+            return {}
+        changes |= {f"uncertain.{name}.{key}": value for key, value in changed.items()}
+    return changes if any(_promised(quantity)) else {}
+
+
 def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iterator[Tightened]:
     """Yield what half the scatter of some inputs would change about a quantity.
 
@@ -51,14 +67,9 @@ def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iter
     inputs : sequence of str
         All of them at once.
     """
-    laws = study_file_of(ds).uncertain
-    changes: dict[str, float] = {}
-    for name in inputs:
-        law = laws[name]
-        changed = {} if isinstance(law, Tied) else halved(law)
-        if not changed:
-            return
-        changes |= {f"uncertain.{name}.{key}": value for key, value in changed.items()}
+    changes = changes_of(ds, quantity, inputs)
+    if not changes:
+        return
     names = tuple(inputs)
     try:
         found = weighted(ds, changes)

@@ -100,7 +100,7 @@ def trace(result: xr.Dataset | str | File, key: str, model: str | None = None) -
     --------
     >>> ds = uq.run("studies/ishigami.toml")
     >>> found = uq.trace(ds, "outputs/y/quantiles/0.5")
-    >>> found["value"] == uq.summary(ds).loc["y", "q0.5"], found["equal"]
+    >>> bool(found["value"] == uq.summary(ds).loc["y", "q0.5"]), found["equal"]
     (True, True)
     """
     ds = result if isinstance(result, xr.Dataset) else open_result(result)
