@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from benchmarks.coverage.scaled import CAUTIOUS, LIFE, lognormal_term
 from benchmarks.coverage.tally import Tally
-from uq.analysis.fleet import HIGH, LOW, FleetNumbers
+from uq.analysis.fleet_numbers import HIGH, LOW, FleetNumbers
 from uq.population.fleets import Units
 from uq.population.scale_laws import IndependentScale
 from uq.rows.element import Element

@@ -18,7 +18,9 @@ from computed import (
 
 import uq
 from uq.conclusions.answer import answer
-from uq.conclusions.parts import Change, Event, Promise, Ranking
+from uq.conclusions.contributions import Change, Ranking
+from uq.conclusions.parts import Event
+from uq.conclusions.promises import Promise
 from uq.conclusions.settling import rows_in_words
 from uq.conclusions.tightening import halved
 from uq.conclusions.words import Unit, called_together, rounded

@@ -3,7 +3,8 @@
 from typing import Any
 
 from uq import json_form
-from uq.analysis.fleet import Banded, Fleet
+from uq.analysis.fleet import Fleet
+from uq.analysis.fleet_numbers import Banded
 
 
 def fleet_json(found: Fleet) -> dict[str, Any]:

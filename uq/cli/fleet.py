@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from uq.analysis.fleet import Banded, fleet_of, reasons
+from uq.analysis.fleet import fleet_of, reasons
 from uq.analysis.fleet_json import fleet_json
+from uq.analysis.fleet_numbers import Banded
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.rows.results import open_result
 from uq.wording import duration, failed_interval, interval, known, number

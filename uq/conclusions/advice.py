@@ -3,7 +3,8 @@
 from collections.abc import Callable, Iterator, Sequence
 
 from uq.analysis.findings import Findings
-from uq.conclusions.parts import Advice, Contribution, Quantity
+from uq.conclusions.contributions import Contribution
+from uq.conclusions.parts import Advice, Quantity
 from uq.conclusions.quantities import quantities
 from uq.conclusions.settling import MOST, Unsettled, rows_in_words, unsettled
 from uq.conclusions.sources import ASSUMED, mark

@@ -5,7 +5,9 @@ from math import isfinite
 
 from markupsafe import Markup
 
-from uq.conclusions.parts import Answer, Contribution, Quantity, Ranking, sentence
+from uq.conclusions.contributions import Contribution, Ranking
+from uq.conclusions.parts import Answer, Quantity
+from uq.conclusions.words import sentence
 from uq.literals import plain
 
 STYLE = Markup("""

@@ -13,7 +13,9 @@ from uq.analysis.statistics.quantiles import quantiles
 from uq.analysis.statistics.statistic import Context, Statistic
 from uq.analysis.statistics.tolerance import tolerance
 from uq.analysis.summary import Described, Summary, summarise
-from uq.conclusions.parts import Event, Promise, Quantity, Range, Ranking
+from uq.conclusions.contributions import Ranking
+from uq.conclusions.parts import Event, Quantity
+from uq.conclusions.promises import Promise, Range
 from uq.conclusions.rankings import method_for, ranking_of
 from uq.conclusions.words import Unit, element_called, unit_for
 from uq.errors import InputError

@@ -9,7 +9,7 @@ import xarray as xr
 
 from uq.analysis.effects import Effect, effects
 from uq.analysis.findings import Findings
-from uq.conclusions.parts import Change, Contribution, Ranking
+from uq.conclusions.contributions import Change, Contribution, Ranking
 from uq.conclusions.words import Unit, called, twin_of
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, floor, isfinite, log10
 
-from uq.conclusions.parts import Event, Promise, Quantity
+from uq.conclusions.parts import Event, Quantity
+from uq.conclusions.promises import Promise
 from uq.wording import percent
 
 SHARE = 0.2

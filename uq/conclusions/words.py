@@ -7,8 +7,10 @@ from typing import NamedTuple
 
 import xarray as xr
 
+from uq.estimate import Estimate
 from uq.rows.element import Element
 from uq.units import DEGREES, powers, unit_of
+from uq.wording import percent, percent_interval
 
 _TWIN = re.compile(r"(.+)_(\d+)")
 
@@ -121,3 +123,14 @@ def element_called(ds: xr.Dataset, element: Element) -> str:
         else:
             words.append(f"{dim} {value:g}")
     return ", ".join(words)
+
+
+def sentence(text: str) -> str:
+    """Return text as a sentence."""
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def share_text(one: Estimate) -> str:
+    """Return a share in per cent, with its interval."""
+    interval = f" ({percent_interval(one.low, one.high)})" if one.has_interval else ""
+    return percent(one.value) + interval

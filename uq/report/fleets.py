@@ -4,7 +4,8 @@ from collections.abc import Iterator
 from math import isfinite
 
 from uq.analysis.findings import Findings
-from uq.analysis.fleet import Banded, Fleet
+from uq.analysis.fleet import Fleet
+from uq.analysis.fleet_numbers import Banded
 from uq.estimate import Estimate
 from uq.report.cells import Cell, Table
 from uq.units import TimeUnit, time_unit
