@@ -134,7 +134,7 @@ def test_lifetimes_that_never_end_or_are_censored(design):
         leaving = np.random.default_rng(seed).exponential(4e6, len(life))
         seen = with_output(ds, "seen", np.minimum(life, leaving), "lifetime", leaving < life)
         tally_survival(tally, survival(seen, "seen"), cdf, (5e5, 1e6))
-    tally.check()
+    tally.check(conservative=("quantile 0.6",) if design[0] == "sobol" else ())
 
 
 @pytest.mark.parametrize("design", [("monte-carlo", 500, 1), ("latin-hypercube", 125, 8)])
