@@ -23,6 +23,11 @@ class Unit(NamedTuple):
     size: float
 
 
+def beside(number: str, unit: str) -> str:
+    """Return a number with its unit: ``250 µm``, ``12°``; of a pure number without."""
+    return f"{number}{'' if unit == DEGREES else ' '}{unit}".strip().removesuffix(" 1")
+
+
 class TimeUnit(NamedTuple):
     """A unit of time, its length [s], and the time [s] from which it is used."""
 

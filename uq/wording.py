@@ -6,7 +6,7 @@ from typing import Any
 
 from uq.estimate import Estimate
 from uq.literals import shown
-from uq.units import DEGREES, Unit, time_unit, unit_of
+from uq.units import Unit, beside, time_unit, unit_of
 
 
 def number(value: float | None) -> str:
@@ -21,8 +21,7 @@ def quantity(value: float, units: str) -> str:
 
 def in_unit(value: float, unit: Unit) -> str:
     """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
-    space = "" if unit.name == DEGREES else " "
-    return f"{number(value / unit.size)}{space}{unit.name}".removesuffix(" 1")
+    return beside(number(value / unit.size), unit.name)
 
 
 def duration(seconds: float | None) -> str:

@@ -13,7 +13,7 @@ from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import Described, Summary
 from uq.cli.printing import console, grid, heading, note, paragraph
-from uq.conclusions.answer import conclude_soon
+from uq.conclusions.answer import conclude
 from uq.conclusions.parts import Answer
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
@@ -28,7 +28,7 @@ _MOST_EFFECTS = 3
 
 def show_findings(findings: Findings) -> None:
     """Print the answer of a study, then its summary."""
-    show_answer(conclude_soon(findings))
+    show_answer(conclude(findings, weighed=False))
     show_summary(findings.ds, findings.summary)
 
 

@@ -1,6 +1,6 @@
 """What to do, by rules: mend, add rows, measure, tighten, or nothing."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Contribution
@@ -13,10 +13,10 @@ from uq.conclusions.words import called_together
 from uq.rows.elements import analysis_of
 from uq.rows.results import failed
 
-Adviser = Callable[[Findings, Sequence[Quantity]], Iterator[Advice]]
 
-
-def advise(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
+def advise(
+    findings: Findings, answered: Sequence[Quantity], weighed: bool = True
+) -> Iterator[Advice]:
     """Yield what to do, the most urgent first.
 
     Parameters
@@ -24,22 +24,15 @@ def advise(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]
     findings : Findings
     answered : sequence of Quantity
         The one that the study is about first.
+    weighed : bool
+        Whether the rows are weighed to say what a tighter tolerance would change; otherwise a
+        command says it.
     """
-    return _advise(findings, answered, _tighten(findings, answered))
-
-
-def advise_soon(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
-    """Yield what `advise` does, with a command that tells what tightening would change."""
-    return _advise(findings, answered, _ask(findings, answered))
-
-
-def _advise(
-    findings: Findings, answered: Sequence[Quantity], tighten: Iterator[Advice]
-) -> Iterator[Advice]:
+    tighten = _tighten if weighed else _ask
     found = [
         *_mend(findings),
         *_measure(findings, answered),
-        *tighten,
+        *tighten(findings, answered),
         *_add_rows(findings, answered),
     ]
     if answered and not any(one.rule != "tighten" for one in found):
@@ -98,9 +91,9 @@ def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
         return
     found = list(tightened(findings.ds, answered[0], leader.inputs))
     is_life = answered[0].promise is not None and answered[0].promise.is_life
-    told = [one for one in found if not one.reason and (one.lengthens or not is_life)]
-    refused = [one for one in found if one.reason]
-    for one in (told or refused)[:1]:
+    known = [one for one in found if not one.reason and (one.lengthens or not is_life)]
+    unknown = [one for one in found if one.reason]
+    for one in (known or unknown)[:1]:
         yield Advice("tighten", one.sentence, leader.inputs, tightened=one)
 
 

@@ -6,7 +6,7 @@ from weakref import WeakKeyDictionary
 import xarray as xr
 
 from uq.analysis.findings import Findings
-from uq.conclusions.advice import Adviser, advise, advise_soon
+from uq.conclusions.advice import advise
 from uq.conclusions.parts import Answer, Event
 from uq.conclusions.quantities import event, quantities
 from uq.rows.results import failed
@@ -34,30 +34,25 @@ def answer(ds: xr.Dataset) -> Answer:
     return conclude(Findings(ds))
 
 
-def conclude(findings: Findings) -> Answer:
+_KNOWN: WeakKeyDictionary[Findings, dict[bool, Answer]] = WeakKeyDictionary()
+
+
+def conclude(findings: Findings, weighed: bool = True) -> Answer:
     """Return the answer from what is known of a result, computed once.
 
     Parameters
     ----------
     findings : Findings
+    weighed : bool
+        As for `advise`. Weighing takes half a second, most of it for loading scipy.stats.
     """
-    if findings not in _KNOWN:
-        _KNOWN[findings] = _concluded(findings, advise)
-    return _KNOWN[findings]
+    known = _KNOWN.setdefault(findings, {})
+    if weighed not in known:
+        known[weighed] = _concluded(findings, weighed)
+    return known[weighed]
 
 
-def conclude_soon(findings: Findings) -> Answer:
-    """Return the answer without what a tighter tolerance would change: a command tells that.
-
-    Weighing the rows takes half a second, most of it for loading scipy.stats.
-    """
-    return _concluded(findings, advise_soon)
-
-
-_KNOWN: WeakKeyDictionary[Findings, Answer] = WeakKeyDictionary()
-
-
-def _concluded(findings: Findings, advise: Adviser) -> Answer:
+def _concluded(findings: Findings, weighed: bool) -> Answer:
     ds = findings.ds
     found = tuple(quantities(findings)) if findings.rows.sizes["sample"] else ()
     regimes = tuple(_regimes(findings))
@@ -67,7 +62,7 @@ def _concluded(findings: Findings, advise: Adviser) -> Answer:
         int(failed(ds).sum()),
         found,
         regimes,
-        tuple(advise(findings, found)),
+        tuple(advise(findings, found, weighed)),
         tuple(findings.summary.notes),
     )
 

@@ -8,8 +8,6 @@ from uq.estimate import NOTHING, Estimate
 SMALL = 0.05
 """A smaller share of the variance does not lead."""
 
-_PER_CENT = 100.0
-
 
 @dataclass(frozen=True)
 class Change:
@@ -54,7 +52,7 @@ class Contribution:
     Attributes
     ----------
     inputs : tuple of str
-        One; or several that the indices do not tell apart, or twins.
+        One; or several whose indices do not distinguish them, or twins.
     indices : tuple of Estimate
         Of each.
     share_of_variance : bool
@@ -87,8 +85,8 @@ class Contribution:
     def _size(self, one: Estimate) -> str:
         if self.share_of_variance:
             value, low, high = (min(max(end, 0.0), 1.0) for end in one.numbers)
-            text = f"{_PER_CENT * value:.0f} %"
-            ends = f"{_PER_CENT * low:.0f} to {_PER_CENT * high:.0f} %"
+            text = f"{100 * value:.0f} %"
+            ends = f"{100 * low:.0f} to {100 * high:.0f} %"
         else:
             text, ends = f"{one.value:.2f}", f"{one.low:.2f} to {one.high:.2f}"
         return text + (f" ({ends})" if one.has_interval else "")

@@ -147,7 +147,7 @@ class Tightened:
     is_share : bool
     unit : Unit
     reason : str
-        Why the rows do not tell, or "".
+        Why the rows cannot show it, or "".
     effective_rows : float
     """
 
@@ -167,7 +167,7 @@ class Tightened:
 
     @property
     def sentence(self) -> str:
-        """What would change, or why the rows do not tell."""
+        """What would change, or why the rows cannot show it."""
         words = called_together(self.inputs)
         if self.reason:
             return f"Tightening {words}: {self.reason}."

@@ -6,8 +6,6 @@ from math import inf, isfinite
 from uq.conclusions.words import Unit, sentence
 from uq.estimate import NOTHING, Estimate
 
-_PER_CENT = 100.0
-
 
 @dataclass(frozen=True)
 class Promise:
@@ -42,14 +40,14 @@ class Promise:
     @property
     def sentence(self) -> str:
         """What can be promised; "" where nothing can."""
-        share = f"{_PER_CENT * self.coverage:g} %"
+        share = f"{100 * self.coverage:g} %"
         bounds = [
             f"{self._side(i)} {self.unit.text(bound, (-inf, inf)[i])}"
             for i, bound in enumerate((self.lower, self.upper))
             if isfinite(bound)
         ]
         if bounds:
-            sure = f"With {_PER_CENT * self.confidence:g} % confidence"
+            sure = f"With {100 * self.confidence:g} % confidence"
             each = ", each" if len(bounds) > 1 else ""
             return f"{sure}{each}, at least {share} {f', and at least {share} '.join(bounds)}."
         cautious = []

@@ -1,4 +1,4 @@
-"""Which inputs contribute most to a target, those that cannot be told apart named together."""
+"""Which inputs contribute most to a target; those that cannot be distinguished stand together."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -31,7 +31,7 @@ GOAL = 0.1
 """Half-width of the interval of an index at which it counts as known."""
 
 MOST_TIED = 3
-"""More inputs than this that cannot be told apart are no ranking."""
+"""With more indistinguishable inputs than this, there is no ranking."""
 
 LEAST = 0.01
 """A smaller index is not listed."""
@@ -188,7 +188,7 @@ def _parts(ds: xr.Dataset, method: str, name: str) -> dict[str, dict[str, list[f
 
 
 def _groups(ds: xr.Dataset, measured: list[Measured]) -> Iterator[list[Measured]]:
-    """Yield inputs together that are twins or that their indices do not tell apart."""
+    """Yield inputs together that are twins or whose indices do not distinguish them."""
     laws = {
         name: None if isinstance(one, Tied) else one.model_dump(exclude={"source"})
         for name, one in study_file_of(ds).uncertain.items()

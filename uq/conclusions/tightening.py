@@ -74,17 +74,17 @@ def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iter
     try:
         found = weighted(ds, changes)
     except (InputError, RunError) as refused:
-        yield Tightened(names, "", reason=f"the rows do not tell what it would change ({refused})")
+        yield Tightened(names, "", reason=f"the rows cannot show what it would change ({refused})")
         return
     described = found.summary.outputs.get(quantity.name)
     for key, what, before, unit in _promised(quantity):
         one = described.find(*key) if described is not None else None
         if one is None:
-            yield Tightened(names, what, reason="the rows do not tell what it would change")
+            yield Tightened(names, what, reason="the rows cannot show what it would change")
         elif not isfinite(one.best.estimate.value):
             why = one.best.estimate.reason
             yield Tightened(
-                names, what, reason=f"the rows do not tell what it would change ({why})"
+                names, what, reason=f"the rows cannot show what it would change ({why})"
             )
         else:
             is_share = key[0] == "thresholds"

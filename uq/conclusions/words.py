@@ -9,7 +9,7 @@ import xarray as xr
 
 from uq.estimate import Estimate
 from uq.rows.element import Element
-from uq.units import DEGREES, powers, unit_of
+from uq.units import beside, powers, unit_of
 from uq.wording import percent, percent_interval
 
 _TWIN = re.compile(r"(.+)_(\d+)")
@@ -37,16 +37,13 @@ class Unit(NamedTuple):
         """Return a number with its unit."""
         if not isfinite(value):
             return "never" if value > 0 else "-"
-        return self._with_name(self.number(value, towards))
+        return beside(self.number(value, towards), self.name)
 
     def between(self, low: float, high: float, joined: str = " to ") -> str:
         """Return two numbers with their unit once."""
         if not (isfinite(low) and isfinite(high)):
             return f"{self.text(low)}{joined}{self.text(high)}"
-        return self._with_name(f"{self.number(low)}{joined}{self.number(high)}")
-
-    def _with_name(self, number: str) -> str:
-        return f"{number}{'' if self.name == DEGREES else ' '}{self.name}".strip()
+        return beside(f"{self.number(low)}{joined}{self.number(high)}", self.name)
 
     def bare_between(self, low: float, high: float) -> str:
         """Return the ends of an interval beside a number that has the unit."""

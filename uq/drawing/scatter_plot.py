@@ -155,7 +155,7 @@ def _conditional(
     empty = np.array(apart) > _EMPTY * np.ptp(axes.get_ylim())
     line = np.where(np.isfinite(line) & ~empty, line, np.nan)
     low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
-    # A gap between neighbouring rows interrupts the line: it says nothing of what lies there.
+    # A gap between neighbouring rows interrupts the line: nothing is known in between.
     inside = np.sort(x)
     jumps = np.flatnonzero(np.diff(inside) > _GAP * np.ptp(axes.get_xlim()))
     gaps = np.searchsorted(middle, (inside[jumps] + inside[jumps + 1]) / 2)
