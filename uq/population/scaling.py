@@ -244,7 +244,7 @@ def _conditional(name: str, exponent: float, inputs: Inputs) -> ConditionalScale
 
 
 def given_others(name: str, inputs: Inputs) -> tuple[dict[str, float], float]:
-    """Return slopes and deviation of an input's normal variable, given those of correlated others."""
+    """Return slopes and deviation of the normal variable of an input, given the others."""
     assert inputs.dependence is not None
     names = list(inputs.correlated)
     matrix = normal_correlations(inputs.dependence.rank_correlation)
