@@ -43,26 +43,30 @@ LOW, MIDDLE, HIGH = 0.05, 0.5, 0.95
 """Probabilities of the likely range."""
 
 
-def quantities(findings: Findings) -> list[Quantity]:
+def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     """Return the answer for each element that the study asks for, the one it is about first.
 
     Parameters
     ----------
     findings : Findings
+    only : str, optional
+        The name of an element: the answer for no other.
 
     Returns
     -------
     list of Quantity
     """
     ds = findings.ds
-    asked = analysis_of(ds)
-    wanted = _with_bounds(asked, findings)
-    summary = findings.summary if wanted == asked else summarise(ds, wanted)
+    asked = analysis_of(ds, only and only.partition("[")[0])
+    wanted = with_bounds(asked, findings)
+    summary = findings.summary if wanted == analysis_of(ds) else summarise(ds, wanted)
     names = shown_outputs(ds, asked)
     elements = [one for one in elements_of(findings.rows, names) if one.present.any()]
     elements.sort(key=lambda one: _places(one, asked))
     context = Context(findings.rows, wanted, replicates_of(findings.rows))
-    return [_quantity(findings, summary, context, one) for one in elements]
+    return [
+        _quantity(findings, summary, context, one) for one in elements if only in (None, one.name)
+    ]
 
 
 def _places(element: Element, asked: AnalysisTable) -> tuple[bool, bool]:
@@ -70,7 +74,7 @@ def _places(element: Element, asked: AnalysisTable) -> tuple[bool, bool]:
     return element.output not in asked.thresholds, not element.is_lifetime
 
 
-def _with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
+def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
     """Return what a study asks for, with the bounds and quantiles that the answer needs."""
     coverage = asked.tolerance.coverage if asked.tolerance else COVERAGE
     needed = {LOW, MIDDLE, HIGH, coverage, round(1 - coverage, 12)}

@@ -9,10 +9,10 @@ import xarray as xr
 from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary
-from uq.analysis.tracing.keys import key_of
 from uq.contract import Output, Status
 from uq.drawing.words import element_in_words, unbroken
 from uq.estimate import Estimate
+from uq.keys import key_of
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
 from uq.units import typical, unit_of
