@@ -108,12 +108,20 @@ def _ask(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     yield Advice("tighten", text, leader.inputs)
 
 
-def verdict(findings: Findings) -> list[str]:
-    """Return whether the rows are enough, in sentences, the least settled first."""
+def verdict(findings: Findings, output: str | None = None) -> list[str]:
+    """Return whether the rows are enough, in sentences, the least settled first.
+
+    Parameters
+    ----------
+    findings : Findings
+    output : str, optional
+        Only for this output, or this element of one.
+    """
     rows = findings.ds.sizes["sample"]
-    open_ones = [one for quantity in quantities(findings) for one in unsettled(quantity)]
+    asked = [one for one in quantities(findings) if output in (None, one.name, one.output)]
+    open_ones = [one for quantity in asked for one in unsettled(quantity)]
     if not open_ones:
-        return ["Enough rows: what the study asks is settled."] if rows else []
+        return ["Enough rows: what the study asks is settled."] if rows and asked else []
     return [
         f"Not enough rows: {one.what}; {_needed(one, rows)} rows would settle it."
         for one in sorted(open_ones, key=lambda one: -one.factor)

@@ -34,6 +34,7 @@ from uq.rows.elements import (
 )
 from uq.rows.nesting import is_nested
 from uq.study.file import AnalysisTable
+from uq.wording import threshold
 
 COVERAGE = 0.95
 CONFIDENCE = 0.95
@@ -205,8 +206,7 @@ def _events(
     for one in described.parts["thresholds"]:
         if one.key[-1] != side or one.at is None:
             continue
-        own = unit_for(element.units, one.at)
-        at = own.text(one.at)
+        at = threshold(one.at, element.units)
         verb = "succeed" if element.declared.success else "end"
         said = f"{verb} within {at}" if element.is_lifetime else f"exceed {at}"
         said += " in magnitude" * element.is_angle
