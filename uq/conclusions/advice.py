@@ -6,10 +6,10 @@ from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Advice, Quantity
 from uq.conclusions.quantities import quantities
-from uq.conclusions.settling import MOST, Unsettled, rows_in_words, unsettled
+from uq.conclusions.settling import MOST, Unsettled, unsettled
 from uq.conclusions.sources import ASSUMED, mark
 from uq.conclusions.tightening import changes_of, tightened
-from uq.conclusions.words import called_together
+from uq.conclusions.words import called_together, rows_in_words
 from uq.rows.elements import analysis_of
 from uq.rows.results import failed
 

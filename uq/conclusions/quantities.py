@@ -33,6 +33,7 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.nesting import is_nested
+from uq.rows.variables import outputs_of
 from uq.study.file import AnalysisTable
 from uq.wording import threshold
 
@@ -59,16 +60,18 @@ def quantities(findings: Findings) -> list[Quantity]:
     asked = analysis_of(ds)
     wanted = _with_bounds(asked, findings)
     summary = findings.summary if wanted == asked else summarise(ds, wanted)
-    names = shown_outputs(ds, asked)
-    elements = [one for one in elements_of(findings.rows, names) if one.present.any()]
-    elements.sort(key=lambda one: _places(one, asked))
+    declared = outputs_of(ds)
+    # What the study is about comes first.
+    names = sorted(
+        shown_outputs(ds, asked),
+        key=lambda name: (name not in asked.thresholds, not declared[name].is_lifetime),
+    )
     context = Context(findings.rows, wanted, replicates_of(findings.rows))
-    return [_quantity(findings, summary, context, one) for one in elements]
-
-
-def _places(element: Element, asked: AnalysisTable) -> tuple[bool, bool]:
-    """Return a key that sorts what the study is about first."""
-    return element.output not in asked.thresholds, not element.is_lifetime
+    return [
+        _quantity(findings, summary, context, one)
+        for one in elements_of(findings.rows, names)  # one at a time in memory
+        if one.present.any()
+    ]
 
 
 def _with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
@@ -239,15 +242,14 @@ def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
     found = replace(found, ranking=ranking)
     if ranking.leader is None:
         return found
-    over = ranking.leader.inputs[0]
-    curve = curve_over(findings, target, method, over)
+    over, rows = ranking.leader.inputs[0], findings.ranked.rows
+    curve = curve_over(rows, target, method, over)
     attrs = findings.ds[over].attrs
-    middle = float(np.median(findings.rows[over].values))
+    middle = float(np.median(rows[over].values))
     return replace(found, over=over, curve=curve, over_unit=unit_for(attrs["units"], abs(middle)))
 
 
-def curve_over(findings: Findings, target: str, method: str, over: str) -> EventCurve | None:
+def curve_over(rows: xr.Dataset, target: str, method: str, over: str) -> EventCurve | None:
     """Return the probability of an event over an input."""
-    rows = findings.rows
     hits = next(chosen(rows, method, [target])).values
     return event_curve(hits, independent_inputs(rows)[over], replicates_of(rows))

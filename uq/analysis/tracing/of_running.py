@@ -6,7 +6,7 @@ import xarray as xr
 
 from uq import json_form
 from uq.analysis.as_json import convergence_json, errors_json
-from uq.analysis.convergence import enough, estimates_from, first_samples, method_shown
+from uq.analysis.convergence import enough, estimates_from, method_shown
 from uq.analysis.converging import converging
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import summarise
@@ -17,6 +17,7 @@ from uq.analysis.tracing.origin import Origin
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
 from uq.rows.elements import independent_rows
+from uq.rows.nesting import first_samples
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
