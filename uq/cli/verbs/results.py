@@ -146,8 +146,9 @@ def sensitivity(
     from uq.indices.sensitivities import sensitivities
     from uq.rows.results import open_result
 
-    found = sensitivities(open_result(result), method, output, regime)
-    print_json(sensitivity_json(found)) if json else show(found)
+    ds = open_result(result)
+    found = sensitivities(ds, method, output, regime)
+    print_json(sensitivity_json(found)) if json else show(ds, found)
 
 
 def levels(
@@ -165,8 +166,10 @@ def fleet(
     result: given.ResultFile,
     size: Annotated[int, typer.Option(min=1, metavar="N", help="Number of units.")],
     by: Annotated[
-        list[float] | None,
-        typer.Option(metavar="T", help="A time [s]; default: the study's thresholds."),
+        list[str] | None,
+        typer.Option(
+            metavar="T", help='In seconds, or "30 days"; default: the study\'s thresholds.'
+        ),
     ] = None,
     allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="The life.")] = None,
