@@ -17,7 +17,7 @@ LAYERS = (
     ("inputs", "methods"),
     ("study",),
     ("rows",),
-    ("indices", "store"),
+    ("indices", "population", "store"),
     ("analysis", "running"),
     ("drawing", "upkeep", "exploring"),
     ("report",),
@@ -28,7 +28,7 @@ LAYERS = (
 ``ground`` are the modules of ``uq`` itself; ``plots`` is the face of ``drawing``.
 """
 
-READERS = ("indices", "analysis", "drawing", "report")
+READERS = ("indices", "population", "analysis", "drawing", "report")
 """Packages that read results, and therefore import none of the `RUNNERS`."""
 
 RUNNERS = ("running", "upkeep", "exploring")

@@ -279,7 +279,11 @@ EXPONENTIAL_WEAR = _model(
     exponential_wear,
     outputs={
         "life": Output(
-            "s", "time until the depth is reached", kind="lifetime", may_be_censored=False
+            "s",
+            "time until the depth is reached",
+            kind="lifetime",
+            may_be_censored=False,
+            scales={"depth": 1.0},
         )
     },
 )

@@ -1,7 +1,7 @@
 """What every model promises, held against every model that is installed."""
 
 import pickle
-from dataclasses import FrozenInstanceError, fields
+from dataclasses import FrozenInstanceError, fields, replace
 from typing import get_args
 
 import numpy as np
@@ -155,6 +155,67 @@ def test_only_models_that_say_so_depend_on_the_seed(model, settings):
         x[:, model.parameter_names.index(name)] = value
     if model.random_unless or not model.random:
         assert bits(run(model, settings, x, seed)) == bits(run(model, settings, x, seed[::-1]))
+
+
+SCALED = [m for m in map(find_model, model_names()) if any(o.scales for o in m.outputs.values())]
+
+
+def rows_that_differ_in_scale(model, scales):
+    """Return groups of rows that differ in the scaling parameters alone, and the factor of each."""
+    few, seed = near_nominal(model, 2, seed=5)
+    bounds = np.array([model.parameter(name).bounds for name in model.parameter_names])
+    rng = np.random.default_rng(6)
+    corners = np.where(rng.random((1, len(bounds))) < 0.5, bounds[:, 0], bounds[:, 1])
+    groups = []
+    for base in (*few, *corners):
+        columns = [model.parameter_names.index(name) for name in scales]
+        low, high = np.maximum(bounds[columns, 0], 1e-9), bounds[columns, 1]
+        x = np.repeat(base[None], 5, axis=0)
+        x[0, columns] = np.sqrt(low) * np.sqrt(high)
+        x[1:, columns] = low * (high / low) ** rng.random((4, len(columns)))
+        x[-1, columns] = high
+        groups.append(x)
+    x = np.array(groups)
+    factor = np.prod(x[..., columns] ** np.array(list(scales.values())), axis=-1)
+    seeds = np.repeat(seed[[0, 1, 0]], 5)
+    return x.reshape(-1, x.shape[-1]), seeds, factor.ravel()
+
+
+@pytest.mark.parametrize("model", SCALED, ids=lambda m: m.name)
+def test_scales_are_exact(model):
+    """A life is proportional to the powers that its output declares, to the last digits."""
+    for name, output in model.outputs.items():
+        assert not output.scales or output.is_lifetime, name
+        assert all(exponent and model.parameter(p) for p, exponent in output.scales.items()), name
+    wanted = {name: output for name, output in model.outputs.items() if output.scales}
+    x, seed, factor = rows_that_differ_in_scale(model, next(iter(wanted.values())).scales)
+    whole = run(model, model.settings(), x, seed)
+    finite = np.concatenate([whole[name][np.isfinite(whole[name])] for name in wanted])
+    assert finite.size
+    kept = {"horizon": float(np.median(finite))} if "horizon" in model.setting_names else {}
+    cut = run(model, replace(model.settings(), **kept), x, seed)
+    for name, output in wanted.items():
+        assert output.scales == next(iter(wanted.values())).scales
+        of = factor.reshape(-1, 5, *[1] * len(output.dims))
+        for columns in (whole, cut):
+            life = columns[name].reshape(-1, 5, *columns[name].shape[1:])
+            censored = np.zeros_like(life, dtype=bool)
+            if output.has_censored_flag:
+                censored = columns[censored_name(name)].reshape(life.shape).astype(bool)
+            unit = life / of
+            known = np.where(censored, np.nan, unit)
+            level = np.nanmax(known, axis=1, keepdims=True, initial=-np.inf)
+            level = np.where(level == -np.inf, np.nan, level)
+            with np.errstate(invalid="ignore"):  # never over never
+                same = (known == level) | (np.abs(known / level - 1) < 1e-12)
+            assert (same | np.isnan(known)).all(), name
+            # A row that is cut at the horizon has a life of at least that, whatever its scale.
+            assert (~censored | np.isnan(level) | (unit <= level * (1 + 1e-12))).all(), name
+        if kept and output.has_censored_flag:
+            long = whole[name] > kept["horizon"]
+            ended = long & np.isfinite(whole[name])
+            assert (cut[name][ended] == kept["horizon"]).all()
+            assert cut[censored_name(name)][ended].all()
 
 
 @pytest.mark.parametrize("rows", [2, pytest.param(16, marks=pytest.mark.slow)])

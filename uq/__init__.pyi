@@ -10,6 +10,7 @@ from .analysis.lifetime import survival as survival
 from .analysis.overview import summary as summary
 from .analysis.regime_table import regimes as regimes
 from .analysis.twin import two_fidelities as two_fidelities
+from .analysis.what_if import what_if as what_if
 from .errors import InputError as InputError
 from .errors import RunError as RunError
 from .exploring.basins import basins as basins

@@ -94,6 +94,10 @@ class Output:
     never_known_at_once : bool
         For lifetimes only: whether a life that never ends is recognised before any row is
         censored, so that every censored row does end.
+    scales : dict of str to float
+        For lifetimes only: parameter -> exponent. Over the bounds of these parameters the life is
+        exactly proportional to the product of their powers, rounding apart, whatever the values of
+        all others; a life that never ends does so for any value of these.
     """
 
     unit: str
@@ -105,6 +109,7 @@ class Output:
     categories: tuple[str, ...] = ()
     accuracy: str = ""
     never_known_at_once: bool = True
+    scales: Mapping[str, float] = field(default_factory=dict, hash=False)
 
     @property
     def is_lifetime(self) -> bool:

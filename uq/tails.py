@@ -71,7 +71,7 @@ class Tail(NamedTuple):
     @property
     def no_variance(self) -> bool:
         """Whether the rows contradict a finite variance: k is significantly above 1/2."""
-        light = _shrunk(LIGHT, self.values)
+        light = shrunk(LIGHT, self.values)
         reach = -normal(SIGNIFICANCE) * _error(LIGHT, self.values)
         return self.k > max(0.5, light + reach)
 
@@ -143,7 +143,7 @@ def _tail(ascending: Floats, side: str) -> Tail | None:
         if len(counts) >= DISTINCT and counts.max() <= LUMP * size and (excess > 0).all():
             shape, scale = generalised_pareto(excess)
             if _distance(excess, shape, scale) <= MISFIT:
-                k, reach = _shrunk(shape, size), 1.96 * _error(shape, size)
+                k, reach = shrunk(shape, size), 1.96 * _error(shape, size)
                 return Tail(k, k - reach, k + reach, size, side)
         size //= 2
     return None
@@ -198,7 +198,8 @@ def _distance(excess: Floats, shape: float, scale: float) -> float:
     return float(-n - (2 * np.arange(1, n + 1) - 1) @ (left + right[::-1]) / n)
 
 
-def _shrunk(shape: float, size: int) -> float:
+def shrunk(shape: float, size: int) -> float:
+    """Draw the shape from so many values towards 1/2, as if by ten more."""
     return (size * shape + _PRIOR_VALUES * _PRIOR_K) / (size + _PRIOR_VALUES)
 
 

@@ -15,6 +15,7 @@ from benchmarks.coverage import (
     nested,
     noise,
     plain,
+    scaled,
     tails,
 )
 from benchmarks.coverage.tally import Line
@@ -79,4 +80,6 @@ PARTS = {
     "subset-plateau": Part(fewer_rows.plateau, 1000),
     "subset-others": Part(fewer_rows.subset_of_openturns, 200),
     "importance": Part(fewer_rows.importance),
+    "scaled": Part(scaled.scaled, 1000),
+    "what-if": Part(scaled.what_if, 1000),
 }

@@ -135,6 +135,8 @@ def coordinates(settings: Settings) -> Mapping[str, Sequence[Any]]:
     return {"site": SITES, "depth": settings.depths}
 
 
+_LIFE_SCALES = {"wear_coefficient": -1.0, "contact_area": 1.0}  # eq 12: gaps grow with their ratio
+
 OUTPUTS: Mapping[str, Output] = {
     "work_rate": Output("W", "impact work-rate of each site at the initial gaps", dims=("site",)),
     "work_rate_error": Output(
@@ -154,6 +156,7 @@ OUTPUTS: Mapping[str, Output] = {
         ("site", "depth"),
         accuracy="accuracy",
         never_known_at_once=False,  # wear may stop after the horizon
+        scales=_LIFE_SCALES,
     ),
     "time_to_depth_error": Output(
         "s",
@@ -168,6 +171,7 @@ OUTPUTS: Mapping[str, Output] = {
         ("depth",),
         accuracy="accuracy",
         never_known_at_once=False,
+        scales=_LIFE_SCALES,
     ),
     "first_time_to_depth_error": Output(
         "s",
@@ -181,6 +185,7 @@ OUTPUTS: Mapping[str, Output] = {
         "lifetime",
         ("depth",),
         may_be_censored=False,
+        scales=_LIFE_SCALES,
     ),
     "lifetime_ratio": Output(
         "1", "linear over incremental time to depth", dims=("depth",), may_be_undefined=True

@@ -212,3 +212,46 @@ def _sometimes(x, seed, settings):
 
 SOMETIMES = simple("sometimes", _sometimes, random=True, random_unless={"x2": 0.0})
 """Depends on its seed unless x2 is 0."""
+
+
+class ScaledParameters(NamedTuple):
+    a: Annotated[float, Parameter("a", "1", "scales the life", (1e-6, 1e6), "made up")] = 1.0
+    b: Annotated[float, Parameter("b", "1", "scales it, too", (1e-2, 50.0), "made up")] = 1.0
+    c: Annotated[float, Parameter("c", "1", "scales it, too", (1e-6, 1e6), "made up")] = 1.0
+    z: Annotated[float, Parameter("z", "1", "something else", (-1e6, 1e6), "made up")] = 0.0
+
+
+@dataclass(frozen=True)
+class ScaledSettings:
+    """What may happen to a life."""
+
+    horizon: Annotated[float, Setting("lives are cut there", "s")] = float("inf")
+    never_above: Annotated[float, Setting("z above which no life ends")] = float("inf")
+    fail_above: Annotated[float, Setting("z above which rows fail")] = float("inf")
+
+
+def scaled_life(x, seed, settings):
+    """Return life = a b^-2 c^(1/2) exp(z/2)."""
+    a, b, c, z = x.T.copy()
+    life = a / (b * b) * np.sqrt(c) * np.exp(z / 2)
+    life[z > settings.never_above] = np.inf
+    cut = np.isfinite(life) & (life > settings.horizon)
+    life[cut] = settings.horizon
+    failed = z > settings.fail_above
+    life[failed] = np.nan
+    status = np.where(failed, Status.NON_FINITE, Status.OK).astype(np.int8)
+    return {"life": life, "life_censored": cut & ~failed, "y": z}, status
+
+
+SCALED = Model(
+    name="scaled",
+    title="life that three inputs scale",
+    version="1",
+    parameters=ScaledParameters,
+    settings=ScaledSettings,
+    outputs={
+        "life": Output("s", "life", "lifetime", scales={"a": 1.0, "b": -2.0, "c": 0.5}),
+        "y": Output("1", "another output"),
+    },
+    batch=scaled_life,
+)

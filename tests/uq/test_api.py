@@ -31,6 +31,7 @@ def test_everything_promised_is_there():
             "summary",
             "sensitivity",
             "survival",
+            "what_if",
             "rare_event",
             "two_fidelities",
             "running_estimates",

@@ -101,7 +101,7 @@ def test_a_truncated_normal_is_a_normal_within_bounds():
 
 
 @pytest.mark.parametrize("name", ["lognormal", "weibull", "gamma"])
-def test_the_upper_tail_of_a_skew_law_keeps_its_accuracy(name):
+def test_the_upper_probability_of_a_skew_law_keeps_its_accuracy(name):
     u = np.exp2(-np.arange(2.0, 50.0))
     x = ppf_within(law(name, **LAWS[name]), 1.0 - u, (0.0, inf))
     np.testing.assert_allclose(law(name, **LAWS[name]).frozen().sf(x), u, rtol=1e-9)

@@ -49,7 +49,8 @@ def tally_summary(tally, entry, cdf, ppf, mean=None):
 def tally_survival(tally, curve, cdf, times):
     """Count the band of a survival curve at some times."""
     for time in times:
-        at = curve.sel(time=time, method="ffill")
+        smooth = "integrated" in curve.attrs
+        at = curve.interp(time=time) if smooth else curve.sel(time=time, method="ffill")
         ends = [float(at[end]) for end in ("low", "high")]
         low, high = ends if np.isfinite(ends).all() else (None, None)
         tally.add(f"survival {time:g}", 1 - cdf(time), low, high)

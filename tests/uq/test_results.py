@@ -47,12 +47,15 @@ def test_a_result_opens_with_plain_xarray_and_describes_itself(kinds):
         assert list(ds["side"].values) == ["left", "right"]
         assert list(ds["depth"].values) == [0.5, 1.5]
         assert ds["x2"].dims == ("sample",)
-        assert ds["x2"].attrs == {
+        attrs = dict(ds["x2"].attrs)
+        attrs["admissible"] = list(attrs["admissible"])
+        assert attrs == {
             "role": "input",
             "units": "s",
             "long_name": "second input",
             "symbol": "x_2",
             "source": "a guess",
+            "admissible": [0.0, 1.0],
         }
         assert ds["x1"].dims == ()
         assert ds["x1"].item() == 0.125

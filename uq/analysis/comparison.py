@@ -11,10 +11,10 @@ from uq.analysis.input_changes import Change, OnlyChange, changes, only_change
 from uq.analysis.pairing import Pair
 from uq.analysis.summary import Summary, summarise
 from uq.errors import InputError
+from uq.population.scaling import population
 from uq.rows.elements import (
     Element,
     analysis_of,
-    elements_of,
     output_names,
     shown_outputs,
     why_no_statistics,
@@ -103,7 +103,7 @@ def comparison(first: xr.Dataset, second: xr.Dataset) -> Comparison:
     found = [summarise(ds, asked) for ds in results]
     pair = Pair(first, second)
     elements = [
-        {element.name: element for element in elements_of(rows, outputs)} for rows in pair.rows
+        {element.name: element for element in population(rows, outputs)} for rows in pair.rows
     ]
     changed = changes(*results)
     return Comparison(

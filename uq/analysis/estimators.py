@@ -9,6 +9,7 @@ import xarray as xr
 
 from uq import order_statistics
 from uq.contract import Status
+from uq.population.functionals import Population
 from uq.rows.elements import Element, Floats, Mask, flags
 
 
@@ -96,3 +97,15 @@ def quantile(probability: float) -> Estimator:
         return below - below.mean()
 
     return Estimator(of, pull, is_share=True)
+
+
+def quantile_of(element: Element, probability: float) -> Estimator:
+    """Return the estimator of a quantile of an element, whose rows may be laws of lives."""
+    if element.is_plain:
+        return quantile(probability)
+
+    def sample(other: Element) -> Sample:
+        at = Population(other, None).middle(probability)
+        return Sample(other.present, other.below(at))
+
+    return Estimator(np.mean, _centred, sample, is_share=True)

@@ -8,6 +8,7 @@ from uq import order_statistics
 from uq.analysis.lifetime import curve
 from uq.estimate import NOTHING, Estimate
 from uq.intervals import UNKNOWN, Ends, Replicates, replicates_of_some
+from uq.population.functionals import Population
 from uq.rows.elements import Element, Floats
 
 B_LIVES = {"B1": 0.01, "B10": 0.1, "B50": 0.5}
@@ -35,13 +36,17 @@ def life_quantiles(
     dict
         Name -> estimate [s]. A plain quantile as long as it does not depend on when the censored
         rows end. Otherwise the time at which the Kaplan-Meier curve, or an end of its pointwise
-        interval [1]_, crosses the share; it states what it assumes.
+        interval [1]_, crosses the share; it states what it assumes. Where rows are laws of lives,
+        or have weights: see `uq.population.functionals.Population.quantile`.
 
     References
     ----------
     .. [1] R. Brookmeyer, J. Crowley, "A confidence interval for the median survival time",
        Biometrics 38, 29-41 (1982).
     """
+    if not element.is_plain:
+        of = Population(element, replicate)
+        return {name: of.quantile(p) for name, p in asked.items()}
     within = replicates_of_some(replicate, element.present)
     found = {name: quantile_estimate(element, p, within) for name, p in asked.items()}
     open_ones = [name for name, one in found.items() if "value" in one.beyond]
@@ -143,7 +148,7 @@ def quantile_estimate(element: Element, probability: float, replicate: Replicate
 def rows_needed(element: Element, probability: float) -> int | None:
     """Return how many rows a quantile needs; None where there are enough, or none."""
     rows = len(element.at_least)
-    if rows == 0 or order_statistics.is_within(probability, rows):
+    if rows == 0 or not element.is_plain or order_statistics.is_within(probability, rows):
         return None
     return order_statistics.rows_to_reach(probability)
 

@@ -17,11 +17,13 @@ from uq.intervals import (
     scattered_share_interval,
     upper_probability,
 )
+from uq.population.functionals import Population
+from uq.population.scaling import population
 from uq.quantile_functions import normal
 from uq.rows.elements import Element, Floats, independent_rows, lifetimes, replicates_of
 
 
-def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
+def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
     """Estimate how likely a lifetime exceeds each time.
 
     Parameters
@@ -31,6 +33,8 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     output : str
         A lifetime, or one element of it such as ``time_to_depth[site=left,depth=0.00025]``. All
         elements of an output share one time axis: of a large result ask for one at a time.
+    plain : bool
+        Whether lives are taken as computed; by default what only scales them is integrated exactly.
 
     Returns
     -------
@@ -40,9 +44,11 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
         life that never ends is known at once, it is that of the rows that end, times their share,
         plus the share that never does. ``low``, ``high``: its pointwise 95 % interval, for
         independent rows by the exponential Greenwood formula [1]_, else from the replicates; NaN
-        where unknown. ``band_low``, ``band_high``: a simultaneous 95 % band, for independent rows
-        only; see the attribute ``band``. ``never``: the share of rows known never to end. Counts:
-        ``rows``, ``censored``, and ``undefined`` and ``failed``, which are excluded.
+        where unknown. Where rows are laws of lives (attribute ``integrated``), the mean of their
+        probabilities at up to 500 of these times, between which to interpolate. ``band_low``,
+        ``band_high``: a simultaneous 95 % band, for independent rows only; see the attribute
+        ``band``. ``never``: the share of rows known never to end. Counts: ``rows``,
+        ``censored``, and ``undefined`` and ``failed``, which are excluded.
 
     Raises
     ------
@@ -63,16 +69,18 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
     True
     """
     rows = independent_rows(ds)
-    chosen = lifetimes(rows, output)
-    time = np.unique(np.concatenate([e.values[np.isfinite(e.values)] for e in chosen]))
+    wanted = {element.name for element in lifetimes(rows, output)}
+    whole = population(rows, [output.partition("[")[0]], plain=plain)
+    chosen = [element for element in whole if element.name in wanted]
+    time = _times(chosen)
     replicate = replicates_of(rows)
     lost = any(element.failed.any() for element in chosen)
     found = [_variables(element, time, replicate, lost) for element in chosen]
 
-    whole = rows[chosen[0].output]
-    places = {dim: whole[dim] for dim in whole.dims if dim != "sample"}
-    dims = tuple(places) if output == whole.name else ()
-    shape = tuple(whole.sizes[dim] for dim in dims)
+    of = rows[chosen[0].output]
+    places = {dim: of[dim] for dim in of.dims if dim != "sample"}
+    dims = tuple(places) if output == of.name else ()
+    shape = tuple(of.sizes[dim] for dim in dims)
     data = {}
     for name in found[0]:
         values = np.stack([one[name] for one in found])
@@ -81,8 +89,10 @@ def survival(ds: xr.Dataset, output: str) -> xr.Dataset:
         data[name] = ((*dims, *along), values.reshape(shape + values.shape[1:]), attrs)
     coords = places if dims else chosen[0].place
     axis = ("time", time, {"long_name": "time", "units": "s"})
-    attrs = {"output": output, "long_name": whole.attrs["long_name"]}
+    attrs = {"output": output, "long_name": of.attrs["long_name"]}
     attrs["band"] = BAND if replicate is None else NO_BAND
+    if chosen[0].law is not None:
+        attrs["integrated"] = " ".join(chosen[0].law.inputs)
     return xr.Dataset(data, {**coords, "time": axis}, attrs)
 
 
@@ -108,6 +118,17 @@ _MEANINGS = {
 }
 
 
+_MOST_TIMES = 500
+
+
+def _times(chosen: list[Element]) -> Floats:
+    """Return every time at which a row ended, or some of these for laws of lives."""
+    time = np.unique(np.concatenate([e.values[np.isfinite(e.values)] for e in chosen]))
+    if all(element.is_plain for element in chosen) or len(time) <= _MOST_TIMES:
+        return time
+    return time[np.linspace(0, len(time) - 1, _MOST_TIMES).round().astype(int)]
+
+
 class Curve(NamedTuple):
     """The share that outlives each time, and its pointwise 95 % interval; shapes (k,)."""
 
@@ -121,7 +142,7 @@ def _variables(
 ) -> dict[str, Any]:
     """Return every variable of `survival` for one element, named and ordered as there."""
     plain = curve(element, time, replicate)
-    band_low, band_high = _band(element, time, replicate)
+    band_low, band_high = _band(element.plain, time, replicate)
     rows = int(element.present.sum())
     found = plain._asdict() | {"band_low": band_low, "band_high": band_high}
     found |= {"never": element.never.sum() / rows if rows else np.nan, "rows": rows}
@@ -137,6 +158,9 @@ def _variables(
 
 def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
     """Return the estimate of `survival` for one element, at times [s] that ascend."""
+    if not element.is_plain:
+        rows = Population(element, replicate)
+        return Curve(*np.array([rows.outliving(at).numbers for at in time]).reshape(-1, 3).T)
     values, censored = element.at_least, element.censored[element.present]
     if len(values) == 0:
         return Curve(*np.full((3, len(time)), np.nan))
@@ -150,10 +174,10 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
         for r in np.unique(of)
     ]
     seen = len(values) - np.searchsorted(np.sort(values[censored]), time, side="right")
-    rows = np.where((found.share > 0) & (found.share < 1), seen, np.nan)
+    at_risk = np.where((found.share > 0) & (found.share < 1), seen, np.nan)
     samples = replicate.samples if isinstance(replicate, Clusters) else None
     interval = scattered_share_interval(
-        found.share, np.array(estimates), rows=rows, samples=samples
+        found.share, np.array(estimates), rows=at_risk, samples=samples
     )
     return Curve(found.share, *interval)
 

@@ -8,17 +8,19 @@ import xarray as xr
 
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import COLUMN_ORDER
-from uq.analysis.summary import Described, summarise
+from uq.analysis.summary import Described, Summary, summarise
 from uq.estimate import Estimate
 
 
-def summary(ds: xr.Dataset) -> pd.DataFrame:
+def summary(ds: xr.Dataset, *, plain: bool = False) -> pd.DataFrame:
     """Describe a result in a table, one line per element of each output.
 
     Parameters
     ----------
     ds : xarray.Dataset
         A result.
+    plain : bool
+        Whether lives are taken as computed; by default what only scales them is integrated exactly.
 
     Returns
     -------
@@ -36,7 +38,12 @@ def summary(ds: xr.Dataset) -> pd.DataFrame:
     >>> bool(line["mean_low"] < 3.5 < line["mean_high"])  # the mean is known
     True
     """
-    lines = {name: _line(one) for name, one in summarise(ds).outputs.items()}
+    return table_of(summarise(ds, plain=plain))
+
+
+def table_of(found: Summary) -> pd.DataFrame:
+    """Return a summary as a table."""
+    lines = {name: _line(one) for name, one in found.outputs.items()}
     return pd.DataFrame(list(lines.values()), index=pd.Index(list(lines), name="output"))
 
 

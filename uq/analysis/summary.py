@@ -15,12 +15,17 @@ from uq.analysis.statistics.statistic import Context, Kind, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.statistics.thresholds import share_of
 from uq.designs.registry import DESIGNS
+from uq.estimate import Estimate
 from uq.intervals import replicates_of_some
+from uq.population.means import weighted_share
+from uq.population.reweighting import Weighting
+from uq.population.scaling import population
+from uq.population.smoothing import Smoothed
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
+    Mask,
     analysis_of,
-    elements_of,
     flags,
     has_independent_samples,
     independent_rows,
@@ -132,6 +137,8 @@ def summarise(
     *,
     regime: str | None = None,
     fits: bool = False,
+    plain: bool = False,
+    weighting: Weighting | None = None,
 ) -> Summary:
     """Describe a result.
 
@@ -145,6 +152,10 @@ def summarise(
         Describe only the rows in this regime; rows that failed without one count as failed.
     fits : bool
         Whether each lifetime also has the laws fitted to it.
+    plain : bool
+        Whether lives are taken as computed, and nothing that only scales them is integrated.
+    weighting : Weighting, optional
+        Makes the rows those of another study; none within a regime.
 
     Returns
     -------
@@ -155,9 +166,13 @@ def summarise(
     if regime is not None:
         ds = within_regime(ds, regime)
     rows = independent_rows(ds)
-    context = Context(rows, analysis, replicates_of(rows))
+    of_all = None if weighting is None else weighting.all_inputs
+    context = Context(rows, analysis, replicates_of(rows), of_all)
     outputs, most = dict[str, Described](), 0
-    for element in elements_of(rows, shown_outputs(ds, analysis)):  # one at a time in memory
+    plain = plain or regime is not None  # within a regime, inputs have another law
+    names = shown_outputs(ds, analysis)
+    elements = population(rows, names, plain=plain) if not weighting else weighting.elements(names)
+    for element in elements:  # one at a time in memory
         outputs[element.name] = _described(element, context, fits)
         most = max(most, int(element.failed.sum()))
     if most:
@@ -166,7 +181,7 @@ def summarise(
         samples=ds.sizes["sample"],
         rows_used=rows.sizes["sample"],
         status=status_counts(ds),
-        regimes=regime_shares(rows) if "regime" in output_names(ds) else {},
+        regimes=regime_shares(rows, of_all) if "regime" in output_names(ds) else {},
         outputs=outputs,
         most_failed=most,
         notes=notes,
@@ -186,16 +201,25 @@ def status_counts(ds: xr.Dataset) -> dict[str, int]:
     return {label: count for label, count in counts.items() if count or label == "ok"}
 
 
-def regime_shares(rows: xr.Dataset) -> dict[str, Statistic]:
+def regime_shares(rows: xr.Dataset, weights: Smoothed | None = None) -> dict[str, Statistic]:
     """Return the share of each regime among the independent rows that did not fail."""
     replicate = replicates_of(rows)
+
+    def estimate(hits: Mask, kept: Mask) -> Estimate:
+        part = replicates_of_some(replicate, kept)
+        if weights is None:
+            return share_of(hits[kept], part)
+        if weights.refusal:
+            return Estimate(reason=weights.refusal)
+        return weighted_share(hits[kept].astype(float), weights.weights[kept], part)
+
     return {
         label: Statistic(
             ("regime", label),
             label,
-            share_of(hits[kept], replicates_of_some(replicate, kept)),
+            estimate(hits, kept),
             kind=REGIME,
-            failed=failed_share_bounds(hits, ~kept, replicate),
+            failed=failed_share_bounds(hits, ~kept, replicate) if weights is None else None,
             facts={"count": int(hits[kept].sum())},
             estimator=share(),
         )

@@ -19,7 +19,16 @@ _when_interrupted = "interrupted"
 
 _ALLOCATIONS = 100_000  # between searches for garbage; imports allocate much and discard little
 
-_READERS = ("summary", "sensitivity", "levels", "convergence", "compare", "plot", "report")
+_READERS = (
+    "summary",
+    "sensitivity",
+    "levels",
+    "convergence",
+    "compare",
+    "what-if",
+    "plot",
+    "report",
+)
 """Verbs that only read results. For each array of one, xarray would import dask to ask whether it
 is one of dask's: here none is."""
 

@@ -23,6 +23,7 @@ VERBS = (
     results.levels,
     results.convergence,
     results.compare,
+    results.what_if,
     results.twin,
     studies.rare_event,
     results.plot,

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from itertools import chain
+from math import isnan
 
 import xarray as xr
 
@@ -55,6 +56,8 @@ def _lines(output: Described) -> Iterator[Line]:
         shown = [one for one in part if one.is_read_by(Reader.TERMINAL) and one.words()]
         for one in shown:
             yield _line(one)
+            if isnan(one.estimate.value) and one.rows_needed is None and not one.otherwise:
+                yield from _reason(one)
             yield from _failed(one)
             if one.otherwise and one.otherwise.label:
                 yield from _reason(one)

@@ -72,12 +72,48 @@ def cdf_within(law: Law, x: Floats, bounds: tuple[float, float]) -> Floats:
     -------
     ndarray, shape (n,)
     """
-    to = _condition(law, bounds)
-    if to.below < 0.5:
-        share = (to.parent.cdf(x) - to.below) / (to.not_above - to.below)
-    else:  # in the upper tail only the survival function has digits left
-        share = (to.not_below - to.parent.sf(x)) / (to.not_below - to.above)
-    return np.clip(np.where(x < to.low, 0.0, share), 0.0, 1.0)
+    return _probabilities(_condition(law, bounds), x)
+
+
+def cdf_between(law: Law, x: Floats, low: Floats, high: Floats) -> Floats:
+    """Return the probability up to and including x of a law conditioned on ends of each row.
+
+    Parameters
+    ----------
+    law : Law
+    x, low, high : ndarray, shape (n,)
+        As in `ppf_between`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    return _probabilities(_shares(law, *_tightened(law, low, high)), x)
+
+
+def log_density_between(law: Law, x: Floats, low: Any, high: Any) -> Floats:
+    """Return the logarithm of the density of a law conditioned on ends, -inf outside.
+
+    Parameters
+    ----------
+    law : Law
+    x : ndarray, shape (n,)
+    low, high : float or ndarray, shape (n,)
+        Both ends included.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Of a discrete law, the logarithm of the probability of each value.
+    """
+    to = _shares(law, *_tightened(law, low, high))
+    with np.errstate(divide="ignore"):
+        if law.discrete:
+            density = np.log(to.parent.cdf(x) - to.parent.cdf(np.nextafter(x, -np.inf)))
+        else:
+            density = to.parent.logpdf(x)
+        kept = np.maximum(to.not_above - to.below, to.not_below - to.above)
+        return np.where((to.low <= x) & (x <= to.high), density - np.log(kept), -np.inf)
 
 
 def factor_ends(other: Any, bounds: tuple[float, float]) -> tuple[Any, Any]:
@@ -123,6 +159,14 @@ def _quantiles(to: _Condition, u: Floats) -> Floats:
         x[lower_half] = to.parent.ppf(p[lower_half])
         x[upper_half] = to.parent.isf(q[upper_half])
     return np.clip(x, to.low, to.high)
+
+
+def _probabilities(to: _Condition, x: Floats) -> Floats:
+    if np.all(to.below < 0.5):
+        share = (to.parent.cdf(x) - to.below) / (to.not_above - to.below)
+    else:  # in the upper tail only the survival function has digits left
+        share = (to.not_below - to.parent.sf(x)) / (to.not_below - to.above)
+    return np.clip(np.where(x < to.low, 0.0, share), 0.0, 1.0)
 
 
 @lru_cache(maxsize=1024)  # making a scipy distribution costs more than a thousand quantiles

@@ -114,6 +114,10 @@ class Triangular(Law):
         width = self.upper - self.lower
         return scipy.stats.triang(c=(self.mode - self.lower) / width, loc=self.lower, scale=width)
 
+    def kinks(self) -> tuple[float, ...]:
+        """Return the mode."""
+        return (self.mode,)
+
 
 class Pert(Law):
     """PERT law between two ends: a beta law of mean (lower + 4 mode + upper) / 6."""

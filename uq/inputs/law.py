@@ -60,6 +60,10 @@ class Law(BaseModel):
         """
         return (self.frozen(), *(self.truncate or (-inf, inf)))
 
+    def kinks(self) -> tuple[float, ...]:
+        """Return the places, ends apart, where the density is not smooth."""
+        return ()
+
     @model_validator(mode="after")
     def _check_order(self) -> Self:
         names = self._ascending

@@ -186,3 +186,7 @@ class Histogram(Law):
         return scipy.stats.rv_histogram(
             (np.array(self.counts), np.array(self.edges)), density=False
         )
+
+    def kinks(self) -> tuple[float, ...]:
+        """Return the ends of the bins."""
+        return self.edges

@@ -1,12 +1,23 @@
 """One element of an output: one plain array, with the outcome of every row."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
 
 import numpy as np
 
 from uq.contract import Floats, Mask, Output
+
+
+class RowLaw(Protocol):
+    """The law of a life in each row, given all that does not scale it."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What it integrates."""
+
+    def below(self, lives: Floats, time: float) -> Floats:
+        """Return P(T < time) of each row, shape (n,), from its life; 0 where that is NaN."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +40,10 @@ class Element:
         Where the value is only a lower bound.
     failed : ndarray of bool, shape (n,)
         Where the value is missing because the row failed.
+    law : RowLaw, optional
+        Of what scales a life, given all that does not: each row then is the law of a life.
+    weights : ndarray, shape (n,), optional
+        Of the rows, where they stand for another study.
     """
 
     name: str
@@ -38,6 +53,8 @@ class Element:
     values: Floats
     censored: Mask
     failed: Mask
+    law: RowLaw | None = None
+    weights: Floats | None = None
 
     @property
     def units(self) -> str:
@@ -82,6 +99,31 @@ class Element:
     def unknown_sides(self, threshold: float) -> Mask:
         """Return where rows were censored below a threshold, so that their side is unknown."""
         return self.censored & (self.values < threshold)
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether each row counts once, with a life known to the digit."""
+        return self.law is None and self.weights is None
+
+    @property
+    def plain(self) -> "Element":
+        """The same rows with the lives that were computed."""
+        return replace(self, law=None)
+
+    def below(self, threshold: float) -> Floats:
+        """Return the probability that each row lies below a threshold, shape (n,)."""
+        if self.law is not None:
+            return self.law.below(self.values, threshold)
+        with np.errstate(invalid="ignore"):
+            return ((self.for_thresholds < threshold) & ~self.censored).astype(float)
+
+    def above(self, threshold: float) -> Floats:
+        """Return the probability that each row lies above a threshold, shape (n,)."""
+        if self.law is not None:
+            return np.where(self.present, 1 - self.law.below(self.values, threshold), 0.0)
+        values = self.for_thresholds
+        with np.errstate(invalid="ignore"):
+            return ((values > threshold) | (self.censored & (values == threshold))).astype(float)
 
     @property
     def at_least(self) -> Floats:

@@ -1,6 +1,7 @@
 """The variables of a result and their attributes."""
 
 import hashlib
+import json
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -29,13 +30,15 @@ def parameter_variable(
     """Return the variable of a parameter: one number, or one per row."""
     declared = model.parameter(name)
     uncertain = isinstance(value, np.ndarray)
-    attrs = {
+    attrs: dict[str, Any] = {
         "role": "input" if uncertain else "fixed",
         "units": declared.unit,
         "long_name": declared.meaning,
         "symbol": declared.symbol,
         "source": source or declared.source,
     }
+    if uncertain:
+        attrs["admissible"] = np.array(declared.bounds)
     attrs |= {"level": level} if level else {}
     return (("sample",), value, attrs) if uncertain else ((), np.float64(value), attrs)
 
@@ -62,6 +65,8 @@ def output_variables(
             attrs["accuracy"] = float(getattr(settings, output.accuracy))
         if output.is_lifetime:
             attrs["never_known_at_once"] = int(output.never_known_at_once)
+        if output.scales:
+            attrs["scales"] = json.dumps(dict(output.scales))
         if output.is_category:
             attrs |= _flags(("none", *output.categories), np.int8, first=-1)
         variables[name] = (dims, columns[name], attrs)
@@ -91,6 +96,7 @@ def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
             censored_name(str(name)) in ds,
             tuple(variable.attrs.get("flag_meanings", "").split()[1:]),
             never_known_at_once=bool(variable.attrs.get("never_known_at_once", True)),
+            scales=json.loads(variable.attrs.get("scales", "{}")),
         )
         for name, variable in ds.variables.items()
         if variable.attrs.get("role") == "output"

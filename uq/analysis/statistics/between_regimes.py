@@ -39,7 +39,7 @@ _KIND = Kind(shown=_shown, readers=Reader.JSON | Reader.TERMINAL | Reader.REPORT
 def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield the share of the variance between regimes, of a life by its logarithm or rank."""
     target = number_of(element)
-    if "regime" not in output_names(context.rows) or target.refused:
+    if "regime" not in output_names(context.rows) or target.refused or context.weights:
         return
     codes = context.rows["regime"].values
     split = between_share(target.values, codes, context.replicate)

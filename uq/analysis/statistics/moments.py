@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import isnan
+from math import isfinite, isnan, nan
 from typing import Any
 
 from uq import json_form
@@ -10,6 +10,8 @@ from uq.analysis.estimators import MEAN, SD
 from uq.analysis.statistics.statistic import FACT, Context, Kind, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
 from uq.moments import Moments, moments
+from uq.population.means import weighted_moments
+from uq.population.smoothing import Smoothed
 from uq.rows.elements import Element
 
 
@@ -38,6 +40,8 @@ def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
     known = len(values) and not (element.never.any() or element.censored.any())
     nothing = Moments(NOTHING, NOTHING, None, None)
     found = moments(values, context.present(element)) if known else nothing
+    if known and context.weights is not None:
+        found = _weighted(element, context, context.weights, found)
     more = found.caution or ""
     unit = element.units
     yield Statistic(("mean",), "mean", found.mean, unit, MOMENT, more=more, estimator=MEAN)
@@ -53,6 +57,21 @@ def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
         notes=(*dict.fromkeys(reasons.values()), *filter(None, [found.caution])),
         facts={"tail": tail and tail._asdict(), "reasons": reasons, "caution": found.caution},
     )
+
+
+def _weighted(element: Element, context: Context, by: Smoothed, plain: Moments) -> Moments:
+    """Return the moments of weighted rows; the tail rules out what it does without weights."""
+    kept = element.present
+    both = weighted_moments(element.values[kept], by.weights[kept], context.present(element))
+    found = [
+        Estimate(one.value if isfinite(other.value) else nan, reason=other.reason)
+        if other.reason
+        else one
+        for one, other in zip(both, (plain.mean, plain.sd), strict=True)
+    ]
+    if by.refusal:
+        found = [Estimate(reason=by.refusal)] * 2
+    return Moments(found[0], found[1], plain.tail, plain.caution)
 
 
 def _reasons(found: Moments) -> dict[str, str]:

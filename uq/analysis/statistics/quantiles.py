@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from uq.analysis.estimators import quantile
+from uq.analysis.estimators import quantile_of
 from uq.analysis.failed_rows import bounded
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles, quantile_estimate, rows_needed
 from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
@@ -22,18 +22,20 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield quantiles, with Kaplan-Meier estimates where they depend on censored rows."""
     within = context.present(element)
     asked = {repr(probability): probability for probability in context.analysis.quantiles}
-    guesses = life_quantiles(element, asked, context.replicate) if element.is_lifetime else {}
+    lives = element.is_lifetime or not element.is_plain
+    guesses = life_quantiles(element, asked, context.replicate) if lives else {}
     for name, p in asked.items():
+        plain = quantile_estimate(element, p, within) if element.is_plain else guesses[name]
         one = Statistic(
             ("quantiles", name),
             f"quantile {name}",
-            quantile_estimate(element, p, within),
+            plain,
             element.units,
             column=f"q{name}",
             heading=f"{100 * p:g} % quantile",
             rows_needed=rows_needed(element, p),
             sentence="Median {brief}." if p == 0.5 else "",
-            estimator=quantile(p),
+            estimator=quantile_of(element, p),
         )
         guess = guesses.get(name, NOTHING)
         otherwise = replace(one, label=f"{one.label}, if", estimate=guess)
@@ -54,7 +56,7 @@ def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
             element.units,
             LIFE,
             rows_needed=None if found.assumes else rows_needed(element, p),
-            estimator=quantile(p),
+            estimator=quantile_of(element, p),
         )
     for label, rows in (("never ending", element.never), ("censored", element.censored)):
         label = f"rows {label}"

@@ -12,6 +12,7 @@ from uq import json_form
 from uq.analysis.estimators import Estimator
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some
+from uq.population.smoothing import Smoothed
 from uq.rows.elements import Element
 from uq.study.file import AnalysisTable
 from uq.wording import known, number
@@ -40,11 +41,14 @@ class Context:
         What the study asks for.
     replicate : ndarray of int, shape (n,), or None
         Of each row; None where rows are independent.
+    weights : Smoothed, optional
+        Of the rows with nothing integrated, where they stand for another study.
     """
 
     rows: xr.Dataset
     analysis: AnalysisTable
     replicate: Replicates
+    weights: Smoothed | None = None
 
     def present(self, element: Element) -> Replicates:
         """Return the replicate of each row in which the element has a value."""

@@ -4,6 +4,7 @@ from typing import Any
 
 from uq.analysis.statistics.between_regimes import between_regimes
 from uq.analysis.statistics.counts import accuracy, counts
+from uq.analysis.statistics.integrated import integrated
 from uq.analysis.statistics.moments import moments_of
 from uq.analysis.statistics.quantiles import b_lives, quantiles
 from uq.analysis.statistics.statistic import Maker
@@ -19,6 +20,7 @@ STATISTICS: dict[str, Maker] = {
     "between_regimes": between_regimes,
     "counts": counts,
     "accuracy": accuracy,
+    "integrated": integrated,
 }
 """Name -> maker, in the order in which they are shown."""
 

@@ -13,6 +13,7 @@ from uq.analysis.life_quantiles import ended_by
 from uq.analysis.statistics.statistic import Context, Kind, Listing, Statistic, entry
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some, share_interval
+from uq.population.functionals import Population
 from uq.rows.elements import Element, Mask
 
 SIDES = {"above": ">", "below": "<"}
@@ -97,9 +98,14 @@ def _probabilities(
             at=threshold,
             sentence=_sentence(element, side),
             facts={"undefined": undefined},
-            estimator=share(_hits(threshold, place)),
+            estimator=replace(share(_hits(threshold, place)), counts_hits=element.is_plain),
         )
-        if sides is None:
+        if not element.is_plain and sides is None:
+            yield replace(one, estimate=Estimate(reason=_unknown_sides(element, threshold)))
+        elif not element.is_plain:
+            of = Population(element, replicate)
+            yield replace(one, estimate=(of.above, of.below)[place](threshold))
+        elif sides is None:
             yield _by_kaplan_meier(one, element, threshold, replicate)
         else:
             within = replicates_of_some(replicate, kept)
@@ -109,8 +115,7 @@ def _probabilities(
 def _by_kaplan_meier(
     one: Statistic, element: Element, threshold: float, replicate: Replicates
 ) -> Statistic:
-    unknown = element.unknown_sides(threshold)
-    reason = f"{unknown.sum()} of {unknown.size} rows were censored before that time"
+    reason = _unknown_sides(element, threshold)
     guess = ended_by(element, threshold, replicate)[one.falls]
     label = f"{one.label}, if" if one.falls else ""  # a terminal shows one side only
     small = (reason, f"by Kaplan-Meier, assuming {guess.assumes}", guess.reason)
@@ -122,8 +127,16 @@ def _by_kaplan_meier(
     )
 
 
+def _unknown_sides(element: Element, threshold: float) -> str:
+    unknown = element.unknown_sides(threshold)
+    return f"{unknown.sum()} of {unknown.size} rows were censored before that time"
+
+
 def _hits(threshold: float, place: int) -> Callable[[Element], Sample | None]:
     def sample(element: Element) -> Sample | None:
+        if element.law is not None:
+            numbers = (element.above, element.below)[place](threshold)
+            return Sample(~element.failed, numbers)
         sides = event(element, threshold)
         return None if sides is None else Sample(~element.failed, sides[place].astype(float))
 

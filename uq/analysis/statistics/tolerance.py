@@ -23,7 +23,7 @@ def _write(group: Sequence[Statistic]) -> dict[str, Any]:
 def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
     """Yield both one-sided bounds and the rows they need; failed rows count as the worst."""
     asked = context.analysis.tolerance
-    if asked is None or context.replicate is not None:
+    if asked is None or context.replicate is not None or context.weights is not None:
         return
     failed = int(element.failed.sum())
     early = tolerance_bounds(element.at_least, failed, *asked)

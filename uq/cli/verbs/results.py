@@ -76,6 +76,9 @@ def summary(
     fits: Annotated[
         bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
     ] = False,
+    plain: Annotated[
+        bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
+    ] = False,
     json: given.Json = False,
 ) -> None:
     """Show how rows ended, and statistics of each output."""
@@ -86,7 +89,7 @@ def summary(
     from uq.rows.results import open_result
 
     ds = open_result(result)
-    found = summarise(ds, regime=regime, fits=fits)
+    found = summarise(ds, regime=regime, fits=fits, plain=plain)
     print_json(summary_json(found)) if json else tables.show_summary(ds, found)
 
 
@@ -141,6 +144,20 @@ def compare(
     from uq.cli import comparing
 
     comparing.compare(first, second, json)
+
+
+def what_if(
+    result: given.ResultFile,
+    set_: Annotated[
+        list[str],
+        typer.Option("--set", metavar="uncertain.NAME.KEY=VALUE", help="May be repeated."),
+    ],
+    json: given.Json = False,
+) -> None:
+    """Show what the same rows say of inputs with other laws."""
+    from uq.cli import what_if as question
+
+    question.what_if(result, set_, json)
 
 
 def twin(

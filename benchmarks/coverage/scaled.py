@@ -1,0 +1,96 @@
+"""Lives of which an input is integrated exactly, and rows weighted to other laws."""
+
+import numpy as np
+from scipy import special, stats
+
+from benchmarks.coverage.tally import Tally
+from uq.contract import Output
+from uq.inputs.registry import law_of
+from uq.population.functionals import Population
+from uq.population.scale_laws import IndependentScale
+from uq.population.scaling import EVERYWHERE
+from uq.population.smoothing import smoothed
+from uq.population.sums import LogTerm
+from uq.rows.element import Element
+from uq.two_samples import difference
+
+LIFE = Output("s", "life", "lifetime")
+ROWS = (30, 100, 300, 1000)
+PROBABILITIES = (1e-5, 0.001, 0.01, 0.1, 0.5, 0.9, 0.99)
+SPREADS = (0.2, 0.5, 1.0, 2.0, 5.0)
+"""Standard deviations of the logarithm of what is not integrated, over that of what is."""
+
+CAUTIOUS = (
+    "where fewer than 20 effective rows carry a probability, the interval is at least as wide as"
+    " that of a share of hits; the rows that matter may be missing"
+)
+
+
+def lognormal_term(sigma):
+    """Return the logarithm of a lognormal input of median 1."""
+    law = law_of({"distribution": "lognormal", "median": 1.0, "sigma": sigma})
+    return LogTerm(law, EVERYWHERE, 1.0)
+
+
+def element(rest, drawn, term, weights=None):
+    """Return lives exp(rest + drawn), the second term of which is integrated."""
+    nothing = np.zeros(len(rest), dtype=bool)
+    law = IndependentScale(("depth",), term, drawn)
+    return Element("life", "life", LIFE, {}, np.exp(rest + drawn), nothing, nothing, law, weights)
+
+
+def scaled(repetitions):
+    """Count P(T < t) and quantiles of lives that a lognormal input scales."""
+    lines, term = [], lognormal_term(1.0)
+    for spread in SPREADS:
+        for rows in ROWS:
+            name = f"life scaled by an input, others scatter {spread:g} times as much, {rows} rows"
+            tally = Tally(name, {"": CAUTIOUS})
+            rng = np.random.default_rng(rows)
+            for _ in range(repetitions):
+                rest = spread * rng.standard_normal(rows)
+                found = Population(element(rest, rng.standard_normal(rows), term), None)
+                for p in PROBABILITIES:
+                    time = np.exp(np.hypot(1.0, spread) * stats.norm.ppf(p))
+                    below = found.below(time)
+                    tally.add(f"P(T < t) = {p:g}", p, below.low, below.high)
+                for p in (0.01, 0.1, 0.5):
+                    time = np.exp(np.hypot(1.0, spread) * stats.norm.ppf(p))
+                    quantile = found.quantile(p)
+                    tally.add(f"B{100 * p:g}", time, quantile.low, quantile.high)
+            lines += tally.lines()
+    return lines
+
+
+def what_if(repetitions):
+    """Count the difference between weighted rows and a fresh run of the other study."""
+    lines = []
+    old, new = 0.5, (0.4, 0.1)
+    for integrated in (0.05, 0.5):
+        term = lognormal_term(integrated)
+        for rows in (300, 1000):
+            tally = Tally(f"what if, {rows} rows, input of sigma {integrated} integrated", REASONS)
+            rng = np.random.default_rng(rows)
+            for _ in range(repetitions):
+                rest = old * rng.standard_normal(rows)
+                ratio = (rest / old) ** 2 - ((rest - new[1]) / new[0]) ** 2
+                by = smoothed(ratio / 2)
+                weighted = element(rest, integrated * rng.standard_normal(rows), term, by.weights)
+                fresh = element(
+                    new[1] + new[0] * rng.standard_normal(rows),
+                    integrated * rng.standard_normal(rows),
+                    term,
+                )
+                for p in (0.05, 0.5, 0.95):
+                    time = np.exp(new[1] + np.hypot(new[0], integrated) * special.ndtri(p))
+                    one, other = (
+                        Population(rows_of, None).below(time) for rows_of in (weighted, fresh)
+                    )
+                    tally.add(f"P(T < t) = {p:g}", p, one.low, one.high)
+                    name = f"difference from a fresh run, P(T < t) = {p:g}"
+                    tally.estimate(name, 0.0, difference(one, other, 0.0))
+            lines += tally.lines()
+    return lines
+
+
+REASONS = {"P(T < t) = 0.05": CAUTIOUS, "P(T < t) = 0.95": CAUTIOUS}

@@ -1,0 +1,270 @@
+"""Inputs that only scale a life are integrated exactly, and intervals still hold the truth."""
+
+import json
+
+import numpy as np
+import pytest
+from computed import computed, study_of, summarised, with_seed
+from scipy import special, stats
+
+from uq.analysis.comparison import compare
+from uq.analysis.lifetime import survival
+from uq.analysis.overview import summary
+from uq.clusters import Clusters
+from uq.inputs.registry import law_of
+from uq.population.functionals import Population
+from uq.population.means import EXACT, FEW, effective_rows, weighted_share
+from uq.population.scaling import (
+    inputs_of,
+    integrated,
+    population,
+    why_not_integrated,
+)
+from uq.population.sums import LogTerm, law_of_sum
+from uq.rows.elements import independent_rows, replicates_of
+
+EVERYWHERE = (-np.inf, np.inf)
+NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
+
+
+def lognormal(sigma, median=1.0, **more):
+    return {"distribution": "lognormal", "median": median, "sigma": sigma, **more}
+
+
+def scaled_study(uncertain, design=None, samples=400, **tables):
+    return study_of(
+        {
+            "study": {"name": "scaled", "model": "scaled"},
+            "design": {"method": "monte-carlo", "samples": samples, "seed": 3} | (design or {}),
+            "uncertain": uncertain,
+            "analysis": {"outputs": ["life"], "thresholds": {"life": [1.0]}},
+            **tables,
+        },
+        "sample_models:SCALED",
+    )
+
+
+def populated(ds):
+    rows = independent_rows(ds)
+    element = next(population(rows, ["life"]))
+    return Population(element, replicates_of(rows)), why_not_integrated(rows, element)
+
+
+@pytest.mark.parametrize("sigmas", [(0.5, 0.1), (0.3, 0.3), (1.0, 0.01), (0.5, 0.3, 0.2)])
+def test_a_sum_of_normal_logarithms_is_accurate(sigmas):
+    exponents = (-1.0, 1.0, 2.0)
+    terms = [
+        LogTerm(law_of(lognormal(sigma)), EVERYWHERE, exponent)
+        for sigma, exponent in zip(sigmas, exponents, strict=False)
+    ]
+    law = law_of_sum(terms)
+    spread = np.sqrt(sum((s * e) ** 2 for s, e in zip(sigmas, exponents, strict=False)))
+    y = np.linspace(-9, 9, 401) * spread
+    assert np.abs(law.below(y) - special.ndtr(y / spread)).max() < 1e-10
+
+
+def test_a_sum_of_uniform_logarithms_is_a_trapezium():
+    wide, narrow = np.log(10), np.log(3)
+    terms = [
+        LogTerm(
+            law_of({"distribution": "loguniform", "lower": 1.0, "upper": 10.0}), EVERYWHERE, -1
+        ),
+        LogTerm(law_of({"distribution": "loguniform", "lower": 1.0, "upper": 3.0}), EVERYWHERE, 1),
+    ]
+    y = np.linspace(-wide - 0.1, narrow + 0.1, 401)
+
+    def ramp(v):
+        return np.clip(v + wide, 0, None) ** 2 / 2
+
+    truth = (ramp(y) - ramp(y - wide) - ramp(y - narrow) + ramp(y - wide - narrow)) / wide / narrow
+    assert np.abs(law_of_sum(terms).below(y) - truth).max() < 1e-10
+
+
+WHOLE = {"a": lognormal(0.5), "z": NORMAL}
+CASES = {
+    "one": (WHOLE, {}, ("a",)),
+    "signs mixed": (
+        {
+            "a": lognormal(0.5),
+            "b": lognormal(0.2, 2.0),
+            "c": {"distribution": "loguniform", "lower": 1.0, "upper": 9.0},
+            "z": NORMAL,
+        },
+        {},
+        ("a", "b", "c"),
+    ),
+    "truncated": (WHOLE | {"a": lognormal(0.5, truncate=[0.7, 1.2])}, {}, ("a",)),
+    "multiple": (
+        WHOLE
+        | {"a": {"distribution": "uniform", "lower": 0.5, "upper": 2.0, "times": "b"}}
+        | {"b": lognormal(0.01)},
+        {},
+        ("a",),
+    ),
+    "tied": (WHOLE | {"c": {"equals": "a"}}, {}, ("a",)),
+    "correlated": (
+        WHOLE,
+        {"dependence": {"parameters": ["a", "z"], "rank_correlation": [[1.0, 0.7], [0.7, 1.0]]}},
+        ("a",),
+    ),
+    "against": (
+        {"b": lognormal(0.5), "z": NORMAL},
+        {"dependence": {"parameters": ["z", "b"], "rank_correlation": [[1.0, 0.8], [0.8, 1.0]]}},
+        ("b",),
+    ),
+    "listed": (
+        WHOLE | {"c": {"distribution": "discrete-choice", "values": [1.0, 4.0]}},
+        {},
+        ("a",),
+    ),
+    "never": (WHOLE, {"settings": {"never_above": 0.5}}, ("a",)),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_few_rows_say_what_very_many_say(case):
+    """The mean law of the rows is the distribution of many plain rows."""
+    uncertain, tables, wanted = CASES[case]
+    rows, _ = populated(computed(scaled_study(uncertain, samples=2000, **tables)))
+    assert rows.element.law.inputs == wanted
+    many = computed(scaled_study(uncertain, {"seed": 4}, samples=60_000, **tables))["life"].values
+    for p in (0.05, 0.4):
+        time = np.quantile(many, p, method="inverted_cdf")
+        found = rows.below(time)
+        assert abs(found.value - p) < (found.high - found.low) + 4 * np.sqrt(p * (1 - p) / 60_000)
+        plain = Population(rows.element.plain, None).below(time)
+        assert found.high - found.low < 0.9 * (plain.high - plain.low)
+        assert rows.quantile(found.value).value == pytest.approx(time, rel=1e-9)
+
+
+def test_the_law_of_a_row_is_the_conditional_distribution():
+    """Rows with the same z: the life of each is its law, correlation and all."""
+    ranks = [[1.0, 0.6], [0.6, 1.0]]
+    tables = {"dependence": {"parameters": ["z", "a"], "rank_correlation": ranks}}
+    element = populated(computed(scaled_study(WHOLE, samples=20_000, **tables)))[0].element
+    shares = element.law.below(element.values, 1.5)
+    hits = element.plain.below(1.5)
+    for part in np.array_split(np.argsort(shares), 8):
+        p = shares[part].mean()
+        assert abs(hits[part].mean() - p) < 4 * np.sqrt(p * (1 - p) / len(part)) + 1e-9
+
+
+def test_what_cannot_be_integrated_is_not_and_says_why():
+    censored = computed(scaled_study(WHOLE, settings={"horizon": 2.0}))
+    rows, why = populated(censored)
+    assert rows.element.law is None and "censored, which gives bounds only" in why
+    rows, why = populated(computed(scaled_study(WHOLE | {"z": {"equals": "a"}})))
+    assert rows.element.law is None and "z has the same value" in why
+    beside = WHOLE | {"b": lognormal(0.01, times="a")}
+    rows, why = populated(computed(scaled_study(beside)))
+    assert rows.element.law.inputs == ("b",) and "b is a multiple of it" in why
+    assert "integrated" not in summarised(censored)["outputs"]["life"]
+
+
+def test_bounds_condition_the_law():
+    """A law cut off at the parameter's bounds is integrated as it was drawn."""
+    inputs = {"b": {"distribution": "loguniform", "lower": 0.01, "upper": 50.0}, "z": NORMAL}
+    rows, _ = populated(computed(scaled_study(inputs)))
+    assert rows.element.law.term.breaks == pytest.approx(-2 * np.log([50.0, 0.01]), rel=1e-9)
+
+
+def test_everything_that_reads_statistics_follows():
+    ds = computed(scaled_study(WHOLE))
+    found, plain = summarised(ds)["outputs"]["life"], summarised(ds, plain=True)["outputs"]["life"]
+    assert found["integrated"]["inputs"] == ["a"] and found["integrated"]["worth"] > 1.5
+    assert "integrated" not in plain
+    both = [one["thresholds"]["1.0"]["below"] for one in (found, plain)]
+    assert both[0]["high"] - both[0]["low"] < 0.8 * (both[1]["high"] - both[1]["low"])
+    line = summary(ds).loc["life"]
+    assert line["P(<1.0)"] == both[0]["value"] and line["B10"] == found["b_lives"]["B10"]["value"]
+    assert summary(ds, plain=True).loc["life", "P(<1.0)"] == both[1]["value"]
+    curve = survival(ds, "life").sel(time=line["q0.5"], method="ffill")
+    assert float(curve["low"]) < 0.5 < float(curve["high"])
+    other = computed(with_seed(scaled_study(WHOLE), 8))
+    table = compare(ds, other).loc[("life", "P(<1.0)")]
+    assert table["first"] == both[0]["value"] and table["low"] < 0 < table["high"]
+
+
+def test_paired_rows_of_two_studies_are_compared_by_their_laws():
+    ds = computed(scaled_study(WHOLE))
+    wider = computed(scaled_study(WHOLE | {"a": lognormal(0.6)}))
+    table = compare(ds, wider).loc["life"]
+    alone = compare(ds, computed(with_seed(scaled_study(WHOLE | {"a": lognormal(0.6)}), 8)))
+    width = (table["high"] - table["low"]).loc["P(<1.0)"]
+    assert width < 0.5 * np.ptp(alone.loc[("life", "P(<1.0)"), ["low", "high"]])
+    assert json.dumps(summarised(wider))
+
+
+def test_failed_rows_still_give_bounds():
+    ds = computed(scaled_study(WHOLE, settings={"fail_above": 1.5}))
+    below = summarised(ds)["outputs"]["life"]["thresholds"]["1.0"]["below"]
+    assert below["failed_low"] < below["low"] < below["high"] < below["failed_high"]
+
+
+def test_replicates_give_the_interval_of_other_designs():
+    design = {"method": "sobol", "replicates": 8}
+    rows, _ = populated(computed(scaled_study(WHOLE, design, samples=64)))
+    found = rows.below(1.0)
+    assert found.low < 0.5 < found.high and found.high - found.low < 0.02
+    alone, _ = populated(computed(scaled_study(WHOLE, {"method": "sobol"}, samples=64)))
+    assert np.isnan(alone.below(1.0).low)
+
+
+def test_rows_that_differ_in_nothing_else_are_exact():
+    rows, _ = populated(computed(scaled_study({"a": lognormal(0.5)})))
+    found = rows.quantile(0.1)
+    assert found.value == pytest.approx(np.exp(0.5 * stats.norm.ppf(0.1)), rel=1e-9)
+    assert found.reason == EXACT
+
+
+def test_a_mean_that_few_rows_carry_is_not_trusted():
+    """Where no row is likely to end, the interval is that of no hit in so many rows."""
+    numbers = np.full(50, 1e-12)
+    numbers[0] = 1e-6
+    assert effective_rows(numbers) < FEW
+    found = weighted_share(numbers)
+    assert found.low < 1e-300 and found.high == pytest.approx(1 - 0.025 ** (1 / 50), rel=1e-4)
+
+
+def test_samples_of_several_rows_count_once():
+    rng = np.random.default_rng(1)
+    shared = np.repeat(rng.random(60), 20)
+    numbers = np.clip(shared + 0.01 * rng.random(1200), 0, 1)
+    of = Clusters(np.repeat(np.arange(60), 20), 60)
+    wide, narrow = (weighted_share(numbers, part=part) for part in (of, None))
+    assert wide.high - wide.low > 4 * (narrow.high - narrow.low)
+
+
+def test_each_level_is_integrated_by_itself():
+    """What is shared, integrated after what is own, gives what both give at once."""
+    shared = lognormal(0.3, level="shared")
+    ds = computed(scaled_study(WHOLE | {"b": shared}, {"units": 4, "repeats": 1}, samples=50))
+    rows = independent_rows(ds)
+    element = next(population(rows, ["life"]))
+    inputs = inputs_of(rows)
+    own, world = (
+        integrated(rows, element.declared, inputs, {level}).law for level in ("own", "shared")
+    )
+    assert (own.inputs, world.inputs) == (("a",), ("b",))
+    z, weight = np.polynomial.hermite_e.hermegauss(60)
+    found = sum(
+        w * own.given(element.values, 0.7, s - world.drawn)
+        for w, s in zip(weight / weight.sum(), world.term.at(z), strict=True)
+    )
+    assert found == pytest.approx(element.below(0.7), abs=1e-10)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("spread", [0.2, 1.0, 5.0])
+@pytest.mark.parametrize("rows", [30, 300])
+def test_intervals_hold_the_truth(spread, rows):
+    """Each end misses in at most 5 % of samples, whatever share of the scatter is integrated."""
+    rng = np.random.default_rng(2)
+    for p in (1e-4, 0.01, 0.1, 0.5, 0.99):
+        y = np.hypot(1, spread) * stats.norm.ppf(p)
+        misses = np.zeros(2)
+        for _ in range(400):
+            rest = spread * rng.standard_normal(rows)
+            found = weighted_share(special.ndtr(y - rest))
+            misses += found.low > p, found.high < p
+        assert (misses <= 0.05 * 400 + 8).all(), (p, misses)

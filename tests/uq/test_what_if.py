@@ -1,0 +1,211 @@
+"""The same rows under other laws say what a run of the other study would."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from computed import computed, study_of, summarised, with_seed
+from scipy import special
+from typer.testing import CliRunner
+
+from uq.analysis.what_if import answer, read_changes, what_if, what_if_json
+from uq.cli.app import app
+from uq.contract import Output
+from uq.errors import InputError, RunError
+from uq.population.functionals import Population
+from uq.population.smoothing import largest_shape, smoothed
+from uq.rows.element import Element
+
+NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
+
+
+def lognormal(sigma, median=1.0):
+    return {"distribution": "lognormal", "median": median, "sigma": sigma}
+
+
+def study(uncertain=None, samples=1000, design=None, **tables):
+    asked = {"outputs": ["life", "y"], "thresholds": {"life": [0.8], "y": [0.5]}}
+    return study_of(
+        {
+            "study": {"name": "scaled", "model": "scaled"},
+            "design": {"method": "monte-carlo", "samples": samples, "seed": 3} | (design or {}),
+            "uncertain": uncertain or {"a": lognormal(0.5), "z": NORMAL},
+            "analysis": asked,
+            **tables,
+        },
+        "sample_models:SCALED",
+    )
+
+
+@pytest.fixture(scope="module")
+def result():
+    return computed(study())
+
+
+def test_the_law_of_what_only_scales_is_replaced_exactly(result):
+    found = answer(result, {"uncertain.a.sigma": 0.9, "uncertain.a.median": 2.0})
+    life = what_if_json(found)["outputs"]["life"]
+    z = result["z"].values
+    below = special.ndtr((np.log(0.8) - np.log(2.0) - z / 2) / 0.9)
+    assert life["thresholds"]["0.8"]["below"]["value"] == pytest.approx(below.mean(), rel=1e-12)
+    assert life["integrated"]["inputs"] == ["a"]
+    assert "y" not in what_if_json(found)["outputs"]  # the weights of a are not to be trusted
+    assert any(note.startswith("y: Pareto k") for note in found.summary.notes)
+
+
+def test_the_same_laws_change_nothing(result):
+    found = what_if_json(answer(result, {"uncertain.z.sd": 1.0}))
+    plain = summarised(result)
+    assert found["effective_rows"] == 1000 and found["pareto_k"] is None
+    for name in ("life", "y"):
+        one, other = found["outputs"][name], plain["outputs"][name]
+        assert one["thresholds"].keys() == other["thresholds"].keys()
+        assert one["mean"] == pytest.approx(other["mean"])
+        assert one["quantiles"]["0.5"]["value"] == pytest.approx(
+            other["quantiles"]["0.5"]["value"], abs=0.01
+        )
+
+
+CHANGES = {
+    "narrower": ({"uncertain.z.sd": 0.7}, {"a": lognormal(0.5), "z": NORMAL | {"sd": 0.7}}),
+    "shifted": ({"uncertain.z.mean": 0.3}, {"a": lognormal(0.5), "z": NORMAL | {"mean": 0.3}}),
+    "another law": (
+        {"uncertain.z": {"distribution": "uniform", "lower": -1.5, "upper": 1.0}},
+        {"a": lognormal(0.5), "z": {"distribution": "uniform", "lower": -1.5, "upper": 1.0}},
+    ),
+    "both": (
+        {"uncertain.z.sd": 0.8, "uncertain.a.sigma": 0.3},
+        {"a": lognormal(0.3), "z": NORMAL | {"sd": 0.8}},
+    ),
+}
+RANKS = {"parameters": ["a", "z"], "rank_correlation": [[1.0, 0.4], [0.4, 1.0]]}
+
+
+@pytest.mark.parametrize("case", [*CHANGES, "correlation"])
+def test_a_fresh_run_of_the_other_study_agrees(result, case):
+    if case == "correlation":
+        result = computed(study(dependence=RANKS))
+        ranks = [[1.0, 0.6], [0.6, 1.0]]
+        changes = {"dependence.rank_correlation": ranks}
+        fresh = study(samples=20_000, dependence=RANKS | {"rank_correlation": ranks})
+    else:
+        changes, inputs = CHANGES[case]
+        fresh = study(inputs, samples=20_000)
+    found = what_if(result, changes)
+    truth = summarised(computed(with_seed(fresh, 9)))["outputs"]
+    for name in found.index:
+        line, other = found.loc[name], truth[name]
+        for column, value in (
+            ("mean", other["mean"]),
+            ("q0.5", other["quantiles"]["0.5"]["value"]),
+            ("q0.95", other["quantiles"]["0.95"]["value"]),
+        ):
+            half = (line[f"{column}_high"] - line[f"{column}_low"]) / 2
+            assert abs(line[column] - value) < 2 * half, (name, column)
+
+
+def test_lives_that_never_end_stay_so():
+    rows = computed(study(settings={"never_above": 0.3}))
+    for weighted in ({"uncertain.z.mean": 0.1}, {"uncertain.a.sigma": 0.6}):
+        line = what_if(rows, weighted).loc["life"]
+        assert line["q0.95"] == np.inf and line["q0.95_high"] == np.inf
+        assert line["q0.05"] < line["q0.5"] < line["q0.5_high"] < np.inf
+        assert np.isposinf(line["q0.95_low"])
+
+
+def test_quantiles_of_an_angle_keep_its_sign():
+    angle = Output("rad", "angle", "angle")
+    nothing = np.zeros(400, dtype=bool)
+    values = np.linspace(-2.0, 1.0, 400)
+    element = Element("psi", "psi", angle, {}, values, nothing, nothing, None, np.ones(400))
+    found = Population(element, None).quantile(0.1)
+    assert found.low < -1.7 < found.high < -1.4
+
+
+def test_a_multiple_and_listed_values_are_weighted(result):
+    inputs = {
+        "a": lognormal(0.2),
+        "b": {"distribution": "uniform", "lower": 0.5, "upper": 2.0, "times": "a"},
+        "z": {"distribution": "discrete-choice", "values": [0.0, 1.0]},
+    }
+    rows = computed(study(inputs, samples=2000))
+    found = what_if(rows, {"uncertain.z.weights": [3.0, 1.0]}).loc["y"]
+    share = rows["z"].values.mean()
+    assert found["mean"] == pytest.approx(share / (share + 3 * (1 - share)))
+    factor = rows["b"].values / rows["a"].values
+    found = answer(rows, {"uncertain.b.upper": 1.0})
+    assert found.effective_rows == pytest.approx((factor < 1).sum(), rel=0.02)
+
+
+def test_other_designs_have_the_intervals_of_their_replicates():
+    design = {"method": "sobol", "replicates": 8}
+    rows = computed(study(samples=64, design=design))
+    found = what_if(rows, {"uncertain.z.sd": 0.8}).loc["y"]
+    assert found["mean_low"] < 0 < found["mean_high"]
+    assert found["mean_high"] - found["mean_low"] < 0.1
+
+
+def test_a_refusal_names_the_rows_to_add(result):
+    with pytest.raises(RunError, match="Pareto k = .* run it as a study of its own"):
+        what_if(result, {"uncertain.z.mean": 4.0})
+    with pytest.raises(RunError, match=r"Pareto k = 0\.\d+ is above 0\.44: add \d+ samples"):
+        what_if(computed(study(samples=60)), {"uncertain.z.sd": 1.05})
+    assert largest_shape(100) == 0.5 and largest_shape(10**6) == 0.7
+
+
+def test_where_no_row_can_be_is_refused(result):
+    bounded = computed(study({"z": {"distribution": "uniform", "lower": 0.0, "upper": 1.0}}))
+    with pytest.raises(InputError, match=r"uncertain.z: has 0\.3.* no row is there"):
+        what_if(bounded, {"uncertain.z.upper": 1.5})
+    with pytest.raises(InputError, match="'x' is not uncertain in this study"):
+        what_if(result, {"uncertain.x.sd": 1.0})
+    with pytest.raises(InputError, match=r"\[uncertain.z\] sdd = 1.0: no such argument"):
+        what_if(result, {"uncertain.z.sdd": 1.0})
+    with pytest.raises(InputError, match="'fixed.c' cannot be changed"):
+        what_if(result, {"fixed.c": 1.0})
+    with pytest.raises(InputError, match="times and level of 'a' cannot be changed"):
+        what_if(result, {"uncertain.a.times": "z"})
+    with pytest.raises(InputError, match="must be uncertain.NAME.KEY=VALUE"):
+        read_changes(["uncertain.z.sd"])
+
+
+def test_smoothed_weights_follow_the_published_algorithm():
+    """Numbers by arviz-stats 0.8."""
+    found = smoothed(np.log(np.arange(1, 101) / 100.0) * -1.5)
+    assert found.k == pytest.approx(0.92003811)
+    expected = [34.5552566, 12.21125704, 7.41715988]
+    assert found.weights[:3] == pytest.approx(expected)
+    assert found.weights.mean() == pytest.approx(1.0)
+    assert found.refusal.startswith("Pareto k")
+
+
+def test_on_the_command_line(result, tmp_path):
+    path = tmp_path / "rows.nc"
+    result.to_netcdf(path)
+    run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8"])
+    assert run.exit_code == 0 and "a integrated exactly" in run.output
+    assert re.search(r"worth\s+\d+\s+of\s+them,\s+Pareto\s+k = ", run.output)
+    run = CliRunner().invoke(app, ["what-if", str(path), "--set", "uncertain.z.sd=0.8", "--json"])
+    found = json.loads(run.output)
+    assert found["effective_rows"] < 1000 and set(found["outputs"]) == {"life", "y"}
+
+
+@pytest.mark.slow
+def test_the_interval_of_the_difference_holds_zero():
+    held, rows = [], {}
+    before, after = study(samples=300), study(CHANGES["both"][1], samples=300)
+    for seed in range(200):
+        one = what_if(computed(with_seed(before, seed)), CHANGES["both"][0])
+        other = summarised(computed(with_seed(after, 1000 + seed)))["outputs"]
+        for name, key in (("life", "0.8"), ("y", "0.5")):
+            fresh = other[name]["thresholds"][key]["below"]
+            line = one.loc[name]
+            ends = line[f"P(<{key})_low"], line[f"P(<{key})_high"]
+            half = [(b - a) / 2 for a, b in (ends, (fresh["low"], fresh["high"]))]
+            apart = line[f"P(<{key})"] - fresh["value"]
+            rows.setdefault(name, []).append(abs(apart) <= np.hypot(*half))
+    for name, one in rows.items():
+        held.append(np.mean(one))
+        print(f"what if, {name}: {np.mean(one):.1%}")
+    assert all(0.90 <= one <= 0.99 for one in held)

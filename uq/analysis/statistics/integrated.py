@@ -1,0 +1,51 @@
+"""What is integrated exactly of the lives of an output, and what that is worth."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import isfinite, nan
+
+from uq.analysis.life_quantiles import B_LIVES
+from uq.analysis.statistics.quantiles import LIFE
+from uq.analysis.statistics.statistic import FACT, Context, Reader, Statistic
+from uq.estimate import Estimate
+from uq.json_form import number
+from uq.population.functionals import Population
+from uq.population.scaling import why_not_integrated
+from uq.rows.elements import Element
+
+_AT = "B10"
+_KIND = replace(
+    FACT,
+    shown=lambda worth: f"{worth:.2g} times",
+    listing=LIFE.listing,
+    readers=FACT.readers | Reader.REPORT,
+)
+
+
+def integrated(element: Element, context: Context) -> Iterator[Statistic]:
+    """Yield how many times the rows the exact integration is worth: a ratio of variances."""
+    if not element.declared.scales:
+        return
+    why = why_not_integrated(context.rows, element)
+    law = element.law
+    if law is None:
+        if why:
+            yield Statistic(("integrated",), "", Estimate(), kind=_KIND, column="", notes=(why,))
+        return
+    names = " and ".join(name.replace("_", " ") for name in law.inputs)
+    words, worth = f"{names} integrated exactly", nan
+    if element.weights is None:
+        of = Population(element, context.replicate)
+        worth = of.times_the_rows(of.middle(B_LIVES[_AT]))
+    if isfinite(worth):
+        words += f", worth {worth:.2g} times the rows at {_AT}"
+    yield Statistic(
+        ("integrated",),
+        "worth of the rows",
+        Estimate(worth),
+        kind=_KIND,
+        heading=f"worth of the rows at {_AT}",
+        more=f"{names} integrated exactly",
+        notes=tuple(filter(None, (words, why))),
+        facts={"integrated": {"inputs": list(law.inputs), "worth": number(worth)}},
+    )

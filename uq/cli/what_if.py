@@ -1,0 +1,22 @@
+"""The output of ``uq what-if``."""
+
+from pathlib import Path
+
+from uq.analysis.what_if import answer, read_changes, what_if_json
+from uq.cli.printing import note, print_json
+from uq.cli.tables import show_summary
+from uq.rows.results import open_result
+
+
+def what_if(result: Path, changes: list[str], json: bool) -> None:
+    """Print the summary of a result under other laws."""
+    ds = open_result(result)
+    found = answer(ds, read_changes(changes))
+    if json:
+        print_json(what_if_json(found))
+        return
+    show_summary(ds, found.summary)
+    note(
+        f"What if: {'; '.join(changes)}. The same rows, weighted: worth"
+        f" {found.effective_rows:.0f} of them, Pareto k = {found.pareto_k:.2f}."
+    )

@@ -1,0 +1,243 @@
+"""Probabilities and quantiles of a population: rows with weights, each the law of a life."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import exp, isfinite, isnan, log, nan
+
+import numpy as np
+
+from uq.contract import Floats, Mask
+from uq.estimate import Estimate
+from uq.intervals import ROUNDING, Replicates, is_constant, replicates_of_some
+from uq.population.means import pulls, rests_on_few, trusted, weighted_share
+from uq.rows.element import Element
+
+_TOLERANCE = 1e-12
+_FARTHEST = 60  # steps of growing length from a quantile to the end of its interval
+_SHOW_VARIANCE = 30  # independent parts, at least
+_LATEST = 1e300
+_FEW = "too few rows for this end of the interval"
+
+
+@dataclass(frozen=True)
+class Population:
+    """The rows of an element that take part in its statistics.
+
+    Attributes
+    ----------
+    element : Element
+    part : ndarray of int, shape (n,), or None
+        The independent part of each row.
+    """
+
+    element: Element
+    part: Replicates
+
+    def below(self, threshold: float) -> Estimate:
+        """Estimate P(Y < threshold), undefined rows on neither side."""
+        return self._share(self.element.below(threshold), ~self.element.failed)
+
+    def above(self, threshold: float) -> Estimate:
+        """Estimate P(Y > threshold), undefined rows on neither side."""
+        return self._share(self.element.above(threshold), ~self.element.failed)
+
+    def outliving(self, time: float) -> Estimate:
+        """Estimate P(T > time) among the rows that have a life."""
+        return self._share(self.element.above(time), self.element.present)
+
+    def quantile(self, probability: float) -> Estimate:
+        """Estimate a quantile.
+
+        Its interval holds all values at which the interval of P(Y < y) holds the probability.
+        """
+        if not self.element.present.any():
+            return Estimate()
+        search = self._along_time if self.element.law is not None else self._along_values
+        found = search(probability)
+        if not isfinite(found.value):
+            return found
+        return self._trusted(found, self._below(found.value), self.element.present)
+
+    def times_the_rows(self, threshold: float) -> float:
+        """Return the variance of P(Y < threshold) from lives as computed over that of this one.
+
+        NaN where it is exact, or where too few independent parts show it.
+        """
+        kept = ~self.element.failed
+        part = replicates_of_some(self.part, kept)
+        worth = np.ones(int(kept.sum()))
+        own, plain = (
+            pulls(one.below(threshold)[kept], worth, part)
+            for one in (self.element, self.element.plain)
+        )
+        if len(own) < _SHOW_VARIANCE or is_constant(own):
+            return nan
+        return float(plain.var() / own.var())
+
+    def _share(self, numbers: Floats, kept: Mask) -> Estimate:
+        """Estimate a probability, or say why the weights do not allow it."""
+        return self._trusted(weighted_share(numbers[kept], *self._of(kept)), numbers, kept)
+
+    def _of(self, kept: Mask) -> tuple[Floats | None, Replicates]:
+        """Return weight and part of some rows."""
+        weights = self.element.weights
+        return None if weights is None else weights[kept], replicates_of_some(self.part, kept)
+
+    def _trusted(self, found: Estimate, numbers: Floats, kept: Mask) -> Estimate:
+        """Return an estimate, or why the weights of the rows behind it do not allow one."""
+        weights = self.element.weights
+        if weights is None:
+            return found
+        rarer = numbers if np.average(numbers[kept], weights=weights[kept]) <= 0.5 else 1 - numbers
+        part = replicates_of_some(self.part, kept)
+        return trusted(found, rarer[kept], weights[kept], part)
+
+    def _near(self, value: float) -> Callable[[float], Estimate]:
+        """Return a function that estimates P(Y < y) among the rows that have a value.
+
+        It is for all y as cautious as it must be at a quantile: else ends would only be given
+        where rows happen to agree.
+        """
+        kept = self.element.present
+        weights, part = self._of(kept)
+        few = rests_on_few(self._below(value)[kept], weights, part)
+
+        def share(y: float) -> Estimate:
+            return weighted_share(self._below(y)[kept], weights, part, few)
+
+        return share
+
+    def _below(self, value: float) -> Floats:
+        """Return the probability that each row lies below a value: of an angle, not its size."""
+        element = self.element
+        if element.law is not None:
+            return element.below(value)
+        with np.errstate(invalid="ignore"):
+            return ((element.values < value) & ~element.censored).astype(float)
+
+    def _average(self, value: float) -> float:
+        kept = self.element.present
+        return float(np.average(self._below(value)[kept], weights=self._of(kept)[0]))
+
+    def middle(self, probability: float) -> float:
+        """Return the estimate of a quantile without its interval."""
+        if not self.element.present.any():
+            return nan
+        if self.element.law is not None:
+            return self._middle(probability)
+        return self._along_values(probability).value
+
+    def _middle(self, probability: float) -> float:
+        def reached(at: float) -> float:
+            return self._average(exp(at)) - probability
+
+        if (place := self._typical) is None:
+            return np.inf
+        start, unit = place
+        side = 1.0 if reached(start) < 0 else -1.0
+        there = _first(start, side * unit, lambda at: (reached(at) >= 0) == (side > 0))
+        if there is None:
+            return np.inf if side > 0 else nan
+        return exp(_root(reached, there))
+
+    @property
+    def _never(self) -> float:
+        """The time that is not reached: infinite where some lives never end, else unknown."""
+        return np.inf if self.element.never.any() else nan
+
+    @property
+    def _typical(self) -> tuple[float, float] | None:
+        """Return the logarithm of a typical life, and the scatter of logarithms."""
+        lives = self.element.values[self.element.present]
+        lives = lives[(lives > 0) & (lives < np.inf)]
+        if not len(lives):
+            return None
+        return log(np.median(lives)), max(float(np.log(lives).std()), 0.01)
+
+    def _along_time(self, probability: float) -> Estimate:
+        """Return a quantile of lives with laws, by root finding in the logarithm of time."""
+        value = self._middle(probability)
+        if isnan(value) or (place := self._typical) is None:
+            return Estimate(value)
+        share = self._near(min(value, _LATEST))
+        middle = share(min(value, _LATEST))
+        if isnan(middle.low):
+            return Estimate(value, reason=middle.reason)
+
+        def end(start: float, step: float, name: str) -> float:
+            def excess(x: float) -> float:
+                return float(getattr(share(exp(x)), name)) - probability
+
+            below = excess(start) < 0
+            if below != (step > 0):
+                return nan
+            there = _first(start, step, lambda x: (excess(x) >= 0) == below)
+            if there is None:
+                return self._never if below else nan
+            return exp(_root(excess, there))
+
+        if value == np.inf:
+            start, unit = place
+            below = share(exp(start)).high < probability
+            return Estimate(value, end(start, unit if below else -unit, "high"), value)
+        low, high = (
+            end(log(value), side * place[1] / 30, name)
+            for side, name in ((-1.0, "high"), (1.0, "low"))
+        )
+        return Estimate(value, low, high, _FEW if isnan(low) or isnan(high) else "")
+
+    def _along_values(self, probability: float) -> Estimate:
+        """Return a quantile of known values, which is one of them."""
+        values = np.unique(self.element.at_most)
+        values = values[np.isfinite(values)]
+        if not len(values):
+            return Estimate(self._never)
+        after = np.append(values[1:], np.inf)  # P(Y <= value) is P(Y < y) up to the next value
+
+        def least(share: Callable[[float], Estimate], name: str) -> float:
+            def reached(place: int) -> bool:
+                return getattr(share(float(after[place])), name) >= probability - ROUNDING
+
+            place = _least(len(values), reached)
+            return self._never if place is None else float(values[place])
+
+        value = least(lambda y: Estimate(self._average(y)), "value")
+        cut = self.element.values[self.element.censored]
+        if len(cut) and value >= cut.min():
+            return Estimate(reason="rows were censored before that time")
+        beside = float(after[np.searchsorted(values, value)]) if isfinite(value) else np.inf
+        share = self._near(beside)
+        return Estimate(value, least(share, "high"), least(share, "low"))
+
+
+def _root(of: Callable[[float], float], ends: tuple[float, float]) -> float:
+    from scipy.optimize import brentq  # which takes longer to import than most summaries
+
+    return float(brentq(of, min(ends), max(ends), xtol=_TOLERANCE))
+
+
+def _first(
+    start: float, step: float, reached: Callable[[float], bool]
+) -> tuple[float, float] | None:
+    """Return the ends of the first growing step in which something is reached."""
+    before = start
+    for _ in range(_FARTHEST):
+        at = before + step
+        if not -700 < at < 700:
+            return None
+        if reached(at):
+            return before, at
+        before, step = at, 1.3 * step
+    return None
+
+
+def _least(count: int, reached: Callable[[int], bool]) -> int | None:
+    """Return the least place at which something is reached, from then on."""
+    low, high = 0, count
+    while low < high:
+        middle = (low + high) // 2
+        if reached(middle):
+            high = middle
+        else:
+            low = middle + 1
+    return low if low < count else None

@@ -1,0 +1,129 @@
+"""Weighted means of numbers between 0 and 1, with intervals.
+
+Rows are independent, or belong to independent parts: the replicates of a design, or samples of
+several rows (`uq.intervals`).
+"""
+
+import numpy as np
+from scipy import special
+
+from uq.contract import Floats
+from uq.estimate import Estimate
+from uq.intervals import (
+    Replicates,
+    binomial_interval,
+    is_constant,
+    scatter_interval,
+    upper_probability,
+)
+from uq.population.smoothing import effective_rows, per_sample, refusal, tail_shape
+from uq.quantile_functions import student
+
+FEW = 20
+"""With fewer effective rows on the rarer side, the interval is no narrower than that of hits."""
+
+EXACT = "exact: rows differ only in what is integrated"
+
+
+def pulls(numbers: Floats, weights: Floats, part: Replicates) -> Floats:
+    """Return what each independent part says of a weighted mean, shape (parts,).
+
+    The mean of all rows, plus the influence of the part on it.
+    """
+    mean = np.average(numbers, weights=weights)
+    influence = weights * (numbers - mean) / weights.mean()
+    if part is None:
+        return mean + influence
+    _, place = np.unique(np.asarray(part), return_inverse=True)
+    sums = np.bincount(place, weights=influence)
+    return np.asarray(mean + len(sums) * sums / len(numbers))
+
+
+def weighted_share(
+    numbers: Floats,
+    weights: Floats | None = None,
+    part: Replicates = None,
+    cautious: bool | None = None,
+) -> Estimate:
+    """Estimate the mean of numbers between 0 and 1.
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (n,)
+        Probabilities, given what is known of each row.
+    weights : ndarray, shape (n,), optional
+    part : ndarray of int, shape (n,), optional
+        The independent part of each row.
+    cautious : bool, optional
+        Whether few rows carry the mean; by default `rests_on_few`.
+
+    Returns
+    -------
+    Estimate
+        With Student's interval of the logit from the parts' influences. The end on the side of the
+        farther outlier is moved by what two more such parts would add, since samples without them
+        scatter too little. Where fewer than 20 effective rows carry the mean, or its
+        complement, it is no narrower than the interval of a share of hits: the rows that
+        matter may be missing.
+    """
+    worth = np.ones(len(numbers)) if weights is None else weights
+    if not worth.sum() > 0:
+        return Estimate()
+    mean = float(np.clip(np.average(numbers, weights=worth), 0.0, 1.0))
+    found = pulls(numbers, worth, part)
+    parts = len(found)
+    if parts < 2:
+        return Estimate(mean)
+    if is_constant(numbers) and 0 < mean < 1:
+        return Estimate(mean, reason=EXACT)
+    low = high = mean
+    if 0 < mean < 1:
+        error = found.std(ddof=1) / parts**0.5
+        half = student(upper_probability(), parts - 1) * error / (mean * (1 - mean))
+        low, high = special.expit(special.logit(mean) + half * np.array([-1.0, 1.0])).tolist()
+        outlier = 2 * ((found.max() - mean) - (mean - found.min())) / parts
+        low, high = max(low + min(outlier, 0.0), 0.0), min(high + max(outlier, 0.0), 1.0)
+    if cautious or (cautious is None and rests_on_few(numbers, weights, part)):
+        of_hits = binomial_interval(mean, effective_rows(per_sample(worth, part)))
+        low, high = min(low, of_hits[0]), max(high, of_hits[1])
+    return Estimate(mean, float(low), float(high))
+
+
+def rests_on_few(numbers: Floats, weights: Floats | None, part: Replicates) -> bool:
+    """Whether fewer than 20 effective rows carry a mean, or its complement."""
+    worth = np.ones(len(numbers)) if weights is None else weights
+    rarer = numbers if np.average(numbers, weights=worth) <= 0.5 else 1 - numbers
+    return effective_rows(per_sample(worth * rarer, part)) < FEW
+
+
+def weighted_moments(
+    values: Floats, weights: Floats, part: Replicates = None
+) -> tuple[Estimate, Estimate]:
+    """Estimate mean and standard deviation from rows with weights.
+
+    Parameters
+    ----------
+    values, weights : ndarray, shape (n,)
+    part : ndarray of int, shape (n,), optional
+
+    Returns
+    -------
+    mean, sd : Estimate
+        With Student's intervals from the parts' influences, that of the standard deviation by its
+        logarithm; without, and with the reason, where the Pareto k of weight times value, or times
+        its square, is too large.
+    """
+    mean = float(np.average(values, weights=weights))
+    squares = (values - mean) ** 2
+    variance = float(np.average(squares, weights=weights))
+    found = Estimate(mean, *scatter_interval(mean, pulls(values, weights, part)))
+    ends = np.asarray(scatter_interval(0.0, pulls(squares, weights, part) / max(variance, 1e-300)))
+    spread = Estimate(variance**0.5, *(variance**0.5 * np.exp(ends / 2)).tolist())
+    return trusted(found, values, weights, part), trusted(spread, squares, weights, part)
+
+
+def trusted(found: Estimate, numbers: Floats, weights: Floats, part: Replicates) -> Estimate:
+    """Return an estimate, or why weights times numbers do not allow one."""
+    of_samples = per_sample(np.abs(weights * numbers), part)
+    why = refusal(tail_shape(of_samples), len(of_samples))
+    return Estimate(reason=why) if why else found

@@ -1,0 +1,84 @@
+"""The law of a life in each row, of which some inputs are integrated exactly."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import special
+
+from uq.contract import Floats
+from uq.inputs.conditioning import cdf_between, cdf_within, factor_ends
+from uq.inputs.law import Law
+from uq.population.sums import Term
+
+
+@dataclass(frozen=True)
+class IndependentScale:
+    """Inputs that are independent of all others.
+
+    Attributes
+    ----------
+    inputs : tuple of str
+    term : Term
+        The law of the sum of the logarithms, each times its exponent.
+    drawn : ndarray, shape (n,)
+        The sum that each row has drawn.
+    """
+
+    inputs: tuple[str, ...]
+    term: Term
+    drawn: Floats
+
+    def below(self, lives: Floats, time: float) -> Floats:
+        """Return P(T < time) of each row, shape (n,)."""
+        return self.given(lives, time, 0.0)
+
+    def given(self, lives: Floats, time: float, more: float | Floats) -> Floats:
+        """Return the same of lives that are longer by a factor exp(more) than their rows say."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = self.term.below(np.log(time) - np.log(lives) + self.drawn - more)
+        return np.where(np.isnan(lives), 0.0, found)
+
+
+@dataclass(frozen=True)
+class ConditionalScale:
+    """One input whose law depends on the other inputs of the row.
+
+    Attributes
+    ----------
+    inputs : tuple of str
+        Its name.
+    law : Law
+        Of the input, or of its factor.
+    bounds : tuple of float
+    exponent : float
+    drawn : ndarray, shape (n,)
+        The values of the rows.
+    mean : ndarray, shape (n,)
+        Of the input's standard normal variable, given those of the other inputs.
+    deviation : float
+    other : ndarray, shape (n,), optional
+        The input that it is a multiple of; positive.
+    """
+
+    inputs: tuple[str, ...]
+    law: Law
+    bounds: tuple[float, float]
+    exponent: float
+    drawn: Floats
+    mean: Floats
+    deviation: float = 1.0
+    other: Floats | None = None
+
+    def below(self, lives: Floats, time: float) -> Floats:
+        """Return P(T < time) of each row, shape (n,)."""
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            reached = self.drawn * (time / lives) ** (1 / self.exponent)
+            if self.other is None:
+                share = cdf_within(self.law, reached, self.bounds)
+            else:
+                ends = factor_ends(self.other, self.bounds)
+                share = cdf_between(self.law, reached / self.other, *ends)
+            share = special.ndtr((special.ndtri(share) - self.mean) / self.deviation)
+        if self.exponent < 0:
+            share = 1 - share
+        return np.where(np.isnan(lives), 0.0, share)

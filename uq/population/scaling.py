@@ -1,0 +1,280 @@
+"""Which inputs of a result only scale a life, and the laws of its lives given all others."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import inf
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from uq.contract import Floats, Output
+from uq.designs.registry import DESIGNS
+from uq.inputs.conditioning import cdf_within, factor_of, support
+from uq.inputs.dependence import normal_correlations
+from uq.inputs.law import Law
+from uq.population.scale_laws import ConditionalScale, IndependentScale
+from uq.population.sums import LogTerm, law_of_sum
+from uq.rows.element import Element, RowLaw
+from uq.rows.elements import elements_of, study_file_of
+from uq.study.file import DependenceTable, StudyFile, Tied
+from uq.study.input_checks import laws_of
+
+EVERYWHERE = (-inf, inf)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """The uncertain inputs of some rows, and their laws.
+
+    Attributes
+    ----------
+    laws : dict of str to Law
+        Of a parameter that is a multiple of another, that of the factor.
+    tied : dict of str to str
+        Parameter -> the one that it equals.
+    dependence : DependenceTable or None
+    bounds : dict of str to tuple of float
+        Which a parameter shares with those tied to it.
+    values : dict of str to ndarray, shape (n,)
+        Of the rows.
+    """
+
+    laws: Mapping[str, Law]
+    tied: Mapping[str, str]
+    dependence: DependenceTable | None
+    bounds: Mapping[str, tuple[float, float]]
+    values: Mapping[str, Floats]
+
+    @property
+    def correlated(self) -> Sequence[str]:
+        """Parameters with rank correlations."""
+        return () if self.dependence is None else self.dependence.parameters
+
+    def own(self, name: str) -> Floats:
+        """Return what the law of a parameter gives: its values, or those of its factor."""
+        law, values = self.laws[name], self.values[name]
+        return values if law.times is None else factor_of(law, values, self.values[law.times])
+
+    def normal(self, name: str) -> Floats:
+        """Return the standard normal variables behind the values of a parameter."""
+        share = cdf_within(self.laws[name], self.values[name], self.bounds[name])
+        return np.asarray(special.ndtri(np.clip(share, 2.0**-54, 1 - 2.0**-53)))
+
+
+def inputs_of(rows: xr.Dataset, study: StudyFile | None = None, text: str = "") -> Inputs:
+    """Return the inputs of some rows of a result.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+    study : StudyFile, optional
+        Another study of the same inputs, with its `text`.
+    """
+    study, text = (study_file_of(rows), rows.attrs["study"]) if study is None else (study, text)
+    laws = laws_of(text)
+    tied = {name: one.equals for name, one in study.uncertain.items() if isinstance(one, Tied)}
+    admissible = {
+        name: tuple(map(float, rows[name].attrs.get("admissible", EVERYWHERE)))
+        for name in study.uncertain
+    }
+    bounds = {}
+    for name in laws:
+        ends = [admissible[one] for one in (name, *(a for a, b in tied.items() if b == name))]
+        bounds[name] = (max(low for low, _ in ends), min(high for _, high in ends))
+    values = {name: rows[name].values for name in study.uncertain}
+    return Inputs(laws, tied, study.dependence, bounds, values)
+
+
+@dataclass(frozen=True)
+class Integrated:
+    """What is integrated of the lives of an output, and why not more.
+
+    Attributes
+    ----------
+    law : RowLaw or None
+    kept : dict of str to str
+        Input that scales the lives -> why it is not integrated.
+    """
+
+    law: RowLaw | None
+    kept: Mapping[str, str]
+
+
+def integrated(
+    rows: xr.Dataset, output: Output, inputs: Inputs, levels: Collection[str] | None = None
+) -> Integrated:
+    """Return the law of what scales the lives of an output, given all that does not.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    output : Output
+    inputs : Inputs
+        Of these rows.
+    levels : collection of str, optional
+        Only inputs of these levels.
+
+    Returns
+    -------
+    Integrated
+        All inputs that are independent of the others, or the one that depends on others if it
+        alone scatters the lives more.
+    """
+    exponents, kept = _exponents(inputs, output.scales)
+    if levels is not None:
+        level = {name: law.level for name, law in inputs.laws.items()}
+        exponents = {name: e for name, e in exponents.items() if level[name] in levels}
+    if DESIGNS[rows.attrs["design"]].imported:
+        return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
+    for name in exponents:
+        if problem := _problem(name, inputs):
+            kept[name] = problem
+    terms = {
+        name: _term(inputs.laws[name], inputs.bounds[name], exponent)
+        for name, exponent in exponents.items()
+        if name not in kept and inputs.laws[name].times is None
+    }
+    free = {name: one for name, one in terms.items() if name not in inputs.correlated}
+    bound = {
+        name: _conditional(name, exponent, inputs)
+        for name, exponent in exponents.items()
+        if name not in kept and name not in free
+    }
+    reach = {name: law.deviation * _spread_of(law) for name, law in bound.items()}
+    widest = max(bound, key=lambda name: reach[name], default="")
+    if free and np.hypot.reduce([one.spread for one in free.values()]) >= reach.get(widest, 0.0):
+        kept |= dict.fromkeys(bound, "it depends on other inputs, and others scatter lives more")
+        return Integrated(_independent(free, exponents, inputs, kept), kept)
+    kept |= dict.fromkeys({*free, *bound} - {widest}, f"{widest} scatters lives more")
+    return Integrated(bound.get(widest), kept)
+
+
+def _exponents(
+    inputs: Inputs, scales: Mapping[str, float]
+) -> tuple[dict[str, float], dict[str, str]]:
+    """Return the exponent of each input, with those of the parameters that equal it."""
+    found: dict[str, float] = {}
+    for name, exponent in scales.items():
+        if name in inputs.laws or name in inputs.tied:
+            leader = inputs.tied.get(name, name)
+            found[leader] = found.get(leader, 0.0) + exponent
+    kept = {}
+    for leader in found:
+        members = [leader, *(name for name, other in inputs.tied.items() if other == leader)]
+        if other := next((name for name in members if name not in scales), ""):
+            kept[leader] = f"{other} has the same value and does more than scale lives"
+        elif other := next((n for n, law in inputs.laws.items() if law.times == leader), ""):
+            kept[leader] = f"{other} is a multiple of it"
+    return {name: exponent for name, exponent in found.items() if exponent}, kept
+
+
+def _problem(name: str, inputs: Inputs) -> str:
+    """Return why an input cannot be integrated, or ""."""
+    law = inputs.laws[name]
+    if law.discrete:
+        return "its law is one of listed values"
+    if not (inputs.values[name] > 0).all():
+        return "it is not always positive"
+    if law.times is not None:
+        positive = (inputs.values[law.times] > 0).all()
+        return "" if positive else "it is a multiple of an input that is not positive"
+    if not support(law, inputs.bounds[name])[0] > 0:
+        return "it is not always positive"
+    if name in inputs.correlated:
+        listed = [one for one in inputs.correlated if inputs.laws[one].discrete]
+        return f"it depends on listed values of {listed[0]}" if listed else ""
+    return ""
+
+
+@lru_cache(maxsize=64)
+def _term(law: Law, bounds: tuple[float, float], exponent: float) -> LogTerm:
+    return LogTerm(law, bounds, exponent)
+
+
+@lru_cache(maxsize=64)
+def _term_of_sum(terms: tuple[LogTerm, ...]) -> object:
+    try:
+        return law_of_sum(list(terms))
+    except ArithmeticError:
+        return None
+
+
+def _independent(
+    free: Mapping[str, LogTerm],
+    exponents: Mapping[str, float],
+    inputs: Inputs,
+    kept: dict[str, str],
+) -> IndependentScale:
+    law = _term_of_sum(tuple(free.values()))
+    if law is None:
+        widest = max(free, key=lambda name: free[name].spread)
+        kept |= dict.fromkeys({*free} - {widest}, "the law of their product is not smooth enough")
+        free, law = {widest: free[widest]}, free[widest]
+    drawn = sum(exponents[name] * np.log(inputs.values[name]) for name in free)
+    return IndependentScale(tuple(free), law, drawn)  # type: ignore[arg-type]
+
+
+def _conditional(name: str, exponent: float, inputs: Inputs) -> ConditionalScale:
+    """Return the law of an input given those that it depends on."""
+    law, bounds, values = inputs.laws[name], inputs.bounds[name], inputs.values[name]
+    if law.times is not None:
+        nothing = np.zeros(len(values))
+        other = inputs.values[law.times]
+        return ConditionalScale((name,), law, bounds, exponent, values, nothing, 1.0, other)
+    assert inputs.dependence is not None
+    names = list(inputs.correlated)
+    matrix = normal_correlations(inputs.dependence.rank_correlation)
+    own, rest = names.index(name), [i for i, one in enumerate(names) if one != name]
+    slope = np.linalg.solve(matrix[np.ix_(rest, rest)], matrix[rest, own])
+    mean = np.stack([inputs.normal(names[i]) for i in rest], axis=1) @ slope
+    deviation = float(np.sqrt(1 - matrix[own, rest] @ slope))
+    return ConditionalScale((name,), law, bounds, exponent, values, mean, deviation)
+
+
+def _spread_of(scale: ConditionalScale) -> float:
+    """Return the standard deviation of the logarithm of the life."""
+    drawn = scale.drawn if scale.other is None else scale.drawn / scale.other
+    return float(abs(scale.exponent) * np.log(drawn).std())
+
+
+def population(
+    rows: xr.Dataset, outputs: Sequence[str], *, plain: bool = False
+) -> Iterator[Element]:
+    """Yield the elements of some outputs, with the laws of their lives where these are known.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    outputs : sequence of str
+    plain : bool
+        Whether lives are taken as computed.
+
+    Yields
+    ------
+    Element
+    """
+    inputs = None
+    for element in elements_of(rows, outputs):
+        if not plain and element.declared.scales and not element.censored.any():
+            inputs = inputs or inputs_of(rows)
+            found = integrated(rows, element.declared, inputs)
+            element = replace(element, law=found.law)
+        yield element
+
+
+def why_not_integrated(rows: xr.Dataset, element: Element) -> str:
+    """Return a sentence on what scales the lives of an element but is not integrated, or ""."""
+    inputs = inputs_of(rows)
+    exponents, _ = _exponents(inputs, element.declared.scales)
+    if not exponents:
+        return ""
+    if element.censored.any():
+        names = ", ".join(exponents)
+        count = int(element.censored.sum())
+        return f"{names} not integrated: {count} lives are censored, which gives bounds only"
+    kept = integrated(rows, element.declared, inputs).kept
+    return "; ".join(f"{name} not integrated: {why}" for name, why in kept.items())

@@ -1,0 +1,148 @@
+"""Importance weights: smoothed, with a diagnosis of whether they can be trusted."""
+
+from math import ceil, inf
+from typing import NamedTuple
+
+import numpy as np
+
+from uq.clusters import Clusters
+from uq.contract import Floats
+from uq.intervals import Replicates, is_constant
+from uq.tails import generalised_pareto, shrunk
+
+_FEWEST = 5  # values in a tail
+_HOPELESS = 0.7
+_NEGLIGIBLE = 1e-3
+
+
+def effective_rows(numbers: Floats) -> float:
+    """Return Kish's number of rows of equal weight that are worth as much."""
+    largest = numbers.max(initial=0.0)
+    relative = numbers / largest if largest > 0 else numbers
+    return float(relative.sum() ** 2 / (relative**2).sum()) if largest > 0 else 0.0
+
+
+class Smoothed(NamedTuple):
+    """Weights of rows.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n,)
+        Of mean 1.
+    k : float
+        Shape of the generalised Pareto law of the largest; -inf where all weights are equal.
+    rows : int
+        Number of independent rows, or of samples of several rows.
+    effective : float
+        Kish's number of equal ones that are worth as much.
+    """
+
+    weights: Floats
+    k: float
+    rows: int
+    effective: float
+
+    @property
+    def refusal(self) -> str:
+        """Why they cannot be trusted, or ""."""
+        return refusal(self.k, self.rows)
+
+
+def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
+    """Return Pareto-smoothed weights.
+
+    Parameters
+    ----------
+    log_weights : ndarray, shape (n,)
+        Not all -inf.
+    part : ndarray of int, shape (n,), optional
+        The independent part of each row (`uq.intervals`).
+
+    Returns
+    -------
+    Smoothed
+
+    References
+    ----------
+    A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance sampling", J.
+    Mach. Learn. Res. 25, 72 (2024).
+    """
+    raw = np.exp(log_weights - log_weights.max())
+    of_samples = per_sample(raw, part)
+    k = tail_shape(of_samples)
+    weights = raw
+    if np.isfinite(k):
+        weights = _with_smooth_tail(raw)
+    return Smoothed(
+        weights / weights.mean(), k, len(of_samples), effective_rows(per_sample(weights, part))
+    )
+
+
+def tail_shape(numbers: Floats) -> float:
+    """Return the shape of the law of the largest of some numbers, not negative.
+
+    Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
+    where all others are equal, infinite where there are too few.
+    """
+    ascending = np.sort(numbers)
+    counted = ascending[ascending > _NEGLIGIBLE * ascending[-1]]
+    if len(counted) == 0 or (len(counted) == len(ascending) and is_constant(counted)):
+        return -inf
+    count = _tail_size(len(numbers))
+    if len(counted) < _FEWEST:
+        return inf
+    excess = counted
+    if len(counted) > count and counted[-count] > counted[-count - 1]:
+        excess = counted[-count:] - counted[-count - 1]
+    if np.ptp(excess) == 0:
+        return -inf
+    return shrunk(generalised_pareto(excess)[0], len(excess))
+
+
+def largest_shape(rows: int) -> float:
+    """Return the largest shape with which so many rows can be trusted."""
+    return min(_HOPELESS, 1 - 1 / np.log10(rows)) if rows > 10 else -inf
+
+
+def refusal(k: float, rows: int) -> str:
+    """Return why weights with this shape cannot be trusted, or ""."""
+    most = largest_shape(rows)
+    if k <= most or k == -inf:
+        return ""
+    if k < _HOPELESS:
+        more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
+        return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
+    if k == inf:
+        return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"
+    return (
+        f"Pareto k = {k:.2f}: the rows hardly visit what the other laws would; no moderate number"
+        " of rows helps, so run it as a study of its own"
+    )
+
+
+def per_sample(numbers: Floats, part: Replicates) -> Floats:
+    """Return the sum of each sample of several rows, else the numbers themselves."""
+    if not isinstance(part, Clusters):
+        return numbers
+    _, place = np.unique(np.asarray(part), return_inverse=True)
+    return np.bincount(place, weights=numbers).astype(float)
+
+
+def _tail_size(rows: int) -> int:
+    return ceil(min(rows / 5, 3 * rows**0.5))
+
+
+def _with_smooth_tail(raw: Floats) -> Floats:
+    """Replace the largest weights by quantiles of the generalised Pareto law fitted to them."""
+    count = _tail_size(len(raw))
+    order = np.argsort(raw, kind="stable")
+    tail, cut = order[-count:], raw[order[-count - 1]]
+    excess = raw[tail] - cut
+    if not excess[0] > 0:
+        return raw
+    shape, scale = generalised_pareto(excess)
+    k = shrunk(shape, count)
+    p = (np.arange(count) + 0.5) / count
+    weights = raw.copy()
+    weights[tail] = np.minimum(cut + scale * np.expm1(-k * np.log1p(-p)) / k, raw.max())
+    return weights

@@ -1,0 +1,163 @@
+"""The law of a sum of independent terms, each a multiple of the logarithm of an input."""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy import special
+
+from uq.contract import Floats
+from uq.inputs.conditioning import cdf_within, ppf_within
+from uq.inputs.law import Law
+
+ACCURACY = 1e-10
+"""Largest error of the probability of a sum."""
+
+_FARTHEST = 8.2  # standard normal quantile beyond which a probability is negligible
+_NODES = 96
+_DEGREE = 24
+_DEEPEST = 12
+
+
+class Term(Protocol):
+    """A random number.
+
+    Attributes
+    ----------
+    breaks : ndarray, shape (k,)
+        Ascending; its ends, beyond which its probability is negligible, and the places between
+        them where its density is not smooth.
+    """
+
+    breaks: Floats
+
+    def below(self, value: Floats, /) -> Floats:
+        """Return the probability of less than each value."""
+
+
+class LogTerm:
+    """A multiple of the logarithm of an input.
+
+    Parameters
+    ----------
+    law : Law
+        Continuous, of a positive quantity.
+    bounds : tuple of float
+        On which the law is conditioned.
+    exponent : float
+        Not zero.
+    """
+
+    def __init__(self, law: Law, bounds: tuple[float, float], exponent: float):
+        self._law, self._bounds, self._exponent = law, bounds, exponent
+        ends = ppf_within(law, special.ndtr(np.array([-_FARTHEST, _FARTHEST])), bounds)
+        inner = [x for x in law.kinks() if ends[0] < x < ends[1]]
+        self.breaks = np.sort(exponent * np.log([ends[0], *inner, ends[1]]))
+
+    def below(self, value: Floats) -> Floats:
+        """Return the probability of less than each value."""
+        with np.errstate(over="ignore", under="ignore"):
+            share = cdf_within(self._law, np.exp(value / self._exponent), self._bounds)
+        return share if self._exponent > 0 else 1 - share
+
+    def at(self, z: Floats) -> Floats:
+        """Return the quantiles at the probabilities of standard normal quantiles."""
+        u = special.ndtr(np.sign(self._exponent) * z)
+        u = np.clip(u, 2.0**-54, 1 - 2.0**-53)
+        return self._exponent * np.log(ppf_within(self._law, u.ravel(), self._bounds)).reshape(
+            z.shape
+        )
+
+    @property
+    def spread(self) -> float:
+        """Its standard deviation."""
+        z, weight = np.polynomial.hermite_e.hermegauss(_NODES)
+        values = self.at(z)
+        mean = np.average(values, weights=weight)
+        return float(np.sqrt(np.average((values - mean) ** 2, weights=weight)))
+
+
+class Sum:
+    """The sum of a random number and a term independent of it.
+
+    The probability is an integral over the quantiles of the term, by Gauss and Legendre's rule
+    between the places where the integrand is not smooth. It is tabulated as Chebyshev polynomials.
+
+    Parameters
+    ----------
+    first : Term
+    second : LogTerm
+
+    Raises
+    ------
+    ArithmeticError
+        The probabilities are not accurate to `ACCURACY`.
+    """
+
+    def __init__(self, first: Term, second: LogTerm):
+        self._first, self._second = first, second
+        self.breaks = np.unique(np.add.outer(first.breaks, second.breaks))
+        coarse = self._pieces(_NODES)
+        self._ends = np.array([*(low for low, _, _ in coarse), coarse[-1][1]])
+        self._coefficients = np.array([c for _, _, c in coarse])
+        middle = (self._ends[1:] + self._ends[:-1]) / 2
+        if np.abs(self._exactly(middle, 3 * _NODES) - self.below(middle)).max() > ACCURACY:
+            raise ArithmeticError("the probability of the sum is not accurate enough")
+
+    def below(self, value: Floats) -> Floats:
+        """Return the probability of less than each value."""
+        value = np.asarray(value)
+        inside = np.clip(value, self._ends[0], self._ends[-1])
+        piece = np.clip(np.searchsorted(self._ends, inside) - 1, 0, len(self._ends) - 2)
+        low, high = self._ends[piece], self._ends[piece + 1]
+        x = (2 * inside - low - high) / (high - low)
+        coefficients = np.moveaxis(self._coefficients[piece], -1, 0)
+        found = chebyshev.chebval(x, coefficients, tensor=False)
+        found = np.where(value <= self._ends[0], 0.0, found)
+        return np.clip(np.where(value >= self._ends[-1], 1.0, found), 0.0, 1.0)
+
+    def _pieces(self, nodes: int) -> list[tuple[float, float, Floats]]:
+        """Return ends and coefficients of polynomials, halved until each is accurate."""
+        found = []
+        waiting = [(low, high, 0) for low, high in zip(self.breaks, self.breaks[1:], strict=False)]
+        test = np.array([-0.97, -0.31, 0.44, 0.99])
+        while waiting:
+            low, high, depth = waiting.pop(0)
+
+            def value(x: Floats, low: float = low, high: float = high) -> Floats:
+                return self._exactly((low + high) / 2 + (high - low) / 2 * x, nodes)
+
+            c: Floats = chebyshev.chebinterpolate(value, _DEGREE)  # type: ignore[arg-type]
+            wrong = np.abs(chebyshev.chebval(test, c) - value(test)).max() > ACCURACY / 10
+            if wrong and depth < _DEEPEST:
+                middle = (low + high) / 2
+                waiting += [(low, middle, depth + 1), (middle, high, depth + 1)]
+            else:
+                found.append((low, high, c))
+        return sorted(found, key=lambda piece: piece[0])
+
+    def _exactly(self, value: Floats, nodes: int) -> Floats:
+        """Return the probability of less than each value, shape (k,), by quadrature."""
+        kinks = value[:, None] - self._first.breaks
+        own = self._second.breaks
+        places = np.sort(
+            np.hstack([np.clip(kinks, own[0], own[-1]), np.tile(own, (len(value), 1))]), axis=1
+        )
+        z = np.clip(special.ndtri(self._second.below(places)), -_FARTHEST, _FARTHEST)
+        z[:, 0], z[:, -1] = -_FARTHEST, _FARTHEST
+        x, weight = np.polynomial.legendre.leggauss(nodes)
+        half, middle = np.diff(z)[..., None] / 2, ((z[:, 1:] + z[:, :-1]) / 2)[..., None]
+        at = middle + half * x
+        density = np.exp(-(at**2) / 2) / np.sqrt(2 * np.pi) * half * weight
+        inner = self._first.below(value[:, None, None] - self._second.at(at))
+        found: Floats = (density * inner).sum(axis=(1, 2))
+        return found
+
+
+def law_of_sum(terms: list[LogTerm]) -> Term:
+    """Return the law of a sum of independent terms, the widest of which is exact."""
+    widest, *others = sorted(terms, key=lambda term: -term.spread)
+    found: Term = widest
+    for term in others:
+        found = Sum(found, term)
+    return found
