@@ -28,7 +28,7 @@ def simulate(
     """Run a model once and show the result; return the exit code."""
     model = find_model(reference)
     given = dict(_number(text) for text in parameters)
-    chosen = dict(_setting(model, text) for text in settings)
+    chosen = dict(literal(text) for text in settings)
     if output or plot:
         _check_files(model, output, plot)
     with compilation(say_compiling):
@@ -156,17 +156,15 @@ def _number(text: str) -> tuple[str, float]:
         raise InputError(f"--set {text}: {error}") from None
 
 
-def _setting(model: Model, text: str) -> tuple[str, Any]:
-    """Return name and value of a setting: a word it allows, a TOML literal, else a bare word."""
-    name, equals, value = (part.strip() for part in text.partition("="))
+def literal(text: str) -> tuple[str, Any]:
+    """Return name and value of a setting: a TOML literal, else a bare word."""
+    name, equals, value = text.partition("=")
     if not equals:
         raise InputError(f"--setting {text}: write it as NAME=VALUE")
-    if name in model.setting_names and value in model.setting(name).choices:
-        return name, value
     try:
         parsed = read_toml(f"value = {value}")
     except ValueError:
-        return name, value
+        return name.strip(), value.strip()
     except OverflowError as error:
         raise InputError(f"--setting {text}: {error}") from None
-    return name, parsed["value"] if len(parsed) == 1 else value
+    return name.strip(), parsed["value"] if len(parsed) == 1 else value.strip()

@@ -1,53 +1,10 @@
 """Lives of beams whose wear follows known laws: smooth, with a jump, with noise, or ending."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
+from laws import Law, lives
 
-from models.beam.response.response import APERIODIC, SYMMETRIC
-from models.beam.structure.propagation import Record
-from models.beam.wear.lives import PERIODS
-from models.beam.wear.worn_beams import wear_down
-
-
-class Law:
-    """A propagator whose work at each site is a function of the gaps, with or without noise."""
-
-    def __init__(self, work, noise=0.0):
-        self.work, self.noise = work, noise
-        self.random, self.periods = np.random.default_rng(5), 0
-
-    def advance(self, system, state, gaps, growth, periods):
-        record = Record.empty(len(gaps), periods)
-        self.periods += periods
-        for period in range(periods):
-            spread = self.noise * self.random.standard_normal((len(gaps), 1))
-            record.work[:, period] = self.work(gaps) * np.exp(spread)
-            record.strobe[:, period] = 1.0 + spread
-            gaps += growth * record.work[:, period]
-        return record
-
-
-def system(n):
-    beams = SimpleNamespace(turn=np.full(n, 8.0))
-    return SimpleNamespace(free_reach=np.full(n, 1.5), beams=beams, take=lambda rows: system(n))
-
-
-def lives(law, growths, n=1, regime=SYMMETRIC, accuracy=0.1):
-    gaps = np.ones((n, 2))
-    return wear_down(
-        law,
-        system(n),
-        np.zeros((n, 3)),
-        gaps,
-        law.work(gaps),
-        np.full(n, regime, np.int8),
-        np.ones((n, 2)),
-        np.tile(growths, (n, 1)),
-        round(PERIODS / accuracy),
-        accuracy,
-    )
+from models.beam.response.response import APERIODIC
 
 
 def test_smooth_laws_are_integrated_in_few_steps_and_within_the_stated_errors():
