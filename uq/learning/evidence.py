@@ -64,7 +64,7 @@ class Evidence:
 
 def weigh(
     likelihoods: Sequence[Likelihood],
-    rows_of: Callable[[int], NDArray[np.intp]],
+    rows_of: Sequence[NDArray[np.intp]],
     world_of: NDArray[np.intp],
     worlds: int,
     quantiles: Callable[[Floats], Floats] | None,
@@ -75,8 +75,8 @@ def weigh(
     ----------
     likelihoods : sequence of callable
         Of each inspected unit.
-    rows_of : callable
-        ``rows_of(i)``: the rows that stand for inspected unit i.
+    rows_of : sequence of ndarray of int
+        The rows that stand for each inspected unit.
     world_of : ndarray of int, shape (n,)
         The world of each row.
     worlds : int
@@ -92,8 +92,8 @@ def weigh(
         grid = _grid(low, high, quantiles)
         units = np.array(
             [
-                _mean_likelihood(one(rows_of(i), grid.values), world_of[rows_of(i)], worlds)
-                for i, one in enumerate(likelihoods)
+                _mean_likelihood(one(rows, grid.values), world_of[rows], worlds)
+                for one, rows in zip(likelihoods, rows_of, strict=True)
             ]
         ).reshape(len(likelihoods), worlds, len(grid.values))
         log_worlds = units.sum(axis=0) + np.log((high - low) / len(grid.values) / worlds)
@@ -128,12 +128,14 @@ def _where(share: Floats, low: float, high: float) -> tuple[float, float]:
 
 def _mean_likelihood(log_likelihood: Floats, world: NDArray[np.intp], worlds: int) -> Floats:
     """Return the logarithm of the mean over the rows of each world, shape (worlds, g)."""
-    top = np.full((worlds, log_likelihood.shape[1]), -np.inf)
-    np.maximum.at(top, world, log_likelihood)
+    order = np.argsort(world, kind="stable")
+    there, first = np.unique(world[order], return_index=True)
+    sorted_rows = log_likelihood[order]
+    top = np.maximum.reduceat(sorted_rows, first, axis=0)
     level = np.where(np.isfinite(top), top, 0.0)
-    sums = np.zeros_like(top)
-    np.add.at(sums, world, np.exp(log_likelihood - level[world]))
-    count = np.bincount(world, minlength=worlds)[:, None]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.log(sums / count) + level
-    return np.where(count > 0, found, -np.inf)
+    count = np.diff(np.append(first, len(world)))
+    sums = np.add.reduceat(np.exp(sorted_rows - np.repeat(level, count, axis=0)), first, axis=0)
+    found = np.full((worlds, log_likelihood.shape[1]), -np.inf)
+    with np.errstate(divide="ignore"):
+        found[there] = np.log(sums / count[:, None]) + level
+    return found

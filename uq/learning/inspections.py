@@ -227,8 +227,8 @@ def _conflicts(kind: Kind, numbers: Mapping[str, float]) -> Iterator[str]:
             yield "value is missing: what was measured"
         if "sd" not in given and "cv" not in given:
             yield "sd or cv is missing: the error of the measurement"
-        for name in curve:
-            yield f"{name} = {numbers[name]:g}: only for kinds below and above"
+        if curve:
+            yield f"{curve[0]} = {numbers[curve[0]]:g}: only for kinds below and above"
         return
     if curve:
         yield from _curve(curve, numbers)

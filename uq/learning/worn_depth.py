@@ -57,7 +57,7 @@ class WornDepths:
     @property
     def settled(self) -> Mask:
         """Whether each row's wear stops before the last depth, shape (n,)."""
-        return np.isposinf(self.lives).any(axis=1)
+        return np.asarray(np.isposinf(self.lives).any(axis=1))
 
     def without(self, place: int) -> "WornDepths":
         """Return the curves as they would be had this depth not been declared."""

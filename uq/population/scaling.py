@@ -152,6 +152,19 @@ def integrated(
     return Integrated(bound.get(widest), kept)
 
 
+def free_scales(inputs: Inputs, scales: Mapping[str, float]) -> dict[str, float]:
+    """Return the exponent of each input that only scales lives and is independent of all others."""
+    exponents, kept = _exponents(inputs, scales)
+    return {
+        name: exponent
+        for name, exponent in exponents.items()
+        if name not in kept
+        and inputs.laws[name].times is None
+        and name not in inputs.correlated
+        and not _problem(name, inputs)
+    }
+
+
 def _exponents(
     inputs: Inputs, scales: Mapping[str, float]
 ) -> tuple[dict[str, float], dict[str, str]]:
