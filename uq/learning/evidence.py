@@ -15,14 +15,14 @@ from scipy import special
 
 from uq.contract import Floats
 
-Likelihood = Callable[[NDArray[np.intp], Floats], Floats]
-"""``likelihood(rows, scale)``: logarithm of the likelihood of all inspections of a unit, of shape
-(rows, g), were it each of these rows with each of the g values of the integrated input."""
+Likelihood = Callable[[Floats], Floats]
+"""``likelihood(values)``: logarithm of the likelihood of all inspections of a unit, of shape
+(m, g), were it each of its m rows with each of the g values of the integrated input."""
 
 FINEST = 1e-9
 """Share of the posterior that the grid of the integrated input may leave out on each side."""
 
-_NODES = 96
+_NODES = 64
 _PASSES = 6
 
 
@@ -64,8 +64,7 @@ class Evidence:
 
 def weigh(
     likelihoods: Sequence[Likelihood],
-    rows_of: Sequence[NDArray[np.intp]],
-    world_of: NDArray[np.intp],
+    world_of: Sequence[NDArray[np.intp]],
     worlds: int,
     quantiles: Callable[[Floats], Floats] | None,
 ) -> Evidence:
@@ -75,10 +74,8 @@ def weigh(
     ----------
     likelihoods : sequence of callable
         Of each inspected unit.
-    rows_of : sequence of ndarray of int
-        The rows that stand for each inspected unit.
-    world_of : ndarray of int, shape (n,)
-        The world of each row.
+    world_of : sequence of ndarray of int, shape (m,)
+        The world of each row that stands for each inspected unit.
     worlds : int
     quantiles : callable, optional
         Values of the integrated input at given probabilities; None if there is none.
@@ -92,8 +89,8 @@ def weigh(
         grid = _grid(low, high, quantiles)
         units = np.array(
             [
-                _mean_likelihood(one(rows, grid.values), world_of[rows], worlds)
-                for one, rows in zip(likelihoods, rows_of, strict=True)
+                _mean_likelihood(one(grid.values), world, worlds)
+                for one, world in zip(likelihoods, world_of, strict=True)
             ]
         ).reshape(len(likelihoods), worlds, len(grid.values))
         log_worlds = units.sum(axis=0) + np.log((high - low) / len(grid.values) / worlds)

@@ -71,16 +71,10 @@ class Look:
             values * longer if self.declared.is_lifetime else np.broadcast_to(values, longer.shape)
         )
 
-    def log_likelihood(
-        self, one: Inspection, rows: NDArray[np.intp], longer: Floats, model_cv: float
-    ) -> Floats:
-        """Return the logarithm of the likelihood of an inspection, shape (n, g)."""
-        truth = self.truth(one.time, rows, longer)
+    def log_likelihood(self, one: Inspection, truth: Floats, model_cv: float) -> Floats:
+        """Return the logarithm of the likelihood of an inspection, given `truth`."""
         if one.kind in OUTCOMES:
-            assert one.time is not None
             return log_outcome(one.kind, truth, np.full(truth.shape, one.time))
-        if self.declared.is_angle:
-            assert one.value is not None
         return log_likelihood(one, truth, model_cv)
 
     def bounded(self, one: Inspection, rows: NDArray[np.intp], longer: Floats) -> Mask:

@@ -119,20 +119,10 @@ def posterior(
     scale = _scale(rows, [looks[one] for one in inspections])
     world, worlds = _worlds(rows, place, scale)
     blocks = _blocks(place, len(labels), worlds)
-    of_unit = {label: [one for one in inspections if one.unit == label] for label in labels}
-
-    def likelihood(label: str, chosen: Rows, values: Floats) -> Floats:
-        total = np.zeros((len(chosen), len(values)))
-        for one in of_unit[label]:
-            look = looks[one]
-            longer = _longer(scale, look, chosen, values)
-            total += look.log_likelihood(one, chosen, longer, model_cv)
-        return total
-
+    likelihoods = _Likelihoods(inspections, looks, labels, blocks, scale, model_cv)
     found = weigh(
-        [partial(likelihood, label) for label in labels],
-        blocks,
-        world,
+        [partial(likelihoods.of, unit) for unit in range(len(labels))],
+        [world[block] for block in blocks],
         worlds,
         scale.quantiles if scale else None,
     )
@@ -141,11 +131,50 @@ def posterior(
     everyone = _uninspected(found, world, scale)
     units = {
         label: _inspected(
-            found, i, blocks[i], world, likelihood(label, blocks[i], found.grid.values), scale
+            found, unit, blocks[unit], world, likelihoods.of(unit, found.grid.values), scale
         )
-        for i, label in enumerate(labels)
+        for unit, label in enumerate(labels)
     }
     return Posterior(everyone, units, scale, found.log_evidence)
+
+
+class _Likelihoods:
+    """Of all inspections of a unit, were it each of its rows with values of the integrated input.
+
+    What inspections of different units would find in the same rows is computed once.
+    """
+
+    def __init__(
+        self,
+        inspections: Sequence[Inspection],
+        looks: Mapping[Inspection, Look],
+        labels: Sequence[str],
+        blocks: Sequence[Rows],
+        scale: Scale | None,
+        model_cv: float,
+    ):
+        self._of_unit = [[one for one in inspections if one.unit == label] for label in labels]
+        self._looks, self._blocks, self._scale, self._cv = looks, blocks, scale, model_cv
+        self._values = np.empty(0)
+        self._truths: dict[tuple[str, float | None, int], Floats] = {}
+
+    def of(self, unit: int, values: Floats) -> Floats:
+        """Return the logarithm of the likelihood, shape (rows, g)."""
+        rows = self._blocks[unit]
+        total = np.zeros((len(rows), len(values)))
+        for one in self._of_unit[unit]:
+            truth = self._truth(self._looks[one], one.time, rows, values)
+            total += self._looks[one].log_likelihood(one, truth, self._cv)
+        return total
+
+    def _truth(self, look: Look, time: float | None, rows: Rows, values: Floats) -> Floats:
+        if not np.array_equal(values, self._values):
+            self._values, self._truths = values, {}
+        key = look.name, time, int(rows[0])
+        if key not in self._truths:
+            longer = _longer(self._scale, look, rows, values)
+            self._truths[key] = look.truth(time, rows, longer)
+        return self._truths[key]
 
 
 def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
