@@ -15,6 +15,7 @@ from .errors import InputError as InputError
 from .errors import RunError as RunError
 from .exploring.basins import basins as basins
 from .exploring.rare_events import rare_event as rare_event
+from .exploring.row_again import row as row
 from .exploring.simulation import simulate as simulate
 from .indices.dataset import sensitivity as sensitivity
 from .provenance import __version__ as __version__

@@ -13,6 +13,39 @@ def number(value: float | None) -> str:
     return "-" if value is None else f"{value:.5g}"
 
 
+_PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "rad", "Hz"}
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+
+
+def prefixed(unit: str, size: float) -> tuple[float, str]:
+    """Return the power of ten and the unit in which to show a quantity of some size.
+
+    Parameters
+    ----------
+    unit : str
+        CF unit string.
+    size : float
+        Not negative.
+
+    Returns
+    -------
+    factor : float
+        Values are multiplied by it.
+    unit : str
+        With its prefix: 0.00025 m become 250 µm.
+    """
+    if unit.split(" ")[0] not in _PREFIXED or size == 0 or 0.1 <= size < 1e4 or not isfinite(size):
+        return 1.0, unit
+    power = min(max(3 * floor(log10(size) / 3), min(_PREFIXES)), max(_PREFIXES))
+    return 10.0**-power, _PREFIXES[power] + unit
+
+
+def quantity(value: float, unit: str) -> str:
+    """Return a value with its unit, prefixed where that is usual: ``13.75 kN m-1``."""
+    factor, unit = prefixed(unit, abs(value))
+    return number(value * factor) + ("" if unit == "1" else f" {unit}")
+
+
 def duration(seconds: float | None) -> str:
     """Return a time in hours, days or years; "" below one hour.
 

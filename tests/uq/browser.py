@@ -15,6 +15,7 @@ from tornado.websocket import websocket_connect
 
 CHROMIUM = shutil.which("chromium")
 _SECONDS = 60.0
+_KEYS = {"Enter": 13, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
 
 
 class Tab:
@@ -63,6 +64,36 @@ class Tab:
         found = self.do("Runtime.evaluate", expression=expression, returnByValue=True)
         assert "exceptionDetails" not in found, found
         return found["result"].get("value")
+
+    def click(self, x, y):
+        """Click at a place of the page shown."""
+        self.mouse("Moved", x, y)
+        for kind in ("Pressed", "Released"):
+            self.mouse(kind, x, y)
+
+    def drag(self, start, end):
+        """Move the mouse between two places with its button pressed."""
+        self.mouse("Moved", *start)
+        self.mouse("Pressed", *start)
+        self.mouse("Moved", *end, buttons=1)
+        self.mouse("Released", *end)
+
+    def mouse(self, kind, x, y, **more):
+        """Send one event of the mouse."""
+        button = {} if kind == "Moved" else {"button": "left", "clickCount": 1}
+        self.do("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x, y=y, **button, **more)
+
+    def press(self, *keys):
+        """Press keys, one after the other."""
+        for key in keys:
+            name = {"key": key, "code": key, "windowsVirtualKeyCode": _KEYS[key]}
+            for kind in ("rawKeyDown", "keyUp"):
+                self.do("Input.dispatchKeyEvent", type=kind, **name)
+
+    def painted(self):
+        """Wait until the page has drawn what changed."""
+        twice = "new Promise(f => requestAnimationFrame(() => requestAnimationFrame(f)))"
+        self.do("Runtime.evaluate", expression=twice, awaitPromise=True)
 
     def picture(self):
         """Return the whole page as a PNG."""

@@ -25,6 +25,7 @@ def test_everything_promised_is_there():
             "life_fits",
             "load_study",
             "regimes",
+            "row",
             "run",
             "open_result",
             "simulate",

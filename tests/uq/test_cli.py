@@ -16,7 +16,7 @@ def test_help_lists_every_verb(uq):
     ended = uq("--help")
     assert ended.code == 0
     verbs = (
-        "models simulate init check schema plan run status extend rerun verify summary "
+        "models simulate init check schema plan run status extend rerun verify row summary "
         "sensitivity levels convergence compare what-if twin rare-event plot report"
     ).split()
     listed = ended.out.partition("Commands:\n")[2]

@@ -103,7 +103,9 @@ def test_lifetimes(design):
     for ds in repeat("exponential-wear", design, WEAR, analysis=analysis):
         tally_summary(tally, summarised(ds)["outputs"]["life"], LIFE.cdf, LIFE.ppf, LIFE.mean())
         tally_survival(tally, survival(ds, "life"), LIFE.cdf, (5e5, 1e6, 2e6))
-    tally.check()
+    # With the depth integrated the rate alone is left, and scrambled points average a smooth
+    # function of one input almost exactly but for rare scrambles: a heavy tail, as above.
+    tally.check(conservative=("quantile 0.5",) if design[0] == "sobol" else ())
 
 
 @pytest.mark.parametrize("design", DESIGNS)

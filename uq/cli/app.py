@@ -18,6 +18,7 @@ VERBS = (
     results.extend,
     results.rerun,
     results.verify,
+    results.row,
     results.summary,
     results.sensitivity,
     results.levels,

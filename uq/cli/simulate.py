@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,10 +11,13 @@ from uq.cli.progress import say_compiling
 from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.errors import InputError
-from uq.exploring.one_row import Row, run_row
 from uq.literals import read_number, read_toml
 from uq.places import file_behind
+from uq.rows.one_row import Row, run_row
 from uq.study.registry import find_model
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def simulate(
@@ -30,7 +33,7 @@ def simulate(
     given = dict(_number(text) for text in parameters)
     chosen = dict(literal(text) for text in settings)
     if output or plot:
-        _check_files(model, output, plot)
+        check_files(model, output, plot)
     with compilation(say_compiling):
         row = run_row(model, given, chosen)
         if output or plot:
@@ -39,7 +42,8 @@ def simulate(
     return 1 if row.failed else 0
 
 
-def _check_files(model: Model, output: Path | None, plot: Path | None) -> None:
+def check_files(model: Model, output: Path | None, plot: Path | None) -> None:
+    """Refuse files that cannot be written, or that the model has nothing for."""
     from uq.exploring.simulation import holds_trajectory
     from uq.store.files import check_target
 
@@ -51,7 +55,8 @@ def _check_files(model: Model, output: Path | None, plot: Path | None) -> None:
             f"{output}: exists and is not a trajectory of 'uq simulate'; choose another name"
         )
     if model.simulate is None:
-        raise InputError(f"model '{model.name}' gives no trajectory; leave out -o and --plot")
+        given = " and ".join(["-o"] * bool(output) + ["--plot"] * bool(plot))
+        raise InputError(f"model '{model.name}' gives no trajectory; leave out {given}")
 
 
 def _keep(row: Row, output: Path | None, plot: Path | None) -> None:
@@ -63,14 +68,26 @@ def _keep(row: Row, output: Path | None, plot: Path | None) -> None:
     if output:
         write(ds, output)
     if plot:
-        from uq.drawing.figure import DOTS_PER_INCH
-        from uq.plots import history
+        draw(ds, plot)
 
-        try:
-            file_behind(plot).parent.mkdir(parents=True, exist_ok=True)
-            history(ds).savefig(plot, dpi=DOTS_PER_INCH)
-        except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
-            raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None
+
+def draw(ds: "xr.Dataset", plot: Path) -> None:
+    """Draw the time history of a Dataset into a file.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        As from `uq.simulate`.
+    plot : Path
+    """
+    from uq.drawing.figure import DOTS_PER_INCH
+    from uq.plots import history
+
+    try:
+        file_behind(plot).parent.mkdir(parents=True, exist_ok=True)
+        history(ds).savefig(plot, dpi=DOTS_PER_INCH)
+    except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
+        raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None
 
 
 def as_json(row: Row) -> dict[str, Any]:
@@ -122,6 +139,11 @@ def _states(row: Row, name: str) -> Iterator[tuple[str, float, str]]:
 def _show(row: Row) -> None:
     status, meaning = row.ending
     heading(f"{row.model.name}: {status.label}", "" if status is Status.OK else meaning)
+    show_outputs(row)
+
+
+def show_outputs(row: Row) -> None:
+    """Print every output of a row, with its unit and meaning."""
     for name, output in row.model.outputs.items():
         unit = "" if output.unit == "1" else f" [{output.unit}]"
         heading(f"\n{name}{unit}", output.meaning)

@@ -7,6 +7,7 @@ from uq.cli import progress
 from uq.cli.printing import console, duration, grid, heading, print_json
 from uq.compilation import compilation
 from uq.rows import results
+from uq.running.again import other_versions
 from uq.upkeep import verification
 from uq.upkeep.status import RunStatus, run_status
 
@@ -43,7 +44,7 @@ def verify(path: Path, model: str | None) -> int:
     words = {True: "right", False: "WRONG: the file has changed since it was written", None: "none"}
     console.print(f"checksum  {words[holds]}")
     ds = results.open_result(path)
-    others = verification.other_versions(ds, model)
+    others = other_versions(ds, model)
     for name, (made, here) in others.items():
         console.print(f"{name}  {made} made it, {here} is here")
     if not others:

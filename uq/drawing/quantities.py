@@ -11,10 +11,7 @@ from uq.drawing.style import COLOURS
 from uq.drawing.words import as_label, in_words
 from uq.errors import InputError, nearest
 from uq.rows.elements import Floats
-from uq.wording import time_unit
-
-_PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "rad", "Hz"}
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+from uq.wording import prefixed, time_unit
 
 
 class Scale(NamedTuple):
@@ -112,10 +109,7 @@ def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
     time = time_unit(largest)
     if unit == "s" and time.name != "seconds":
         return Scale(1 / time.seconds, time.name)
-    if unit.split(" ")[0] not in _PREFIXED or largest == 0 or 0.1 <= largest < 1e4:
-        return Scale(1.0, unit)
-    power = int(np.clip(3 * np.floor(np.log10(largest) / 3), min(_PREFIXES), max(_PREFIXES)))
-    return Scale(10.0**-power, _PREFIXES[power] + unit)
+    return Scale(*prefixed(unit, largest))
 
 
 def label_axes(

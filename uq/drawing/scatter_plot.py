@@ -48,13 +48,13 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     rows = independent_rows(ds)
     element = named_elements(rows, output)[0]
     inputs = independent_inputs(rows)
-    leading = _leading(inputs, element)[:_MOST_INPUTS]
-    panels = grid(axes, 0.5 + 1.5 * len(leading), len(leading), sharey=True)[:, 0]
+    shown = leading(inputs, element)[:_MOST_INPUTS]
+    panels = grid(axes, 0.5 + 1.5 * len(shown), len(shown), sharey=True)[:, 0]
     finite = np.isfinite(element.values)
     unit, per = display_unit(element.units, element.values)
     wide = is_wide(element.values[finite])
     independent = replicates_of(rows) is None
-    for panel, name in zip(panels, leading, strict=True):
+    for panel, name in zip(panels, shown, strict=True):
         _points(panel, inputs[name], element, per)
         _conditional(panel, inputs[name], element, per, wide, independent)
         _name_input(panel, rows, name)
@@ -110,7 +110,7 @@ def _conditional(
         axes.fill_between(middle, low, np.minimum(high, top), color=COLOURS[1], alpha=0.25, lw=0)
 
 
-def _leading(inputs: dict[str, Floats], element: Element) -> list[str]:
+def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
     """Return the inputs in order of how much the mean rank of the output varies over slices."""
     from scipy.stats import rankdata
 

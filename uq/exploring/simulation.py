@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 
 from uq.contract import Model
-from uq.exploring.one_row import Row, run_row
 from uq.interrupts import in_background
 from uq.rows import results
+from uq.rows.one_row import Row, run_row
 from uq.study.registry import find_model
 
 
@@ -61,7 +61,12 @@ def dataset(row: Row, trajectory: bool = True) -> xr.Dataset:
     ds = results.build_rows(
         row.model, row.settings, row.values, row.columns, row.status, row.failures
     )
-    if not trajectory or row.model.simulate is None:
+    return with_trajectory(ds, row) if trajectory else ds
+
+
+def with_trajectory(ds: xr.Dataset, row: Row) -> xr.Dataset:
+    """Return a Dataset with the time history of a row, if its model gives one."""
+    if row.model.simulate is None:
         return ds
     return ds.assign(trajectory=in_background(lambda: _trajectory(row)))
 

@@ -2,6 +2,7 @@
 
 import re
 import shlex
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from uq.errors import InputError
 from uq.literals import plain
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
+from uq.report.embedded import embedded
 from uq.report.headlines import headlines
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import input_tables
@@ -68,6 +70,12 @@ def page(ds: xr.Dataset, name: str) -> str:
     -------
     str
     """
+    return templates().get_template("page.html").render(_content(ds, name), file=name)
+
+
+@cache
+def templates() -> Any:
+    """Return jinja's environment of the templates beside this file."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
@@ -79,7 +87,7 @@ def page(ds: xr.Dataset, name: str) -> str:
         lstrip_blocks=True,
     )
     environment.filters |= {"breakable": _breakable, "quoted": shlex.quote}
-    return environment.get_template("page.html").render(_content(ds), file=name)
+    return environment
 
 
 def _breakable(text: str) -> Markup:
@@ -87,7 +95,7 @@ def _breakable(text: str) -> Markup:
     return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", str(escape(plain(text)))))
 
 
-def _content(ds: xr.Dataset) -> dict[str, Any]:
+def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
     """Return what the template lays out."""
     findings = Findings(ds)
     summary = findings.summary
@@ -116,6 +124,7 @@ def _content(ds: xr.Dataset) -> dict[str, Any]:
         "lives_drawn": [one for one in drawn if one.of.name in lives],
         "levels": levels_of(findings),
         "methods": methods,
+        "rows_inside": embedded(findings, file),
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
         "text_is_cut": len(ds.attrs["study"]) > _SHOWN_TEXT,
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],

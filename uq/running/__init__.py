@@ -7,6 +7,7 @@ Reading order: `runner` leads from a study to its result. Its `executor` decides
 - On workers: `sent_chunks` sends chunks, and sends them again if a worker is killed; `workers` is
   what a run sees of a `local_cluster` of `dask_worker` processes, or of a `remote_cluster`;
   `dask_task` is their task.
+- `again` computes a row of a result again.
 - Beside them: `options` (what the user chooses and sees), `planning` (what a run will cost),
   `environment` (what makes another process compute as this one).
 """

@@ -12,15 +12,15 @@ import xarray as xr
 
 from uq import store
 from uq.errors import InputError
-from uq.inputs.values import fault_lines, read_settings
 from uq.rows import results
 from uq.rows.workload import workload_of
 from uq.running import runner
+from uq.running.again import changed_settings, study_here
 from uq.running.options import DEFAULTS, RunOptions
 from uq.store import folder_of
 from uq.store.folder import history
-from uq.study.changes import refusal_to_extend, what_changed
-from uq.study.definition import Study, study_from_text
+from uq.study.changes import refusal_to_extend
+from uq.study.definition import Study
 
 
 def study_of(path: Path, model: str | None = None) -> Study:
@@ -44,9 +44,8 @@ def study_of(path: Path, model: str | None = None) -> Study:
         When there is nothing, or the model here differs from the one that computed it.
     """
     identity, text, version, samples = _recorded(path)
-    study = study_from_text(text, f"{path}: its study", model).with_samples(samples)
-    if study.identity != identity:
-        change = what_changed(text, version, study)
+    study, change = study_here(text, identity, version, samples, str(path), model)
+    if change:
         raise InputError(
             f"{path}: was computed with another model ({change}); rerun the study, into another"
             " output or with --fresh"
@@ -147,24 +146,3 @@ def rerun_failed(
     with store.keep(study, path, options.fresh, plain, options.say, options.mixed) as kept:
         workload = workload_of(study)._replace(settings=changed)
         return runner.carry_out(workload, options, kept)
-
-
-def changed_settings(study: Study, settings: Mapping[str, Any]) -> Any:
-    """Return the settings of a study with some changes.
-
-    Raises
-    ------
-    InputError
-        When one is not admissible, or would change shapes or coordinates of the outputs.
-    """
-    changed, wrong = read_settings(study.model, asdict(study.settings) | dict(settings))
-    if wrong:
-        raise InputError(*fault_lines("setting ", settings, wrong))
-    axes, others = (
-        {dim: list(values) for dim, values in study.model.coordinates(each).items()}
-        for each in (changed, study.settings)
-    )
-    if axes != others:
-        names = ", ".join(settings)
-        raise InputError(f"setting {names}: would give these rows other outputs than the rest")
-    return changed

@@ -70,6 +70,30 @@ def verify(result: given.ResultFile, model: given.ModelReference = None) -> int:
     return upkeep.verify(result, model)
 
 
+def row(
+    result: given.ResultFile,
+    number: Annotated[
+        int | None, typer.Argument(min=0, metavar="N", help="Number of the row, from 0.")
+    ] = None,
+    lowest: Annotated[
+        str | None, typer.Option(metavar="OUTPUT", help="The row in which it is lowest.")
+    ] = None,
+    near_quantile: Annotated[
+        tuple[float, str] | None,
+        typer.Option(metavar="P OUTPUT", help="The row closest to this quantile."),
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="F.png", help="Draw its trajectory here.")
+    ] = None,
+    model: given.ModelReference = None,
+    json: given.Json = False,
+) -> int:
+    """Show one row, and compute it again."""
+    from uq.cli import row as single
+
+    return single.row(result, number, lowest, near_quantile, plot, model, json)
+
+
 def summary(
     result: given.ResultFile,
     regime: given.Regime = None,

@@ -1,18 +1,21 @@
 """One row of a model as plain numbers, without a Dataset."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Model, Status
+from uq.contract import Floats, Model, Status
 from uq.errors import InputError
 from uq.inputs.values import fault_lines, parameter_problem, read_settings
 from uq.interrupts import in_background
 from uq.rows.columns import censored_name, failed_rows
 from uq.rows.element import Element, elements_in
-from uq.rows.evaluate import evaluate
+from uq.rows.evaluate import Chunk, evaluate
+
+Evaluate = Callable[[Floats, NDArray[np.uint64]], Chunk]
 
 
 class Row(NamedTuple):
@@ -77,7 +80,31 @@ def run_row(
         raise InputError(*faults)
 
     values = model.nominal | {name: float(value) for name, value in parameters.items()}
-    x = np.array([[values[name] for name in model.parameter_names]])
-    chunk = in_background(lambda: evaluate(model, frozen, x, np.array([seed], dtype=np.uint64)))
+    return computed(model, frozen, values, seed)
+
+
+def computed(
+    model: Model, settings: Any, values: dict[str, float], seed: int, batch: Evaluate | None = None
+) -> Row:
+    """Compute a row.
+
+    Parameters
+    ----------
+    model : Model
+    settings : object
+        An instance of the model's settings.
+    values : dict of str to float
+        Every parameter, in declared order.
+    seed : int
+    batch : callable, optional
+        ``batch(x, seed)`` -> chunk; by default the model is called in this process.
+
+    Returns
+    -------
+    Row
+    """
+    x, seeds = np.array([list(values.values())]), np.array([seed], dtype=np.uint64)
+    batch = batch or partial(evaluate, model, settings)
+    chunk = in_background(lambda: batch(x, seeds))
     failures = {label: text for label, (_, text) in chunk.failures.items()}
-    return Row(model, frozen, values, seed, chunk.columns, chunk.status, failures)
+    return Row(model, settings, values, seed, chunk.columns, chunk.status, failures)

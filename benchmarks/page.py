@@ -1,0 +1,92 @@
+"""Size and times of the report of many rows: ``python -m benchmarks.page``.
+
+100,000 rows of 12 columns, of lives that scatter over decades. In Chromium: from the request to the
+page drawn, a brush from the move of a handle to the page drawn, and the same for a tolerance.
+"""
+
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from uq.report import page
+from uq.rows import results, sampling
+from uq.rows.evaluate import evaluate
+from uq.study.definition import study_from_text
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "uq"))
+
+ROWS = 100_000
+REPEAT = 9
+STUDY = f"""
+[study]
+name = "wear"
+model = "exponential-wear"
+[design]
+method = "monte-carlo"
+samples = {ROWS}
+seed = 2026
+[uncertain]
+rate = {{distribution = "lognormal", median = 2e-9, sigma = 0.5}}
+depth = {{distribution = "normal", mean = 2.5e-4, sd = 2.5e-5}}
+[analysis]
+thresholds = {{life = 86400.0}}
+"""
+MOVE = """(() => {{ const handle = document.querySelectorAll("{0} input[type=range]")[{1}];
+  const began = performance.now();
+  handle.value = {2};
+  handle.dispatchEvent(new Event("input"));
+  return new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(() =>
+    drawn(performance.now() - began)))); }})()"""
+
+
+def result():
+    """Return a result of 2 inputs and 10 outputs."""
+    study = study_from_text(STUDY)
+    rows = sampling.row_block(study, 0, sampling.rows(study))
+    chunk = evaluate(study.model, study.settings, rows.x, rows.seed)
+    ds = results.build(study, rows, chunk.columns, chunk.status, {})
+    rng = np.random.default_rng(0)
+    for i in range(9):
+        ds[f"more{i}"] = ds["life"].copy(data=ds["life"].values * rng.lognormal(size=ROWS))
+    return ds
+
+
+def moved(browser, of, handle, steps):
+    """Return the time from the move of a handle to the page drawn [ms]."""
+    found = browser.do(
+        "Runtime.evaluate",
+        expression=MOVE.format(of, handle, steps),
+        awaitPromise=True,
+        returnByValue=True,
+    )
+    return found["result"]["value"]
+
+
+def main():
+    """Print size and times."""
+    from browser import tab
+
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        path = folder / "page.html"
+        began = time.perf_counter()
+        path.write_text(page(result(), "wear.nc"), encoding="utf-8")
+        print(f"written in {time.perf_counter() - began:.1f} s, {path.stat().st_size / 1e6:.2f} MB")
+        (folder / "browser").mkdir()
+        with tab(folder / "browser") as browser:
+            times = []
+            for _ in range(REPEAT):
+                began = time.perf_counter()
+                browser.open(path)
+                browser.painted()
+                times.append(time.perf_counter() - began)
+            print(f"opened and drawn in {np.median(times):.2f} s (best {min(times):.2f} s)")
+            brushes = [moved(browser, ".explorer", 0, 20 * (i + 1)) for i in range(REPEAT)]
+            print(f"a brush in {np.median(brushes):.0f} ms (best {min(brushes):.0f} ms)")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,224 @@
+"""The rows inside a page, with which its scripts (``live/``) compute."""
+
+import base64
+import json
+import shlex
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from markupsafe import Markup
+
+from uq.analysis.findings import Findings
+from uq.clusters import Clusters
+from uq.drawing.elements_plot import display_unit, occurring_regimes
+from uq.drawing.panel import is_wide
+from uq.drawing.quantities import scale_of
+from uq.drawing.scatter_plot import leading
+from uq.drawing.style import COLOURS
+from uq.drawing.words import element_in_words, in_words, unbroken
+from uq.indices.independent_inputs import independent_inputs
+from uq.intervals import upper_probability
+from uq.literals import plain
+from uq.quantile_functions import student
+from uq.rows.element import Element
+from uq.rows.elements import (
+    analysis_of,
+    are_independent,
+    elements_of,
+    flags,
+    replicates_of,
+    shown_outputs,
+)
+from uq.rows.results import failed
+from uq.study.file import AnalysisTable
+from uq.wording import number
+
+MOST_ROWS = 20_000
+"""A page holds no more rows: a brush over them takes 0.1 s."""
+
+MOST_NUMBERS = 480_000
+"""Nor more numbers: they take 5 MB."""
+
+
+def embedded(findings: Findings, file: str) -> Markup | None:
+    """Return the rows of a result as JSON that can stand inside a page.
+
+    Parameters
+    ----------
+    findings : Findings
+    file : str
+        The name of the result.
+
+    Returns
+    -------
+    Markup or None
+        None if no row follows the laws of the inputs, or no output has numbers.
+    """
+    content = rows_inside(findings, file)
+    if content is None:
+        return None
+    text = json.dumps(content, allow_nan=False).replace("<", "\\u003c")
+    return Markup(text)
+
+
+def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
+    """Return what `embedded` writes."""
+    analysis = analysis_of(findings.ds)
+    outputs = [one for one in shown_outputs(findings.ds, analysis) if one not in findings.absent]
+    whole = findings.rows
+    if not whole.sizes["sample"] or not any(elements_of(whole, outputs)):
+        return None
+    inputs = independent_inputs(whole)
+    rows = part_of(whole, len(inputs) + sum(1 for _ in elements_of(whole, outputs)))
+    elements = list(elements_of(rows, outputs))
+    columns = [_input(rows, name) for name in inputs]
+    columns += [_output(rows, one, analysis) for one in elements]
+    drawn = _drawn(elements, analysis)
+    first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
+    return {
+        "file": shlex.quote(plain(file)),
+        "total": whole.sizes["sample"],
+        "numbers": _encoded(rows["sample"].values, "<i4"),
+        "failed": _encoded(failed(rows), "u1"),
+        "columns": columns,
+        "categories": list(_categories(rows)),
+        "colour": COLOURS[0],
+        "first": [first, len(inputs) + drawn],
+        **_design(rows),
+    }
+
+
+def part_of(rows: xr.Dataset, columns: int) -> xr.Dataset:
+    """Return rows, or if a page cannot hold as many, a random part of them: whole samples.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    columns : int
+        Numbers of each row.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same each time.
+    """
+    count = rows.sizes["sample"]
+    most = min(MOST_ROWS, MOST_NUMBERS // columns)
+    if count <= most:
+        return rows
+    part = replicates_of(rows)
+    sample = np.asarray(part) if isinstance(part, Clusters) else np.arange(count)
+    names, size = np.unique(sample, return_counts=True)
+    order = np.random.default_rng(int(rows.attrs["seed"])).permutation(len(names))
+    chosen = names[order[np.cumsum(size[order]) <= most]]
+    return rows.isel(sample=np.isin(sample, chosen))
+
+
+def _drawn(elements: Sequence[Element], analysis: AnalysisTable) -> int:
+    """Return the place of the element shown first: one that the study asks about, a life first."""
+    return max(
+        range(len(elements)),
+        key=lambda i: (elements[i].output in analysis.thresholds, elements[i].is_lifetime, -i),
+    )
+
+
+def _input(rows: xr.Dataset, name: str) -> dict[str, Any]:
+    variable, values = rows[name], rows[name].values
+    factor, unit = scale_of([variable])
+    return _column(name, in_words(variable), unit, 1 / factor, values) | {
+        "role": "input",
+        "thresholds": [],
+    }
+
+
+def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict[str, Any]:
+    unit, per = display_unit(element.units, element.values)
+    if element.units != "s":
+        scale = scale_of([rows[element.output]])
+        unit, per = scale.unit, 1 / scale.factor
+    column = _column(element.name, element_in_words(rows, element), unit, per, element.values)
+    return column | {
+        "role": "output",
+        "life": element.is_lifetime,
+        "angle": element.is_angle,
+        "neverKnownAtOnce": element.declared.never_known_at_once,
+        "censored": _encoded(element.censored, "u1") if element.censored.any() else None,
+        "thresholds": [
+            {"value": value, "words": _asked(column, element, value)}
+            for value in analysis.thresholds.get(element.output, ())
+        ],
+    }
+
+
+def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
+    """Return the event whose probability is asked for."""
+    at = f"{number(value / column['per'])} {column['unit']}".strip()
+    label = f"|{column['label']}|" if element.is_angle else column["label"]
+    return f"P({label} {'<' if element.is_lifetime else '>'} {at})"
+
+
+def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[str, Any]:
+    return {
+        "name": name,
+        "label": plain(words),
+        "unit": "" if unit == "1" else plain(unbroken(unit)),
+        "per": per,
+        "wide": is_wide(values[np.isfinite(values)]),
+        "values": _encoded(values, "<f8"),
+    }
+
+
+def _categories(rows: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Yield the regimes, and how rows ended."""
+    colours = {name: colour for name, (_, colour) in occurring_regimes(rows).items()}
+    for name, label in (("regime", "Regime"), ("status", "Status")):
+        if name in rows:
+            codes = rows[name].values
+            counts = {code: int((codes == code).sum()) for code, _ in flags(rows[name])}
+            yield {
+                "name": name,
+                "label": label,
+                "codes": _encoded(codes, "i1"),
+                "entries": [
+                    {
+                        "code": code,
+                        "label": plain(words),
+                        "count": counts[code],
+                        "colour": colours.get(words, "gray") if name == "regime" else None,
+                    }
+                    for code, words in flags(rows[name])
+                    if counts[code]
+                ],
+            }
+
+
+def _design(rows: xr.Dataset) -> dict[str, Any]:
+    """Return what intervals rest on, and a sentence that says so."""
+    part = replicates_of(rows)
+    found: dict[str, Any] = {"independent": are_independent(rows), "replicate": None}
+    if part is None:
+        words = (
+            "95 % intervals of shares are Wilson's, or those of Clopper and Pearson where hits or"
+            " misses are fewer than 20; the band is Kolmogorov's."
+        )
+    elif isinstance(part, Clusters):
+        words = "No intervals: the rows of a sample are not independent."
+    elif (count := len(np.unique(part))) < 2:
+        words = (
+            "No intervals: formulas for independent rows do not apply to this design, which has no"
+            " replicates."
+        )
+    else:
+        words = f"95 % intervals of shares rest on the scatter between {count} replicates."
+        students: Sequence[float | None] = [None, None] + [
+            student(upper_probability(), one - 1) for one in range(2, count + 1)
+        ]
+        found |= {"replicate": _encoded(part, "<i4"), "students": students}
+    return found | {"intervals": words}
+
+
+def _encoded(values: Any, kind: str) -> str:
+    return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode()

@@ -1,0 +1,48 @@
+// Curves of the share above each value, as steps.
+
+const WIDE = 520, HIGH = 260, MOST_STEPS = 400;
+
+// `lines` are {curve, name, half}: the share at each place, and half the width of its band or NaN.
+function curvesOf(column, lines, title) {
+  const scale = new Scale(column);
+  const x = value => LEFT + Math.min(Math.max(scale.place(value), 0), 1) * (WIDE - LEFT - EDGE);
+  const y = share => HIGH - BOTTOM - share * (HIGH - BOTTOM - EDGE);
+  const parts = [], times = column.thresholds.map(one => one.value);
+  for (const share of [0, 0.25, 0.5, 0.75, 1]) {
+    parts.push(draw("line", {x1: LEFT, x2: WIDE - EDGE, y1: y(share), y2: y(share), class: "grid"}),
+      draw("text", {x: LEFT - 6, y: y(share) + 4, "text-anchor": "end"}, percent(share).replace(".0", "")));
+  }
+  for (const value of scale.ticks(5)) {
+    parts.push(draw("text", {x: x(value), y: HIGH - 8, "text-anchor": "middle"}, number(value / column.per)));
+  }
+  for (const value of column.angle ? times.flatMap(time => [-time, time]) : times) {
+    parts.push(draw("line", {x1: x(value), x2: x(value), y1: y(0), y2: y(1), class: "threshold"}));
+  }
+  for (const {curve, name, half} of lines) {
+    const steps = thinned(curve);
+    if (isFinite(half)) {
+      const edge = shift => path(steps, x, share => y(Math.min(1, Math.max(0, share + shift))));
+      const back = edge(-half).slice(1).split("L").reverse().join("L");
+      parts.push(draw("path", {d: `${edge(half)}L${back}Z`, class: `band ${name}`}));
+    }
+    parts.push(draw("path", {d: path(steps, x, y), class: `line ${name}`}));
+  }
+  return draw("svg", {viewBox: `0 0 ${WIDE} ${HIGH}`, role: "img", "aria-label": title}, ...parts);
+}
+
+function thinned({at, share}) {
+  const every = Math.max(1, Math.ceil(at.length / MOST_STEPS)), steps = [];
+  for (let i = 0; i < at.length; i++) if (i % every === 0 || i === at.length - 1) steps.push([at[i], share[i]]);
+  return steps;
+}
+
+function path(steps, x, y) {
+  const points = [`${LEFT},${y(1).toFixed(1)}`];
+  let height = y(1);
+  for (const [value, share] of steps) {
+    const place = x(value).toFixed(1);
+    points.push(`${place},${height.toFixed(1)}`, `${place},${(height = y(share)).toFixed(1)}`);
+  }
+  points.push(`${WIDE - EDGE},${height.toFixed(1)}`);
+  return `M${points.join("L")}`;
+}

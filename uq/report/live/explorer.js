@@ -1,0 +1,59 @@
+// What the page shows of its rows: chips, scatter plot, ranges, what is known of the chosen rows, and one row.
+
+function explorerOf(rows) {
+  const selection = new Selection(rows), found = new Found(selection);
+  const {columns} = rows, outputs = columns.filter(one => one.role === "output");
+  let x = columns[rows.first[0]], y = columns[rows.first[1]];
+  const card = make("div", {"aria-live": "polite"});
+  const scatter = new Scatter(selection, columns, row => card.replaceChildren(cardOf(rows, row)));
+  const ranges = new Map(), shelf = make("div", {class: "ranges"});
+
+  const chooser = (label, chosen, choose) => make("label", {}, `${label} `,
+    make("select", {"on:change": event => choose(columns[event.target.value])},
+      ...["input", "output"].map(role => make("optgroup", {label: `${role}s`}, ...columns.flatMap((one, place) =>
+        one.role === role ? [make("option", {value: place, selected: one === chosen}, one.title)] : [])))));
+
+  function arrange() {
+    scatter.show(x, y);
+    showRanges();
+    found.show(y.role === "output" ? y : outputs[0]);
+  }
+
+  // Ranges of the columns drawn, and of those that were chosen before.
+  function showRanges() {
+    const shown = [...new Set([x, y, ...selection.ranges.keys()])];
+    for (const one of shown) if (!ranges.has(one)) ranges.set(one, rangeOf(selection, one));
+    const elements = shown.map(one => ranges.get(one).element);
+    if (elements.some((one, i) => one !== shelf.children[i]) || elements.length !== shelf.children.length) {
+      const focused = document.activeElement;
+      shelf.replaceChildren(...elements);
+      if (shelf.contains(focused)) focused.focus();
+    }
+    for (const one of shown) ranges.get(one).show();
+  }
+
+  const chips = rows.categories.filter(one => one.entries.length > 1).map(category => {
+    const buttons = category.entries.map(({code, label, colour, count}) => {
+      const chip = make("button", {type: "button", class: "chip", "on:click": () => selection.toggle(category, code)},
+        ...(colour ? [make("span", {class: "dot", style: `background:${colour}`})] : []), `${label} (${count})`);
+      selection.listeners.push(() => press());
+      const press = () => chip.setAttribute("aria-pressed", selection.shows(category, code));
+      press();
+      return chip;
+    });
+    return make("div", {class: "chips", role: "group", "aria-label": category.label}, `${category.label} `, ...buttons);
+  });
+
+  const clear = make("button", {type: "button", class: "clear", "on:click": () => selection.clear()}, "Choose all rows");
+  selection.listeners.push(showRanges, () => { clear.disabled = selection.isAll; });
+  clear.disabled = true;
+  const keys = make("p", {class: "note", id: "keys"}, "Drag over points to choose rows, or move the handles; click"
+    + " a point to see its row. On the plot, the arrow keys go from row to row, and Enter opens one.");
+  const element = make("div", {class: "explorer"},
+    make("div", {}, ...chips, chooser("Vertical:", y, one => { y = one; arrange(); }), scatter.element,
+      chooser("Horizontal:", x, one => { x = one; arrange(); }), keys, shelf, clear, card),
+    found.element);
+  new ResizeObserver(() => scatter.resize()).observe(scatter.element);
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => scatter.draw());
+  return {element, arrange};
+}

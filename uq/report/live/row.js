@@ -1,0 +1,23 @@
+// One row: its inputs, regime and outputs, and the command that computes it again.
+
+function cardOf(rows, row) {
+  const name = rows.numbers[row];
+  const command = `uq row ${rows.file} ${name}`;
+  const facts = rows.categories.map(one => [one.label, one.entry(row).label]);
+  const list = pairs => make("dl", {}, ...pairs.flatMap(([term, words]) => [make("dt", {}, term), make("dd", {}, words)]));
+  const of = role => rows.columns.filter(one => one.role === role).map(one => [one.label, one.wordsOfRow(row)]);
+  const done = make("span", {role: "status"});
+  const copy = make("button", {type: "button", "on:click": () => copied(command, done)}, "Copy");
+  return make("div", {class: "card", "data-row": name},
+    make("h3", {}, `Row ${name}`), make("p", {class: "command"}, make("code", {}, command), " ", copy, " ", done),
+    list(facts), make("h4", {}, "Inputs"), list(of("input")), make("h4", {}, "Outputs"), list(of("output")));
+}
+
+async function copied(text, done) {
+  try {
+    await navigator.clipboard.writeText(text);
+    done.textContent = "Copied.";
+  } catch {
+    done.textContent = "Select the command to copy it.";
+  }
+}

@@ -1,0 +1,82 @@
+// The rows inside the page: columns of numbers, and what is known of every row.
+
+function numbersOf(text, Numbers) {
+  const characters = atob(text);
+  const bytes = new Uint8Array(characters.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = characters.charCodeAt(i);
+  return new Numbers(bytes.buffer);
+}
+
+const ENDED = 0, CENSORED = 1, NEVER = 2, UNDEFINED = 3, FAILED = 4;
+const STATES = ["", "censored", "never", "undefined", "failed"];
+
+class Column {
+  constructor(plain, failed) {
+    Object.assign(this, plain);
+    this.values = numbersOf(plain.values, Float64Array);
+    const censored = plain.censored ? numbersOf(plain.censored, Uint8Array) : null;
+    this.states = this.values.map((value, row) => {
+      if (isNaN(value)) return failed[row] ? FAILED : UNDEFINED;
+      if (censored && censored[row]) return CENSORED;
+      return value === Infinity ? NEVER : ENDED;
+    });
+  }
+
+  // A value in the unit shown, such as "12.3 kN".
+  words(value, digits = 4) {
+    return `${number(value / this.per, digits)} ${this.unit}`.trim();
+  }
+
+  wordsOfRow(row) {
+    const state = this.states[row], value = this.words(this.values[row], 6);
+    if (state === ENDED) return value;
+    return state === CENSORED ? `longer than ${value} (censored)` : STATES[state];
+  }
+
+  // Whether each row lies on the side of a threshold that the study asks about; NaN if unknown.
+  hits(threshold) {
+    return this.values.map((value, row) => {
+      const state = this.states[row];
+      if (state === FAILED) return NaN;
+      if (state === UNDEFINED) return 0;
+      if (state === CENSORED && value < threshold) return NaN;
+      if (this.life) return state !== CENSORED && value < threshold ? 1 : 0;
+      return (this.angle ? Math.abs(value) : value) > threshold ? 1 : 0;
+    });
+  }
+
+  get title() {
+    return this.unit ? `${this.label} [${this.unit}]` : this.label;
+  }
+}
+
+class Category {
+  constructor(plain) {
+    Object.assign(this, plain);
+    this.codes = numbersOf(plain.codes, Int8Array);
+    this.places = new Map(this.entries.map((entry, place) => [entry.code, place]));
+  }
+
+  entry(row) {
+    return this.entries[this.places.get(this.codes[row])];
+  }
+}
+
+class Rows {
+  constructor(plain) {
+    Object.assign(this, plain);
+    this.numbers = numbersOf(plain.numbers, Int32Array);
+    this.failed = numbersOf(plain.failed, Uint8Array);
+    this.replicate = plain.replicate ? numbersOf(plain.replicate, Int32Array) : null;
+    this.columns = plain.columns.map(one => new Column(one, this.failed));
+    this.categories = plain.categories.map(one => new Category(one));
+  }
+
+  get count() {
+    return this.numbers.length;
+  }
+
+  get regime() {
+    return this.categories.find(one => one.name === "regime");
+  }
+}
