@@ -31,7 +31,7 @@ test: $(TEST)
 
 # Statistics at scale, exact propagators, every notebook and fault: half an hour to an hour.
 slow: $(TEST)
-	@$(BIN)/python -m pytest -m slow
+	@$(BIN)/python -m pytest -n logical --maxprocesses 8 --dist loadfile -m slow
 
 # Kills, full disks and damaged files in real runs; "make test" has a shorter selection.
 faults: $(TEST)

@@ -91,7 +91,7 @@ def regimes(name, periods=4096):
 
         share = np.stack([np.ones_like(x0), q.wear_coefficient_ratio], axis=1)
         growths = np.asarray(DEPTHS) / x0[:, None]
-        spy = SimpleNamespace(advance=advance)
+        spy = SimpleNamespace(advance=advance, CLOCK=lanes.CLOCK)
         start = (spy, system, state, gaps, settled.work, settled.regime)
         life = wear_down(*start, share, growths, periods, settings.accuracy).history
         row, at, regime = (np.concatenate(some) for some in zip(*seen, strict=True))

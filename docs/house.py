@@ -117,7 +117,7 @@ def _packages() -> Iterator[tuple[str, Box]]:
         others = [name for name in names if name not in (*READERS, *RUNNERS)]
         end = UQ if number else WIDTH - 2 * MARGIN  # what machines import, too
         spans = {
-            **_shared(readers, 0, LEFT if len(names) > 1 else LEFT + LANE - GAP / 2),
+            **_shared(readers, 0, LEFT + (LANE - GAP / 2) * (names == ("report",))),
             **_shared(others, LEFT + GAP / 2 if readers else 0, end),
             **_shared(runners, LEFT + LANE, UQ),
         }

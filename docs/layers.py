@@ -19,6 +19,7 @@ LAYERS = (
     ("rows",),
     ("indices", "population", "store"),
     ("analysis", "running"),
+    ("conclusions",),
     ("drawing", "upkeep", "exploring"),
     ("report",),
     ("cli",),
@@ -28,7 +29,7 @@ LAYERS = (
 ``ground`` are the modules of ``uq`` itself; ``plots`` is the face of ``drawing``.
 """
 
-READERS = ("indices", "population", "analysis", "drawing", "report")
+READERS = ("indices", "population", "analysis", "conclusions", "drawing", "report")
 """Packages that read results, and therefore import none of the `RUNNERS`."""
 
 RUNNERS = ("running", "upkeep", "exploring")

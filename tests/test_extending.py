@@ -164,7 +164,12 @@ def test_a_study_of_both_is_run_and_shown(toy_design, toy_method, uq, write_stud
 
 
 def _geometric_mean(element, context):
-    """Yield exp(mean(log)) of an output whose values are all positive."""
+    """Yield exp(mean(log)) of an output whose values are all positive.
+
+    References
+    ----------
+    D. McAlister, "The law of the geometric mean", Proc. R. Soc. 29, 367-376 (1879).
+    """
     if (element.at_least > 0).all():
         logarithms = np.log(element.at_least)
         reach = 1.96 * logarithms.std() / np.sqrt(len(logarithms))
@@ -193,7 +198,14 @@ def test_a_statistic_is_one_entry_of_a_table(no_other_figures, uq, write_study, 
     assert apart["low"] < apart["value"] == pytest.approx(pair["b"]["value"] - entry["value"])
     assert "geometric mean" in uq("compare", "one.nc", "other.nc").out
 
-    assert f">{entry['value']:.5g}<" in page(open_result("one.nc"), "one.nc")
+    report = page(open_result("one.nc"), "one.nc")
+    assert f">{entry['value']:.5g}<" in report
+    assert 'data-trace="outputs/y/geometric_mean"' in report
+    traced = json.loads(uq("trace", "one.nc", "outputs/y/geometric_mean", "--json").out)
+    assert traced["equal"] is True and traced["value"] == entry["value"]
+    (estimator,) = traced["estimators"]
+    assert estimator["does"] == "Yield exp(mean(log)) of an output whose values are all positive"
+    assert estimator["sources"][0].startswith("D. McAlister")
     assert "| `geometric_mean` | exp(mean(log)) of an output" in generated.statistics()
 
 

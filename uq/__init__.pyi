@@ -5,12 +5,15 @@ from .analysis.comparison import compare as compare
 from .analysis.convergence import enough as enough
 from .analysis.convergence import running_estimates as running_estimates
 from .analysis.fit_table import life_fits as life_fits
+from .analysis.fleet import fleet as fleet
 from .analysis.level_table import levels as levels
 from .analysis.lifetime import survival as survival
 from .analysis.overview import summary as summary
 from .analysis.regime_table import regimes as regimes
+from .analysis.tracing.tracing import trace as trace
 from .analysis.twin import two_fidelities as two_fidelities
 from .analysis.what_if import what_if as what_if
+from .conclusions.answer import answer as answer
 from .errors import InputError as InputError
 from .errors import RunError as RunError
 from .exploring.basins import basins as basins

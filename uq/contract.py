@@ -7,6 +7,7 @@ settings), a dict of `Output` and two functions, ``batch`` and ``simulate``; put
 `Model` and name it in the entry-point group ``vibrolife.models``. Nothing in ``uq`` changes.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from enum import IntEnum
@@ -91,6 +92,9 @@ class Output:
         Name of the setting that requests a relative accuracy of this output, if there is one. The
         output ``<name>_error``, with the same dims, then gives an absolute error of each
         value that nine in ten do not exceed.
+    success : str
+        For lifetimes only: what has happened when it ends, where that is wished for, such as ``the
+        motors have locked``; by default the end is a failure.
     never_known_at_once : bool
         For lifetimes only: whether a life that never ends is recognised before any row is
         censored, so that every censored row does end.
@@ -108,6 +112,7 @@ class Output:
     may_be_censored: bool = True
     categories: tuple[str, ...] = ()
     accuracy: str = ""
+    success: str = ""
     never_known_at_once: bool = True
     scales: Mapping[str, float] = field(default_factory=dict, hash=False)
 
@@ -177,8 +182,13 @@ _STATUS_MEANING = {
 }
 
 
-class Trajectory(NamedTuple):
-    """One labelled time history, as ``simulate`` returns it.
+class _History(NamedTuple):
+    time: Floats
+    quantities: Mapping[str, tuple[str, str, Floats]]
+
+
+class Trajectory(_History):
+    """One labelled time history, as ``simulate`` returns it: a pair, with notes for its picture.
 
     Attributes
     ----------
@@ -186,10 +196,35 @@ class Trajectory(NamedTuple):
         [s]
     quantities : dict of str to tuple
         Name -> (unit, meaning, values of shape (k,)).
+    period : float
+        Of the drive at the end [s]; NaN if there is none.
+    shown : tuple of str
+        The quantities that a picture shows, at most six; by default the first ones.
+    stops : dict of str to tuple
+        Quantity -> (lower, upper) values at which it meets a stop, NaN where there is none.
+    angles : tuple of str
+        Quantities [rad] that turn round; a picture shows them between half a turn to each side.
     """
 
-    time: Floats
-    quantities: Mapping[str, tuple[str, str, Floats]]
+    period: float
+    shown: tuple[str, ...]
+    stops: Mapping[str, tuple[float, float]]
+    angles: tuple[str, ...]
+
+    def __new__(
+        cls,
+        time: Floats,
+        quantities: Mapping[str, tuple[str, str, Floats]],
+        *,
+        period: float = math.nan,
+        shown: tuple[str, ...] = (),
+        stops: Mapping[str, tuple[float, float]] | None = None,
+        angles: tuple[str, ...] = (),
+    ) -> "Trajectory":
+        """Return the pair (time, quantities), with its notes."""
+        self = super().__new__(cls, time, quantities)
+        self.period, self.shown, self.stops, self.angles = period, shown, stops or {}, angles
+        return self
 
 
 Batch = Callable[

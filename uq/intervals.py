@@ -96,6 +96,11 @@ def mean_interval(
     Returns
     -------
     low, high : float
+        Student's t [1]_ of the rows, or of the means of the replicates.
+
+    References
+    ----------
+    .. [1] Student, "The probable error of a mean", Biometrika 6, 1-25 (1908).
     """
     if len(values) < 2 or is_constant(values):
         return UNKNOWN

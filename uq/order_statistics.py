@@ -148,6 +148,12 @@ def tolerance_bounds(values: Floats, failed: int, coverage: float, confidence: f
 
 
 def rows_for_bound(coverage: float, confidence: float, failed: int = 0) -> int:
-    """Return the smallest number of rows, `failed` of them failed, for a tolerance bound."""
+    """Return the smallest number of rows, `failed` of them failed, for a tolerance bound.
+
+    References
+    ----------
+    S. S. Wilks, "Determination of sample sizes for setting tolerance limits", Ann. Math. Stat. 12,
+    91-96 (1941).
+    """
     beyond = failed + 1  # rows that must lie outside the bound
     return beyond + negative_binomial(confidence, beyond, 1 - coverage)

@@ -18,10 +18,12 @@ from uq.drawing.distribution_plots import histogram as histogram
 from uq.drawing.distribution_plots import histogram_by_regime as histogram_by_regime
 from uq.drawing.distribution_plots import lifetime as lifetime
 from uq.drawing.distribution_plots import quantile_table as quantile_table
+from uq.drawing.event_plot import event_probability as event_probability
 from uq.drawing.figure import write
 from uq.drawing.index_plot import index_bars as index_bars
 from uq.drawing.input_plot import inputs as inputs
 from uq.drawing.motion_plot import history as history
+from uq.drawing.motion_plot import motion as motion
 from uq.drawing.motion_plot import phase_portrait as phase_portrait
 from uq.drawing.motion_plot import section as section
 from uq.drawing.response_plot import basins as basins
@@ -33,7 +35,7 @@ from uq.errors import InputError
 from uq.places import refuse_standard_output
 
 FIGURES: dict[str, Entry] = {
-    "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,)),
+    "lifetime": Entry(lifetime, of.outputs, applies=(of.is_lifetime,), needs=("summary",)),
     "histogram": Entry(
         histogram, of.outputs, applies=(of.is_no_lifetime,), in_report=(of.in_one_regime,)
     ),
@@ -56,6 +58,11 @@ FIGURES: dict[str, Entry] = {
         "Rows by regime, against the inputs that best separate the regimes",
         section="rows",
         applies=(of.in_regimes, of.has_several_inputs),
+    ),
+    "events": Entry(
+        event_probability,
+        of.decided_events,
+        "{name} over the input that decides it",
     ),
     "indices": Entry(
         index_bars,

@@ -2,10 +2,11 @@
 
 import re
 from math import floor, inf, isfinite, log10
-from typing import Any, NamedTuple
+from typing import Any
 
 from uq.estimate import Estimate
 from uq.literals import shown
+from uq.units import Unit, beside, time_unit, unit_of
 
 
 def number(value: float | None) -> str:
@@ -13,37 +14,14 @@ def number(value: float | None) -> str:
     return "-" if value is None else f"{value:.5g}"
 
 
-_PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "rad", "Hz"}
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+def quantity(value: float, units: str) -> str:
+    """Return a value [units, as in CF] with the unit in which it is read: ``13.75 kN m-1``."""
+    return in_unit(value, unit_of(units, value))
 
 
-def prefixed(unit: str, size: float) -> tuple[float, str]:
-    """Return the power of ten and the unit in which to show a quantity of some size.
-
-    Parameters
-    ----------
-    unit : str
-        CF unit string.
-    size : float
-        Not negative.
-
-    Returns
-    -------
-    factor : float
-        Values are multiplied by it.
-    unit : str
-        With its prefix: 0.00025 m become 250 µm.
-    """
-    if unit.split(" ")[0] not in _PREFIXED or size == 0 or 0.1 <= size < 1e4 or not isfinite(size):
-        return 1.0, unit
-    power = min(max(3 * floor(log10(size) / 3), min(_PREFIXES)), max(_PREFIXES))
-    return 10.0**-power, _PREFIXES[power] + unit
-
-
-def quantity(value: float, unit: str) -> str:
-    """Return a value with its unit, prefixed where that is usual: ``13.75 kN m-1``."""
-    factor, unit = prefixed(unit, abs(value))
-    return number(value * factor) + ("" if unit == "1" else f" {unit}")
+def in_unit(value: float, unit: Unit) -> str:
+    """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
+    return beside(number(value / unit.size), unit.name)
 
 
 def duration(seconds: float | None) -> str:
@@ -102,11 +80,15 @@ def failed_interval(bounds: Estimate | None, per: float = 1.0) -> str:
     return f"from {low} on" if high == "-" else f"{low} to {high}"
 
 
-def estimated(label: str, per: float = 1.0) -> str:
-    """Return the label of an estimate: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours."""
+def estimated(label: str, per: float = 1.0, is_magnitude: bool = False) -> str:
+    """Return the label of an estimate: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours.
+
+    That of an angle's magnitude is ``P(|.| > 12)``.
+    """
+    of = "|.| " if is_magnitude else ""
     return re.sub(
         r"^P\(([<>])(.+?)\)",
-        lambda found: f"P({found[1]} {number(float(found[2]) / per)})",
+        lambda found: f"P({of}{found[1]} {number(float(found[2]) / per)})",
         label,
     )
 
@@ -171,40 +153,3 @@ def law(stated: Any) -> str:
         given.pop("values", None)  # a result keeps the file's name alone
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
     return f"{stated.distribution}({arguments})"
-
-
-class TimeUnit(NamedTuple):
-    """A unit of time, its length [s], and the time [s] from which it is used."""
-
-    name: str
-    seconds: float
-    used_from: float
-
-
-_DAY = 86400.0
-_YEAR = 365.25 * _DAY
-_TIME_UNITS = (
-    TimeUnit("seconds", 1.0, 0.0),
-    TimeUnit("hours", 3600.0, 3600.0),
-    TimeUnit("days", _DAY, 2 * _DAY),
-    TimeUnit("years", _YEAR, 2 * _YEAR),
-)
-
-
-def time_unit(seconds: float) -> TimeUnit:
-    """Return the usual unit of a time [s] that is not negative."""
-    return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]
-
-
-def unit_of(units: str, typical: float) -> TimeUnit:
-    """Return the unit in which to show an output: a time in one that suits a typical value.
-
-    Parameters
-    ----------
-    units : str
-        CF unit string of the output.
-    typical : float
-        NaN if unknown.
-    """
-    is_time = units == "s" and isfinite(typical)
-    return time_unit(abs(typical)) if is_time else TimeUnit(units, 1.0, 0.0)

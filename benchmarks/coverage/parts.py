@@ -7,8 +7,10 @@ from typing import NamedTuple
 from benchmarks.coverage import (
     curves,
     differences,
+    effects,
     few,
     fewer_rows,
+    fleets,
     indices,
     known_indices,
     lives,
@@ -68,6 +70,7 @@ PARTS = {
     **{f"levels-{name}": Part(partial(nested.effects, name), 1000) for name in nested.EFFECTS},
     "morris": Part(indices.morris),
     **{f"null-{name}": Part(partial(indices.nulls, name)) for name in NULLS},
+    "effects": Part(effects.average),
     "bootstraps": Part(indices.bootstraps, 200),
     "differences": Part(differences.differences),
     "twin": Part(fewer_rows.twin),
@@ -82,4 +85,5 @@ PARTS = {
     "importance": Part(fewer_rows.importance),
     "scaled": Part(scaled.scaled, 1000),
     "what-if": Part(scaled.what_if, 1000),
+    **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
 }

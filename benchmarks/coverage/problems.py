@@ -8,8 +8,8 @@ import numpy as np
 from scipy import stats
 from scipy.optimize import brentq
 
-from uq.cli.sensitivity import plain
 from uq.contract import Model, Output, Parameter
+from uq.indices.as_json import sensitivity_json
 from uq.indices.sensitivities import sensitivities
 from uq.literals import toml
 from uq.rows import results, sampling
@@ -275,7 +275,7 @@ def computed(study):
 
 def indices_of(ds, method=None, output=None):
     """Return the sensitivity indices of each output, as ``uq sensitivity --json`` has them."""
-    return plain(sensitivities(ds, method, output))["outputs"]
+    return sensitivity_json(sensitivities(ds, method, output))["outputs"]
 
 
 def repeated(study, repetitions):

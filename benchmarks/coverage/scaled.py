@@ -93,4 +93,8 @@ def what_if(repetitions):
     return lines
 
 
-REASONS = {"P(T < t) = 0.05": CAUTIOUS, "P(T < t) = 0.95": CAUTIOUS}
+REASONS = {
+    f"{what}P(T < t) = {p}": CAUTIOUS
+    for what in ("", "difference from a fresh run, ")
+    for p in (0.05, 0.95)
+}

@@ -10,11 +10,12 @@ from models.beam.structure.random_load import has_band
 from models.beam.units import newton
 from uq.contract import Trajectory
 
-PERIODS = 100
+PERIODS = 400
+"""Enough for the start to die away at the nominal damping."""
 
 
 def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
-    """Follow one beam over the first 100 periods of the force.
+    """Follow one beam over the first 400 periods of the force.
 
     Parameters
     ----------
@@ -52,4 +53,10 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         quantities = {
             name: (unit, meaning, np.nan * x) for name, (unit, meaning, _) in quantities.items()
         }
-    return Trajectory(time, quantities)
+    right_stop, left_stop = params.initial_gap * gaps[0]
+    return Trajectory(
+        time,
+        quantities,
+        period=1 / params.forcing_frequency,
+        stops={"displacement": (-float(left_stop), float(right_stop))},
+    )

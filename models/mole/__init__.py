@@ -8,7 +8,7 @@ Reading order; each part imports only those above it:
     parameters    inputs, settings and outputs
     theory        the equations
     exact         one mole at a time: the reference
-    lanes         sixteen moles at a time: the propagator of studies
+    lanes         thirty-two moles at a time: the propagator of studies
     response      settled motion, its averages and its regime
     batch         from rows of a study to outputs
     trajectory    one time history

@@ -12,6 +12,14 @@ from uq.contract import Trajectory
 
 LEAST, LEAST_PERIODS = 4.0, 10  # s, and control periods
 MOST_SAMPLES = 100_000
+SHOWN = (
+    "displacement",
+    "contact_force",
+    "mole_displacement",
+    "mole_velocity",
+    "current",
+    "capacitor_voltage",
+)
 _PER_SUPPLY_CYCLE, _PER_CONTACT, _PER_CONTROL_PERIOD = 100, 20, 400
 
 Array = NDArray[np.float64]
@@ -55,7 +63,13 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         "mole_friction": ("N", "friction of the ground on the mole", mole_friction),
         "relay": ("1", "1 while the relay is closed, else 0", relay),
     }
-    return Trajectory(time, quantities)
+    return Trajectory(
+        time,
+        quantities,
+        period=q.control_period,
+        shown=SHOWN,
+        stops={"displacement": (math.nan, q.stop_gap)},
+    )
 
 
 def _times(q: Mole) -> Array:

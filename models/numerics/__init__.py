@@ -16,9 +16,9 @@ Reading order; a module imports only those above it:
     exponents       Lyapunov exponents
     batch_means     time means with their errors
     events          event location within a step
+    series          sums over power series of many systems
     tableaux        coefficients of the Runge-Kutta methods
     nystrom         any tableau for q'' = f(q, q'), many systems, fixed steps
-    dop8            order 8, many systems, with an error estimate
     dop853_step     order 8(5,3), one system: a step
     dop853          the same over any time, through guarded modes
     newton          damped Newton's method

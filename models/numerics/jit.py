@@ -99,7 +99,16 @@ def inlined(function: Function) -> Function:
     return _compiled(function, _nrt=False, forceinline=True)
 
 
-def _compiled(function: Function, **more: bool) -> Function:
+def spliced(function: Function) -> Function:
+    """Copy what one kernel calls into it, before types are inferred.
+
+    The machine code of a kernel contains that of all it calls, also where it is itself only called:
+    in a tower of kernels, every storey is compiled again. This one is not.
+    """
+    return _compiled(function, inline="always")
+
+
+def _compiled(function: Function, **more: Any) -> Function:
     more |= {"no_cfunc_wrapper": True}  # nobody calls a kernel from C
     decorate: Any = partial(numba.njit, nogil=True, error_model="numpy", **more)
     typed_in = not Path(inspect.getfile(function)).is_file()  # an edit would go unnoticed

@@ -56,7 +56,7 @@ def inverse(matrix: Array) -> tuple[Array, NDArray[np.bool_]]:
     """
     n, k, _ = matrix.shape
     out = np.empty((n, k, k))
-    _invert(
+    invert(
         np.ascontiguousarray(matrix),
         out,
         np.zeros((k, -(-k // _VECTOR) * _VECTOR)),
@@ -128,8 +128,19 @@ def _eliminate(matrix, right):
 
 
 @kernel
-def _invert(matrix, out, rows, pivots):
-    """Invert in place by Gauss-Jordan elimination with partial pivoting."""
+def invert(matrix, out, rows, pivots):
+    """Set `out` to the inverses of n matrices, for `inverse` and for other kernels.
+
+    By Gauss-Jordan elimination with partial pivoting; not finite where a matrix is singular.
+
+    Parameters
+    ----------
+    matrix, out : ndarray, shape (n, k, k)
+    rows : ndarray, shape (k, m)
+        Room, of zeros at first, with m a multiple of 8 and not less than k.
+    pivots : ndarray of int, shape (k,)
+        Room.
+    """
     n, k, _ = matrix.shape
     for system in range(n):
         for i in range(k):

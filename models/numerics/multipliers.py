@@ -5,6 +5,8 @@ nearly of low dimension, and the largest eigenvalue on it is that power of the l
 conjugate pair, or several multipliers of equal modulus, need no special treatment.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -130,11 +132,16 @@ def _square(power, square):
     for i in range(k):
         for j in range(width):
             square[i, j] = 0.0
-        for r in range(k):
-            factor = power[i, r]
+        for r in range(0, k - k % 4, 4):
+            a, b, c, d = power[i, r], power[i, r + 1], power[i, r + 2], power[i, r + 3]
             for j in range(width):
-                square[i, j] = fma(factor, power[r, j], square[i, j])
-    return -np.log(inverse)
+                total = fma(b, power[r + 1, j], fma(a, power[r, j], square[i, j]))
+                square[i, j] = fma(d, power[r + 3, j], fma(c, power[r + 2, j], total))
+        for r in range(k - k % 4, k):
+            a = power[i, r]
+            for j in range(width):
+                square[i, j] = fma(a, power[r, j], square[i, j])
+    return -math.log(inverse)
 
 
 @lean

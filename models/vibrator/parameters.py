@@ -208,6 +208,7 @@ OUTPUTS: Mapping[str, Output] = {
         "s",
         "time until the disphasing angle stays within 0.05 rad of its mean",
         "lifetime",
+        success="the motors have locked",
         never_known_at_once=False,  # the step budget may end before the motors lock
     ),
     "max_excursion": Output(

@@ -13,6 +13,7 @@ from uq.contract import Trajectory
 
 LONGEST = 10.0  # s
 SAMPLES_PER_TURN = 50
+SHOWN = ("x", "y", "alpha", "disphasing_angle", "speed_1", "speed_2")
 
 Series = NDArray[np.float64]
 
@@ -62,7 +63,7 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         "x": ("m", "horizontal displacement of C", x),
         "y": ("m", "vertical displacement of C", y),
         "alpha": ("rad", "rotation of the body", alpha),
-        "disphasing_angle": ("rad", "disphasing angle, not wrapped", psi_1 - psi_2),
+        "disphasing_angle": ("rad", "disphasing angle, turns included", psi_1 - psi_2),
         "speed_1": ("rad s-1", "speed of vibrator 1", v[3]),
         "speed_2": ("rad s-1", "speed of vibrator 2", v[4]),
         "displacement_left": ("m", "left deck end along xi", left),
@@ -79,4 +80,11 @@ def simulate(params: Params, settings: Settings, seed: int = 0) -> Trajectory:
         for name, word, series in zip("xy", ("horizontal", "vertical"), moved, strict=True):
             meaning = f"{word} displacement of the body point at ({along:g}, {above:g}) m from C"
             quantities[f"point_{i}_{name}"] = ("m", meaning, series)
-    return Trajectory(time[reached], quantities)
+    turn = 2 * np.pi / float(np.abs(v[3:5, -SAMPLES_PER_TURN:]).mean())
+    return Trajectory(
+        time[reached],
+        quantities,
+        period=turn,
+        shown=SHOWN,
+        angles=("disphasing_angle",),
+    )

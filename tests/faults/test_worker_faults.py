@@ -93,19 +93,22 @@ def test_a_chunk_that_loses_three_workers_is_halved(study_of, monkeypatch, injec
 
     workers = partial(processes, WORKER)
 
-    def kill_thrice():
-        for _ in range(3):
-            # A worker that the scheduler knows is about to compute.
+    def kill_on():
+        for _ in range(6):  # the first may have nothing to compute yet
             wait_for(lambda: [w for w in workers() if w.net_connections(kind="tcp")])
             time.sleep(1.0)
+            if failed:
+                return
             for worker in workers():
                 worker.kill()
-                worker.wait(PATIENCE)
+                wait_for(lambda worker=worker: worker not in workers())  # the run collects it
 
-    thread = threading.Thread(target=kill_thrice)
+    thread = threading.Thread(target=kill_on)
     thread.start()
-    ds = compute(study, workers=1, chunk_rows=20)
-    thread.join()
+    try:
+        ds = compute(study, workers=1, chunk_rows=20)
+    finally:
+        thread.join()
     assert "KilledWorker" in failed
     injected("worker killed three times on a chunk")
     assert ds.identical(computed_here(study))

@@ -1,4 +1,4 @@
-"""The bits of a result do not depend on what had been compiled before, in whichever process.
+"""The bits of a result do not depend on what had been compiled before, nor on the vector width.
 
 Three caches of compiled code are filled in three orders: all machines in one process; single
 motions first, then each machine in a process of its own; and the other way round. A callee that is
@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from llvmlite import binding
 
 STUDIES = Path(__file__).parents[2] / "studies"
 ROWS = {
@@ -43,11 +44,11 @@ for study, rows in zip(asked[::2], asked[1::2]):
 """
 
 
-def compute(cache, kept, rows):
+def compute(cache, kept, rows, **target):
     asked = [word for study, n in rows.items() for word in (STUDIES / f"{study}.toml", n)]
     ended = subprocess.run(
         [sys.executable, "-c", PROGRAM, kept, *map(str, asked)],
-        env=os.environ | {"XDG_CACHE_HOME": str(cache)},
+        env=os.environ | target | {"XDG_CACHE_HOME": str(cache)},
         capture_output=True,
         text=True,
     )
@@ -78,3 +79,26 @@ def test_three_orders_of_compilation_give_the_same_bits(tmp_path):
         for other in others:
             for name in one:
                 assert one[name].tobytes() == other[name].tobytes(), (study, name)
+
+
+def narrow():
+    """Return the target of this computer without vectors of 512 bits."""
+    features = binding.get_host_cpu_features()
+    for name in features:
+        features[name] &= not name.startswith(("avx512", "avx10"))
+    return {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": features.flatten()}
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    not binding.get_host_cpu_features().get("avx512f"), reason="has one vector width only"
+)
+@pytest.mark.parametrize("machine", ROWS)
+def test_the_vector_width_does_not_show(tmp_path, machine):
+    for width, target in (("wide", {}), ("narrow", narrow())):
+        (tmp_path / width).mkdir()
+        compute(tmp_path / f"cache-{width}", tmp_path / width, ROWS[machine], **target)
+    for study in ROWS[machine]:
+        wide, narrow_ = (np.load(tmp_path / w / f"{study}.npz") for w in ("wide", "narrow"))
+        for name in wide:
+            assert wide[name].tobytes() == narrow_[name].tobytes(), (study, name)

@@ -5,8 +5,8 @@ import json
 import numpy as np
 from computed import computed, study_of
 
-from uq.cli.sensitivity import plain
 from uq.indices import sensitivities as found
+from uq.indices.as_json import sensitivity_json
 from uq.methods.registry import METHODS
 from uq.methods.sample import Sample
 
@@ -29,7 +29,7 @@ def ishigami(method="saltelli", samples=128, replicates=8, seed=1, **more_design
 
 def sensitivities(*asked, **more):
     """Return the indices of a result as ``uq sensitivity --json`` has them."""
-    return plain(found.sensitivities(*asked, **more))
+    return sensitivity_json(found.sensitivities(*asked, **more))
 
 
 def indices(ds, method=None, output=None):

@@ -35,7 +35,7 @@ class Tally:
         assert not wrong, "\n".join(wrong)
 
 
-def repeat(model, design, inputs, second_order=False, **tables):
+def repeat(model, design, inputs, second_order=False, repetitions=REPETITIONS, **tables):
     """Yield the results of a study under different seeds."""
     method, samples, replicates = design
     table = {"method": method, "samples": samples, "replicates": replicates}
@@ -47,7 +47,7 @@ def repeat(model, design, inputs, second_order=False, **tables):
             **tables,
         }
     )
-    for seed in range(REPETITIONS):
+    for seed in range(repetitions):
         yield computed(with_seed(study, seed))
 
 

@@ -19,8 +19,10 @@ def test_everything_promised_is_there():
         set(uq.__all__)
         == set(dir(uq))
         == {
+            "answer",
             "basins",
             "labels",
+            "fleet",
             "levels",
             "life_fits",
             "load_study",
@@ -30,6 +32,7 @@ def test_everything_promised_is_there():
             "open_result",
             "simulate",
             "summary",
+            "trace",
             "sensitivity",
             "survival",
             "what_if",

@@ -127,14 +127,15 @@ def test_lifetimes_that_never_end_or_are_censored(design):
     tally = Tally("never, censored: " + title("wear", design))
     fixed = {"threshold": slowest}
     for seed, ds in enumerate(
-        repeat("exponential-wear", design, WEAR, fixed=fixed, analysis=analysis)
+        repeat("exponential-wear", design, WEAR, repetitions=400, fixed=fixed, analysis=analysis)
     ):
         tally_summary(tally, summarised(ds)["outputs"]["life"], cdf, ppf)
         life = ds["life"].values
         leaving = np.random.default_rng(seed).exponential(4e6, len(life))
         seen = with_output(ds, "seen", np.minimum(life, leaving), "lifetime", leaving < life)
         tally_survival(tally, survival(seen, "seen"), cdf, (5e5, 1e6))
-    tally.check()
+    averaged = ("quantile 0.6", "P(> 1000000.0)")  # almost exactly, as above
+    tally.check(conservative=averaged if design[0] == "sobol" else ())
 
 
 @pytest.mark.parametrize("design", [("monte-carlo", 500, 1), ("latin-hypercube", 125, 8)])

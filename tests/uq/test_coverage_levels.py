@@ -9,7 +9,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.mark.parametrize("name", list(nested.EFFECTS))
 def test_shares_of_random_effects(name):
-    assert [line for line in nested.effects(name, 1000) if line.unexplained] == []
+    assert [line for line in nested.effects(name, 2000) if line.unexplained] == []
 
 
 @pytest.mark.parametrize("name", list(nested.SIZES))

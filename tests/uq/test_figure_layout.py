@@ -34,8 +34,8 @@ def test_minus_signs_are_the_same_on_every_axis():
 
 def test_words_and_units_of_axes():
     assert as_label("worn volume per work", "m2 N-1") == "Worn volume per work [m² N⁻¹]"
-    assert as_label("a $price$") == r"A $price$"
-    assert as_label("stiffness of a stop", "N m-1", 24) == "Stiffness of a stop\n[N m⁻¹]"
+    assert as_label("a $price$") == r"A \$price\$"
+    assert as_label("stiffness of a stop", "N m-1", 24) == "Stiffness of a\nstop [N m⁻¹]"
     assert as_label("a pure number", "1") == "A pure number"
     assert powers("kg m-1") == "kg m⁻¹"
     assert file_name("sobol", "P(life[depth=0.1]<1e6)") == "sobol-P_life_depth_0.1_1e6"
@@ -70,7 +70,7 @@ def test_nothing_sticks_out_of_a_figure():
     figure = plots.scatter(ds, "angle")
     lay_out(figure)
     for axes in figure.axes:
-        assert axes.yaxis.label.get_window_extent().x0 >= 0
+        assert min(one.get_window_extent().x0 for one in axes.get_yticklabels()) >= 0
     ds = with_output(ds, "stroke", 0.00466 + 4e-5 * (y - y.mean()) / y.std())
     ds["stroke"].attrs["long_name"] = "half peak-to-peak displacement along xi of the deck end"
     ds["x4"].attrs["long_name"] = "damping of the supports, b = 2 xi sqrt((M_k + 2m) k)"

@@ -141,11 +141,12 @@ def test_while_workers_start(started):
 
 
 @pytest.mark.parametrize(
-    "delay", [0.5, *(pytest.param(one, marks=pytest.mark.slow) for one in (0.2, 0.8, 1.2, 1.6))]
+    "delay", [0.5, *(pytest.param(one, marks=pytest.mark.slow) for one in (0.2, 0.8, 1.1))]
 )
 def test_while_modules_are_loaded(started, delay):
     process, _ = started("SLEEPING", "--workers", "0", seconds=1.0)
-    time.sleep(delay)
+    loading = psutil.Process(process.pid)
+    wait_until(lambda: sum(loading.cpu_times()[:2]) >= delay)  # on a busy computer, later
     to_group(process)
     check_ended(process, "interrupted")
 

@@ -151,7 +151,7 @@ def test_one_repeat_counts_chance_as_own():
     assert found[OWN].assumes == "that chance counts as own"
     assert np.isnan(found[CHANCE].value)
     assert found[CHANCE].reason == (
-        "a single repeat does not tell chance from what is own to a unit; set repeats = 2"
+        "a single repeat cannot separate chance from what is own to a unit; set repeats = 2"
     )
 
 

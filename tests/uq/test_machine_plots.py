@@ -72,8 +72,8 @@ def test_every_axis_of_a_machine_has_words_and_a_unit(swept, basins, worn):
                 assert "_" not in label.split(" (")[0]
                 assert label[0].isupper() and label.endswith("]")
     assert labels(figures[-1]) == [
-        "Rate of u at the start (v(0)) [m s⁻¹]",
-        "Displacement u at the start (u(0)) [mm]",
+        "Rate of u at the start ($v(0)$) [m s⁻¹]",
+        "Displacement u at the start ($u(0)$) [mm]",
     ]
     assert labels(figures[2]) == [
         "Rate of u [m s⁻¹]",

@@ -18,12 +18,12 @@ from computed import (
 from matplotlib.figure import Figure
 
 from uq.analysis.findings import Findings
+from uq.conclusions.sources import mark
 from uq.contract import Status
 from uq.drawing.catalogue import drawables
 from uq.plots import FIGURES
 from uq.report import page
 from uq.report.cells import Cell, Table
-from uq.report.inputs import mark
 from uq.report.pictures import HEAVIEST_SVG, picture
 from uq.rows import results
 from uq.store.files import write_result
@@ -106,8 +106,8 @@ def test_a_report_says_all_there_is_to_say(asked, text):
         "ask its authors what to cite",  # the model of this test is not installed
     ):
         assert expected in words, expected
-    summary = re.search(r"angle an angle rad ([0-9.]+)", words)
-    assert float(summary[1]) == pytest.approx(np.nanmean(ds["angle"]), rel=1e-4)
+    summary = re.search(r"angle an angle ° ([0-9.]+)", words)
+    assert float(summary[1]) == pytest.approx(np.degrees(np.nanmean(ds["angle"])), rel=1e-4)
     drawn = found.tags.count("svg")
     sections = {entry.section for entry in FIGURES.values()} - {""}
     shown = [one for name in sections for one in drawables(FIGURES, Findings(ds), name)]
@@ -125,7 +125,8 @@ def test_links_lead_somewhere_and_names_are_unique(text):
 
 
 def test_a_report_needs_no_network_and_no_other_file(text):
-    assert "://" not in text and "@import" not in text
+    svg = "http://www.w3.org/2000/svg"  # the name that browsers know the format by
+    assert "://" not in text.replace(svg, "") and "@import" not in text
     loaded = [(n, v) for n, v in Page(text).attributes if n in ("src", "href", "data", "srcset")]
     assert all(value.startswith(("#", "data:image/png")) for _, value in loaded)
     assert "link" not in Page(text).tags
@@ -138,7 +139,8 @@ def test_names_from_a_file_are_text():
     ds["status"].attrs["example_raised"] = f"{HOSTILE}\x1b[31m"
     ds = with_status(ds, [0], Status.RAISED).assign_attrs(title=HOSTILE, cpu=HOSTILE)
     found = Page(page(ds, f"{HOSTILE}.nc"))
-    assert found.tags.count("script") == 1 and "img" not in found.tags
+    ours = Page(page(linear(samples=64), "out.nc")).tags.count("script")
+    assert found.tags.count("script") == ours and "img" not in found.tags
     assert not [name for name, _ in found.attributes if name.startswith("on")]
     assert found.words.count(HOSTILE) >= 6
     assert "\\u001b[31m" in found.words and "\x1b" not in found.words
@@ -274,16 +276,6 @@ def test_reports_that_cannot_be_made_are_refused_in_a_line(uq, folder):
         assert (ended.code, ended.out, ended.err) == (2, "", line.format(folder))
     assert [entry.name for entry in folder.iterdir()] == ["out.nc"] and path.read_bytes() == before
     assert results.open_result(path).sizes["sample"] == 8
-
-
-def test_an_input_leads_only_where_it_is_distinguished_from_one_without_effect():
-    noise = np.random.default_rng(2).random(512)
-    ds = with_output(linear(samples=512), "noise", noise)
-    words = read(asking(ds, outputs=["y", "noise"], sensitivity=["rbd-fast"])).words
-    assert re.search(
-        r"Independent input \(x_4\) explains [45]\d\.\d % of the variance of .*S1\)\.", words
-    )
-    assert words.count("of the variance of the") == 1
 
 
 def test_of_an_output_without_any_value_nothing_is_drawn():

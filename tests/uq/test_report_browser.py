@@ -39,8 +39,9 @@ def test_a_report_is_shown_without_complaint_or_request(browser, report, width, 
     }
     assert picture.shape[0] > 2000 and width - 20 < picture.shape[1] <= width  # a scroll bar
     assert browser.value("document.documentElement.scrollWidth") <= width  # nothing sticks out
-    named = "[...document.querySelectorAll('#explore :is(button, input, canvas)')]"
-    assert browser.value(f"{named}.every(one => one.ariaLabel || one.innerText)")
+    controls = ":is(#explore, #tolerances) :is(button, input, select, canvas)"
+    is_named = "one => one.ariaLabel || one.innerText || one.labels.length"
+    assert browser.value(f"[...document.querySelectorAll('{controls}')].every({is_named})")
     ground = picture[5, 5, :3].mean()
     assert (ground < 0.2) == dark
     assert abs(picture[..., :3].mean(axis=2) - ground).max() > 0.7  # the text stands out
@@ -79,7 +80,7 @@ def test_the_table_of_contents_leads_to_every_section(browser, report):
 
 def test_all_is_there_without_script(browser, report):
     browser.open(report)
-    there = "main > section:not(#explore)"
+    there = "main > section:not(#explore, #tolerances)"
     words = (
         f"['table', 'svg', 'p'].map(n => document.querySelectorAll('{there} ' + n).length).join()"
     )
@@ -106,6 +107,16 @@ def test_heads_of_tables_are_printed_on_every_page(browser, report):
     )
     browser.do("Emulation.setEmulatedMedia", media="")
     assert shown and set(shown) == {"contents"}  # Chromium repeats no box of a button
+
+
+def test_a_printed_report_has_figures_instead_of_controls(browser, report):
+    browser.open(report)
+    shown = "[...document.querySelectorAll('#explore, #tolerances')].map(s => s.offsetHeight)"
+    assert min(browser.value(shown)) > 0
+    browser.do("Emulation.setEmulatedMedia", media="print")
+    hidden = browser.value(shown)
+    browser.do("Emulation.setEmulatedMedia", media="")
+    assert hidden == [0, 0]
 
 
 @pytest.mark.slow

@@ -3,18 +3,22 @@
 import base64
 import json
 import re
+import shlex
 
 import numpy as np
 import pytest
-from computed import kinds, linear, with_output
+from computed import computed, kinds, linear, study_of, with_output
 
 from uq.analysis.findings import Findings
+from uq.analysis.what_if import answer, read_changes, what_if_json
+from uq.errors import RunError
 from uq.intervals import share_interval
-from uq.report.embedded import MOST_ROWS, embedded, rows_inside
+from uq.report.embedded import MOST_ROWS, rows_inside
 from uq.report.page import templates
 
 ASKED = {"thresholds": {"y": 6.0}}
-CELLS = """[...document.querySelectorAll("table.found tr[data-key]")].map(line => [line.dataset.key,
+CELLS = """[...document.querySelectorAll("PLACE table.found tr[data-key]")].map(line => [
+  line.dataset.key,
   ...[...line.cells].slice(1).map(cell => [cell.querySelector("data")?.value ?? "NaN",
   cell.dataset.low ?? "NaN", cell.dataset.high ?? "NaN"])])"""
 PAGE = """<!DOCTYPE html><html lang=en><meta charset=utf-8>
@@ -28,7 +32,7 @@ def shown(browser, tmp_path):
 
     def show(ds, **how):
         path = tmp_path / "page.html"
-        rows = embedded(Findings(ds), "a result.nc")
+        rows = rows_inside(Findings(ds), "a result.nc")
         explorer = templates().get_template("explorer.html")
         text = PAGE + explorer.render(rows_inside=rows)
         path.write_text(text, encoding="utf-8")
@@ -48,10 +52,10 @@ def ranges(browser):
     return [tuple(map(float, pair)) for pair in found]
 
 
-def cells(browser):
+def cells(browser, place="#explorer"):
     """Return the numbers of the table: key -> one (value, low, high) for each column."""
     browser.painted()
-    numbers = browser.value(CELLS)
+    numbers = browser.value(CELLS.replace("PLACE", place))
     return {key: [np.array(one, dtype=float) for one in found] for key, *found in numbers}
 
 
@@ -67,13 +71,13 @@ def drag_handle(browser, name, end, steps):
 
 
 def place_of_a_point(browser):
-    """Return a place of the page where a point is drawn."""
+    """Return a place of the page where a point is drawn, in the colour of rows."""
     return browser.value(
         "(() => { const c = document.querySelector('.scatter canvas'); c.scrollIntoView();"
         " const box = c.getBoundingClientRect();"
         " const p = c.getContext('2d').getImageData(100, 20, c.width - 140, c.height - 60);"
-        " for (let i = 0; i < p.data.length; i += 4) if (p.data[i + 2] - p.data[i] > 90"
-        " && p.data[i + 3] > 200) return [box.left + 100.5 + (i / 4) % p.width,"
+        " for (let i = 0; i < p.data.length; i += 4) if (p.data[i] === 160 && p.data[i + 1] === 166"
+        " && p.data[i + 2] === 173) return [box.left + 100.5 + (i / 4) % p.width,"
         " box.top + 20.5 + Math.floor(i / 4 / p.width)] })()"
     )
 
@@ -194,4 +198,114 @@ def test_a_page_of_many_rows_is_small_and_says_which_part_it_holds(shown):
     numbers = np.frombuffer(base64.b64decode(inside["numbers"]), "<i4")
     assert len(inside["columns"]) == 12 and inside["total"] == 100_000
     assert len(numbers) == MOST_ROWS and 45_000 < numbers.mean() < 55_000
-    assert len(embedded(Findings(ds), "many.nc")) < 4e6
+    assert len(json.dumps(inside)) < 4e6
+
+
+NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
+LAWS = {
+    "normal": (NORMAL, "z"),
+    "truncated-normal": (
+        NORMAL | {"distribution": "truncated-normal", "lower": -1.0, "upper": 2.0},
+        "z",
+    ),
+    "truncate": (NORMAL | {"truncate": [-2.0, 1.5]}, "z"),
+    "uniform": ({"distribution": "uniform", "lower": -1.0, "upper": 2.0}, "z"),
+    "triangular": ({"distribution": "triangular", "lower": -1.0, "mode": 0.0, "upper": 2.0}, "z"),
+    "triangular scale": (
+        {"distribution": "triangular", "lower": 0.5, "mode": 1.0, "upper": 2.0},
+        "a",
+    ),
+    "cv": ({"distribution": "lognormal", "mean": 1.0, "cv": 0.4}, "a"),
+    "sigma": ({"distribution": "lognormal", "median": 1.0, "sigma": 0.4}, "a"),
+    "loguniform": ({"distribution": "loguniform", "lower": 0.3, "upper": 2.0}, "a"),
+}
+
+
+def scaled(uncertain, **design):
+    """Return a result of lives that input a only scales, beside an output of both inputs."""
+    some = {"a": LAWS["sigma"][0], "z": NORMAL} | uncertain
+    tables = {
+        "study": {"name": "scaled", "model": "scaled"},
+        "design": {"method": "monte-carlo", "samples": 1000, "seed": 3} | design,
+        "uncertain": some,
+        "analysis": {"outputs": ["life", "y"], "thresholds": {"life": [0.8], "y": [0.5]}},
+    }
+    return computed(study_of(tables, "sample_models:SCALED"))
+
+
+def move(browser, name, width, shift):
+    """Move the sliders of an input."""
+    for i, value in enumerate((width, shift)):
+        browser.value(
+            f"(() => {{ const own = document.querySelector('.tolerance[data-name={name}]');"
+            f" const slider = own.querySelectorAll('input')[{i}];"
+            f" slider.value = {value}; slider.dispatchEvent(new Event('input')) }})()"
+        )
+
+
+def asked_of_python(browser, ds):
+    """Return what the command that the page shows finds in Python."""
+    browser.painted()
+    command = browser.value("document.querySelector('#tolerances .command code').innerText")
+    words = shlex.split(command)
+    assert words[:3] == ["uq", "what-if", "a result.nc"]
+    changes = read_changes([word for word in words[3:] if word != "--set"])
+    return changes, answer(ds, changes)
+
+
+@pytest.mark.parametrize(
+    ("law", "design"),
+    [
+        *((law, {}) for law in LAWS),
+        ("sigma", {"method": "sobol", "samples": 128, "replicates": 8}),
+        ("normal", {"samples": 200, "units": 3}),
+    ],
+)
+def test_a_slider_finds_what_python_finds(shown, law, design):
+    stated, name = LAWS[law]
+    ds = scaled({name: stated}, **design)
+    browser = shown(ds)
+    move(browser, name, 0.8, 0.3)
+    changes, found = asked_of_python(browser, ds)
+    assert changes
+    outputs = what_if_json(found)["outputs"]
+    here = cells(browser, "#tolerances")
+    for output, at, side in (("life", "0.8", "below"), ("y", "0.5", "above")):
+        one = outputs[output]["thresholds"][at][side]
+        expected = [one[end] for end in ("value", "low", "high")]
+        assert here[f"{output}/{at}"][0] == pytest.approx(expected, rel=1e-7)
+        assert here[f"{output}/{at}"][0] != pytest.approx(here[f"{output}/{at}"][1])
+    worth = browser.value("document.querySelector('#tolerances .said data').value")
+    assert float(worth) == pytest.approx(found.effective_rows, rel=1e-7)
+
+
+def test_lives_that_two_inputs_scale_keep_the_law_of_their_product(shown):
+    ds = scaled({"b": {"distribution": "loguniform", "lower": 0.8, "upper": 1.2}})
+    browser = shown(ds)
+    move(browser, "z", 0.8, 0.3)
+    _, found = asked_of_python(browser, ds)
+    one = what_if_json(found)["outputs"]["life"]["thresholds"]["0.8"]["below"]
+    expected = [one[end] for end in ("value", "low", "high")]
+    assert cells(browser, "#tolerances")["life/0.8"][0] == pytest.approx(expected, rel=1e-7)
+    notes = browser.value("document.querySelector('#tolerances .note').innerText")
+    assert notes.count("it scales lives together with other inputs") == 2
+
+
+def test_too_few_rows_are_refused_as_in_python(shown):
+    ds = scaled({}, samples=60)
+    browser = shown(ds)
+    move(browser, "z", 1.5, 1.5)
+    browser.painted()
+    with pytest.raises(RunError) as refused:
+        asked_of_python(browser, ds)
+    said = browser.value("document.querySelector('#tolerances .said').innerText")
+    assert said.split(":")[0] == str(refused.value).split(":")[0] and "Pareto k" in said
+    assert np.isnan(cells(browser, "#tolerances")["life/0.8"][0][0])
+
+
+def test_inputs_without_a_slider_are_named(shown):
+    listed = {"distribution": "discrete-choice", "values": [0.5, 1.0], "weights": [1.0, 1.0]}
+    browser = shown(scaled({"a": listed}))
+    assert browser.value("document.querySelectorAll('.tolerance').length") == 1
+    notes = browser.value("document.querySelector('#tolerances .note').innerText")
+    assert "its law is discrete-choice" in notes

@@ -23,7 +23,7 @@ from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.report.convergence import convergence_of
 from uq.report.indices import sensitivity_of
-from uq.report.inputs import input_tables
+from uq.report.inputs import fixed_inputs, input_tables
 from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
 
 DAY = 86400.0
@@ -130,7 +130,7 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
             }
         )
     )
-    table, _ = input_tables(ds)
+    (table,) = input_tables(ds)
     found = lines(table)
     assert (found["x1"]["known"], found["x1"]["source"]) == ("fitted", "a book: fitted")
     assert float(found["x1"]["95 %"]) == pytest.approx(0.95, abs=2e-3)
@@ -159,7 +159,8 @@ def test_fixed_inputs_have_units_and_correlations_a_source():
             }
         )
     )
-    laws, ranks, fixed = input_tables(ds)
+    laws, ranks = input_tables(ds)
+    fixed = fixed_inputs(ds)
     assert lines(laws)["threshold"]["law"] == "uniform(lower = 0.1, upper = 0.2)\u00a0m\u00a0s⁻¹"
     assert ranks.caption == "Rank correlations: a guess"
     assert [[cell.text for cell in row] for row in ranks.rows] == [["threshold, rate", "0.5"]]

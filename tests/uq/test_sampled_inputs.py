@@ -44,7 +44,7 @@ def test_a_figure_shows_each_input_as_stated_and_as_the_rows_have_it():
     entries = {"x1": BELL, "x2": UNIFORM | {"times": "x1"}, "x3": {"equals": "x1"}}
     figure = plots.inputs(computed(study_of(tables(entries, "sobol", 4096))))
     assert [axes.get_xlabel() for axes in figure.axes] == [
-        "Independent input (x_1)",
+        "Independent input ($x_{1}$)",
         "Independent input: factor on x1",
     ]
     for axes in figure.axes:

@@ -18,9 +18,9 @@ from computed import (
 )
 
 import uq
+from uq.analysis.as_json import twin_json
 from uq.analysis.convergence import enough, running_estimates
 from uq.analysis.twin import with_twin
-from uq.cli.estimates import twin_json
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.exploring.rare_events import ESTIMATORS as RARE

@@ -1,5 +1,6 @@
 """Numbers in sentences and tables are no more exact than they are known."""
 
+import math
 from math import inf, nan
 
 import pytest
@@ -104,6 +105,7 @@ def test_what_is_estimated_has_no_idle_digits():
     assert estimated("P(>0.20943951023931953)") == "P(> 0.20944)"
     assert estimated("P(<86400.0)", 3600.0) == "P(< 24)"
     assert estimated("quantile 0.5", 3600.0) == "quantile 0.5"
+    assert estimated("P(>0.20943951023931953)", math.pi / 180, True) == "P(|.| > 12)"
 
 
 def test_a_life_that_never_ends_at_the_low_end_has_no_interval():

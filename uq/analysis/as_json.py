@@ -1,18 +1,23 @@
-"""Summaries and comparisons as the command line prints them with ``--json``."""
+"""What results say, as the command line prints it with ``--json``."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import groupby
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from uq import json_form
 from uq.analysis.comparison import Comparison, Side
 from uq.analysis.differences import Compared, ComparedOutput
 from uq.analysis.input_changes import OnlyChange, Spread
 from uq.analysis.life_fit import Fit
-from uq.analysis.statistics.statistic import Reader
+from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import EMPTY, JSON_ORDER
 from uq.analysis.summary import Described, Summary, regime_json
+
+if TYPE_CHECKING:
+    from uq.analysis.converging import Converging
+    from uq.analysis.level_shares import ByLevel, LevelShares
+    from uq.analysis.twin import Sharpened, TwoFidelities
 
 
 def summary_json(summary: Summary) -> dict[str, Any]:
@@ -45,11 +50,19 @@ def _described(one: Described) -> dict[str, Any]:
         statistics = [s for s in one.parts[name] if s.is_read_by(Reader.JSON)]
         if name in EMPTY:
             found[name] = {} if statistics else EMPTY[name]
-        for (parent, _), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.write)):
-            members = list(group)
-            _put(found, parent, members[0].kind.write(members))
+        for parent, _, entry in written(statistics):
+            put(found, parent, entry)
     fits = {law: _fit(fit) for law, fit in one.fits.items()}
     return found | ({"fits": fits} if fits else {})
+
+
+def written(
+    statistics: Iterable[Statistic],
+) -> Iterator[tuple[tuple[str, ...], list[Statistic], dict[str, Any]]]:
+    """Yield path, statistics and JSON of those that are written together."""
+    for (parent, _), group in groupby(statistics, lambda s: (s.key[:-1], s.kind.write)):
+        members = list(group)
+        yield parent, members, members[0].kind.write(members)
 
 
 def _fit(fit: Fit) -> dict[str, Any]:
@@ -65,7 +78,8 @@ def _fit(fit: Fit) -> dict[str, Any]:
     return found
 
 
-def _put(found: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> None:
+def put(found: dict[str, Any], path: Iterable[str], entry: dict[str, Any]) -> None:
+    """Add an entry to JSON at a path, which is made if it is not there."""
     for part in path:
         found = found.setdefault(part, {})
     found |= entry
@@ -120,7 +134,7 @@ def _output(one: ComparedOutput) -> dict[str, Any]:
             found[name] = {}
         for pair in pairs:
             *parent, last = pair.first.key
-            _put(found, parent, {last: _compared(pair)})
+            put(found, parent, {last: _compared(pair)})
     return found
 
 
@@ -131,3 +145,64 @@ def _compared(one: Compared) -> dict[str, Any]:
     if one.ratio is not None:
         found["ratio"] = json_form.numbers(one.ratio) | same
     return found
+
+
+def levels_json(found: "ByLevel") -> dict[str, Any]:
+    """Return shares of the variance in plain data."""
+    whole: dict[str, Any] = {
+        "samples": found.samples,
+        "units": found.units,
+        "repeats": found.repeats,
+        "inputs": dict(found.inputs),
+        "outputs": {name: _shares(one) for name, one in found.outputs.items()},
+    }
+    if found.another_regime is not None:
+        whole["regime"] = {"another": json_form.whole(found.another_regime)}
+    return whole
+
+
+def _shares(one: "LevelShares") -> dict[str, Any]:
+    shares = {name: json_form.whole(share) for name, share in one.shares.items()}
+    more = {"variance": json_form.number(one.variance), "samples_left_out": one.left_out}
+    return shares | more | {"notes": list(one.notes)}
+
+
+def twin_json(found: "TwoFidelities") -> dict[str, Any]:
+    """Return estimates with a twin in plain data."""
+    outputs = {
+        name: {label: _sharpened(one) for label, one in estimates.items()}
+        for name, estimates in found.outputs.items()
+    }
+    return vars(found) | {"outputs": outputs}
+
+
+def _sharpened(one: "Sharpened") -> dict[str, Any]:
+    plain = {"plain": json_form.numbers(one.plain), "reduction": one.reduction}
+    note = {"note": one.note} if one.note else {}
+    return json_form.numbers(one.estimate) | plain | json_form.failed(one.failed) | note
+
+
+def convergence_json(found: "Mapping[str, Converging]") -> dict[str, Any]:
+    """Return running estimates in plain data."""
+    return {"outputs": {name: _converging(one) for name, one in found.items()}}
+
+
+def _converging(one: "Converging") -> dict[str, Any]:
+    found: dict[str, Any] = {
+        "estimates": {
+            label: [{"samples": samples} | json_form.numbers(each) for samples, each in sizes]
+            for label, sizes in one.estimates.items()
+        }
+    }
+    return found | errors_json(one.errors)
+
+
+def errors_json(errors: Mapping[Any, Any] | None) -> dict[str, Any]:
+    """Return a line of `uq.enough` in plain data."""
+    if not errors:
+        return {}
+    return {
+        "sampling_error": json_form.number(errors["sampling"]),
+        "own_error": json_form.number(errors["own"]),
+        "warning": errors["warning"],
+    }

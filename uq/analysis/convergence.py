@@ -54,16 +54,19 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
     """
     names = None if output is None else {element.name for element in named_elements(ds, output)}
     # Those of all rows: of the first ones alone a life may have another target.
-    targets = list(sensitivities(ds, method).targets) if (method := _method(ds)) else []
+    targets = list(sensitivities(ds, method).targets) if (method := method_shown(ds)) else []
     lines = [
         (name, label, samples, *numbers, *index)
         for samples in _sizes(ds)
-        for name, label, numbers, *index in _estimates(
-            ds.isel(sample=ds["group"].values < samples), targets
-        )
+        for name, label, numbers, *index in estimates_from(first_samples(ds, samples), targets)
         if names is None or split_name(name)[1] in names
     ]
     return pd.DataFrame(lines, columns=COLUMNS)
+
+
+def first_samples(ds: xr.Dataset, samples: int) -> xr.Dataset:
+    """Return the rows of the first samples of each replicate."""
+    return ds.isel(sample=ds["group"].values < samples)
 
 
 def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:
@@ -134,7 +137,7 @@ def _sizes(ds: xr.Dataset) -> list[int]:
     return sizes[::-1]
 
 
-def _method(ds: xr.Dataset) -> str | None:
+def method_shown(ds: xr.Dataset) -> str | None:
     """Return the method whose indices are estimated from the first rows, if they suffice."""
     groups = len(np.unique(ds["group"])) * ds.attrs["replicates"]
     name = piloted_by(DESIGNS[ds.attrs["design"]])
@@ -144,13 +147,13 @@ def _method(ds: xr.Dataset) -> str | None:
 Line = tuple[str, str, tuple[float, float, float], str, str]
 
 
-def _estimates(ds: xr.Dataset, targets: list[str]) -> Iterator[Line]:
-    """Yield output, label, value with interval, and the kind and input of an index."""
+def estimates_from(ds: xr.Dataset, targets: list[str]) -> Iterator[Line]:
+    """Yield what some rows give: output, label, value with interval; of an index kind and input."""
     for name, output in summarise(ds).outputs.items():
         for one in output.statistics:
             if one.is_read_by(Reader.RUNNING):
                 yield name, one.label, one.estimate.finite.numbers, "", ""
-    if method := _method(ds):
+    if method := method_shown(ds):
         for name, found in sensitivities(ds, method, targets).targets.items():
             for kind, values in found.kinds().items():
                 for label, index in values.items():

@@ -64,15 +64,24 @@ def bounded(of_magnitude: bool = False) -> Callable[[Maker], Maker]:
 
 
 def _with_bounds(one: Statistic, is_life: bool, lowest: Statistic, highest: Statistic) -> Statistic:
-    bounds = _bounds(one.estimate, lowest.estimate, highest.estimate, is_life)
+    ends = bounds(one.estimate, lowest.estimate, highest.estimate, is_life)
     otherwise = one.otherwise
     if otherwise and lowest.otherwise and highest.otherwise:
         otherwise = _with_bounds(otherwise, is_life, lowest.otherwise, highest.otherwise)
-    return replace(one, failed=bounds, otherwise=otherwise)
+    return replace(one, failed=ends, otherwise=otherwise)
 
 
-def _bounds(plain: Estimate, lowest: Estimate, highest: Estimate, is_life: bool) -> Estimate:
-    """Return both bounds: for an estimate without interval, the estimates themselves."""
+def bounds(plain: Estimate, lowest: Estimate, highest: Estimate, is_life: bool) -> Estimate:
+    """Return both bounds: for an estimate without interval, the estimates themselves.
+
+    Parameters
+    ----------
+    plain : Estimate
+    lowest, highest : Estimate
+        With the failed rows at the lowest and at the highest possible value.
+    is_life : bool
+        Whether infinite bounds mean something.
+    """
     alone = not _has_end(plain)
 
     def bound(which: str, one: Estimate) -> tuple[float, bool]:

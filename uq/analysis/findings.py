@@ -1,16 +1,29 @@
 """A result and what several tables and figures show of it, each computed once."""
 
+from collections.abc import Iterator
 from functools import cached_property
+from itertools import chain
+from typing import TYPE_CHECKING
 
-import pandas as pd
 import xarray as xr
 
-from uq.analysis.convergence import COLUMNS, running_estimates
+from uq.analysis.fleet import Fleet, fleet_of
 from uq.analysis.level_shares import ByLevel, by_level
 from uq.analysis.summary import Summary, summarise
 from uq.errors import InputError
-from uq.indices.sensitivities import Sensitivities, sensitivities
-from uq.rows.elements import elements_of, independent_rows, output_names
+from uq.indices.sensitivities import Sensitivities, TargetIndices, sensitivities
+from uq.rows.elements import (
+    Element,
+    analysis_of,
+    elements_of,
+    independent_rows,
+    output_names,
+    shown_outputs,
+)
+from uq.rows.nesting import nesting_of
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 class Findings:
@@ -25,6 +38,7 @@ class Findings:
     def __init__(self, ds: xr.Dataset):
         self.ds = ds
         self._sensitivities: dict[str, Sensitivities] = {}
+        self._indices: dict[tuple[str, str], TargetIndices] = {}
 
     @cached_property
     def rows(self) -> xr.Dataset:
@@ -44,8 +58,12 @@ class Findings:
         return summarise(self.ds)
 
     @cached_property
-    def running(self) -> pd.DataFrame:
+    def running(self) -> "pd.DataFrame":
         """What `uq.running_estimates` returns; where it refuses, no lines, and why in ``attrs``."""
+        import pandas as pd
+
+        from uq.analysis.convergence import COLUMNS, running_estimates
+
         try:
             return running_estimates(self.ds)
         except InputError as refused:
@@ -58,6 +76,14 @@ class Findings:
         """What `uq.analysis.level_shares.by_level` returns."""
         return by_level(self.ds)
 
+    @cached_property
+    def fleets(self) -> list[Fleet]:
+        """The fleet of each life, of as many units as a sample has; empty where that is one."""
+        units = nesting_of(self.rows).units
+        shown = shown_outputs(self.rows, analysis_of(self.rows)) if units > 1 else ()
+        lives = [one for one in elements_of(self.rows, shown) if one.is_lifetime]
+        return list(chain.from_iterable(_fleets(self.ds, units, one) for one in lives))
+
     def sensitivities(self, method: str) -> Sensitivities:
         """Return what `uq.indices.sensitivities.sensitivities` finds by a method.
 
@@ -69,3 +95,27 @@ class Findings:
         if method not in self._sensitivities:
             self._sensitivities[method] = sensitivities(self.ds, method)
         return self._sensitivities[method]
+
+    def indices(self, method: str, target: str) -> TargetIndices:
+        """Return the indices of one target, also of one that must be asked for by name.
+
+        Raises
+        ------
+        InputError
+            When the method does not apply to this result, or there is no such target.
+        """
+        known = self._sensitivities[method].targets if method in self._sensitivities else {}
+        if target in known:
+            return known[target]
+        if (method, target) not in self._indices:
+            found = sensitivities(self.ds, method, target).targets
+            self._indices |= {(method, name): one for name, one in found.items()}
+        return self._indices[method, target]
+
+
+def _fleets(ds: xr.Dataset, units: int, life: Element) -> Iterator[Fleet]:
+    """Yield the fleet of a life, unless its rows are censored too early."""
+    try:
+        yield fleet_of(ds, units, output=life.name)
+    except InputError:
+        return

@@ -60,6 +60,11 @@ def kaplan_meier(values: Floats, censored: Mask, time: Floats) -> Outliving:
     """Return Kaplan and Meier's estimate from finite values, with Greenwood's variance.
 
     scipy's ``ecdf`` gives the first, but the second only within its own intervals.
+
+    References
+    ----------
+    E. L. Kaplan, P. Meier, "Nonparametric estimation from incomplete observations", J. Am. Stat.
+    Assoc. 53, 457-481 (1958).
     """
     ends, count = np.unique(values[~censored], return_counts=True)
     at_risk = len(values) - np.searchsorted(np.sort(values), ends)

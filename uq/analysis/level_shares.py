@@ -43,13 +43,13 @@ SOURCES = (*LEVELS, SOLVER)
 NONE, ALL = Estimate(0.0, 0.0, 0.0), Estimate(1.0, 1.0, 1.0)
 
 _ONE_REPEAT = Estimate(
-    reason="a single repeat does not tell chance from what is own to a unit; set repeats = 2"
+    reason="a single repeat cannot separate chance from what is own to a unit; set repeats = 2"
 )
 _ONE_UNIT = Estimate(
-    reason="a single unit does not tell what is shared from what is own; set units = 2"
+    reason="a single unit cannot show what is shared and what is own; set units = 2"
 )
 _ONE_ROW = Estimate(
-    reason="a single row a sample does not tell what is shared from chance; set repeats = 2"
+    reason="a single row a sample cannot separate what is shared from chance; set repeats = 2"
 )
 INCLUDES_CHANCE = "that chance counts as own"
 NO_ERROR = "the model states no numerical error of it"

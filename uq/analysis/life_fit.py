@@ -76,7 +76,12 @@ class Fit:
 
 
 def fits_of(element: Element, independent: bool) -> dict[str, Fit]:
-    """Fit every law to one element of a lifetime; name of the law -> `Fit`."""
+    """Fit every law to one element of a lifetime; name of the law -> `Fit`.
+
+    References
+    ----------
+    J. F. Lawless, "Statistical models and methods for lifetime data", 2nd ed., Wiley (2003), 5.
+    """
     return {law: _fit(law, element, independent) for law in FAMILIES}
 
 

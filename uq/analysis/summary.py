@@ -16,7 +16,7 @@ from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.statistics.thresholds import share_of
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
-from uq.intervals import replicates_of_some
+from uq.intervals import replicates_of_some, share_interval
 from uq.population.means import weighted_share
 from uq.population.reweighting import Weighting
 from uq.population.scaling import population
@@ -222,6 +222,7 @@ def regime_shares(rows: xr.Dataset, weights: Smoothed | None = None) -> dict[str
             failed=failed_share_bounds(hits, ~kept, replicate) if weights is None else None,
             facts={"count": int(hits[kept].sum())},
             estimator=share(),
+            by=(share_of, share_interval),
         )
         for label, (kept, numbers) in in_regimes(rows).items()
         for hits in [numbers > 0]

@@ -23,9 +23,11 @@ _READERS = (
     "summary",
     "sensitivity",
     "levels",
+    "fleet",
     "convergence",
     "compare",
     "what-if",
+    "trace",
     "plot",
     "report",
 )

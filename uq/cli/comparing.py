@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import chain
-from math import isfinite, nan
+from math import isfinite
 from pathlib import Path
 
 from uq.analysis.as_json import comparison_json
@@ -11,7 +11,8 @@ from uq.analysis.differences import Compared, ComparedOutput
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
-from uq.wording import estimated, interval, known, number, unit_of
+from uq.units import Unit, typical, unit_of
+from uq.wording import estimated, interval, known, number
 
 _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -46,7 +47,8 @@ def _show(found: Comparison, first: Path, second: Path) -> None:
     for name, output in found.outputs.items():
         unit, per = _unit(output)
         heading(f"\n{name}{f' [{unit}]' if unit != '1' else ''}")
-        grid(chain.from_iterable(_lines(one, per) for one in output.statistics), _HEADER)
+        parts = (_lines(one, output.units, per) for one in output.statistics)
+        grid(chain.from_iterable(parts), _HEADER)
     note("*: the interval excludes no difference. " + _POINTWISE)
     for text in (*bought(found), *found.notes):
         note(text)
@@ -65,18 +67,19 @@ def _about(side: Side) -> str:
     return f"{side.title} ({rows}{f'; {lost}' if lost else ''})"
 
 
-def _unit(output: ComparedOutput) -> tuple[str, float]:
-    """Return the unit in which an output is shown, and its length."""
-    medians = [one.first.estimate.value for one in output.parts["quantiles"]]
-    typical = medians[len(medians) // 2] if medians else nan
-    return unit_of(output.units, typical)[:2]
+def _unit(output: ComparedOutput) -> Unit:
+    """Return the unit in which an output is shown."""
+    return unit_of(
+        output.units, typical(one.first.estimate.value for one in output.parts["quantiles"])
+    )
 
 
 Line = tuple[str, ...]
 
 
-def _lines(one: Compared, per: float) -> Iterator[Line]:
-    yield estimated(one.first.label, per), *_cells(one, per if one.first.unit == "s" else 1.0)
+def _lines(one: Compared, units: str, per: float) -> Iterator[Line]:
+    own = per if one.first.unit == units else 1.0
+    yield estimated(one.first.label, per), *_cells(one, own)
     if one.ratio is not None and isfinite(one.ratio.value):
         yield f"{one.first.label}, B over A", "", "", *_apart(one.ratio, one.identical, 1.0, 1.0)
 

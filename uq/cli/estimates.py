@@ -1,16 +1,14 @@
 """What ``uq twin`` and ``uq convergence`` print."""
 
-from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
-from typing import Any
 
-import pandas as pd
-
-from uq import json_form
-from uq.analysis.convergence import enough, running_estimates
-from uq.analysis.twin import Sharpened, TwoFidelities, with_twin
+from uq.analysis.as_json import convergence_json, twin_json
+from uq.analysis.converging import converging
+from uq.analysis.findings import Findings
+from uq.analysis.twin import with_twin
 from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.conclusions.advice import verdict
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.wording import estimated, failed_interval, interval, known
@@ -48,21 +46,6 @@ def twin(result: Path, model: str | None, json: bool) -> None:
     )
 
 
-def twin_json(found: TwoFidelities) -> dict[str, Any]:
-    """Return estimates with a twin as plain data."""
-    outputs = {
-        name: {label: _sharpened(one) for label, one in estimates.items()}
-        for name, estimates in found.outputs.items()
-    }
-    return vars(found) | {"outputs": outputs}
-
-
-def _sharpened(one: Sharpened) -> dict[str, Any]:
-    plain = {"plain": json_form.numbers(one.plain), "reduction": one.reduction}
-    note = {"note": one.note} if one.note else {}
-    return json_form.numbers(one.estimate) | plain | json_form.failed(one.failed) | note
-
-
 def _cells(one: Estimate) -> tuple[str, str]:
     return known(one), _ends(one)
 
@@ -74,47 +57,23 @@ def _ends(one: Estimate) -> str:
 def convergence(result: Path, output: str | None, json: bool) -> None:
     """Show running estimates, and whether sampling is still the largest error."""
     ds = open_result(result)
-    running, errors = running_estimates(ds, output), enough(ds, output).to_dict("index")
-    found = {
-        str(name): {str(label): _sizes(own) for label, own in lines.groupby("estimate", sort=False)}
-        for name, lines in running.groupby("output", sort=False)
-    }
+    found = converging(ds, output)
     if json:
-        print_json({"outputs": {name: _json(one, errors.get(name)) for name, one in found.items()}})
+        print_json(convergence_json(found))
         return
-    for name, estimates in found.items():
+    if output is None:
+        for line in verdict(Findings(ds)):
+            paragraph(line, indent=0)
+    for name, one in found.items():
         heading(f"\n{name}")
-        for label, sizes in estimates.items():
+        for label, sizes in one.estimates.items():
             grid(
-                [(str(samples), *_cells(one)) for samples, one in sizes[-_SHOWN:]],
+                [(str(samples), *_cells(estimate)) for samples, estimate in sizes[-_SHOWN:]],
                 header=("samples", estimated(label), "95 % interval"),
             )
-        if own := errors.get(name):
+        if own := one.errors:
             if isfinite(own["own"]):
                 sampling, rows = (known(Estimate(own[kind])) for kind in ("sampling", "own"))
                 paragraph(f"sampling error {sampling}, error of the rows themselves {rows}", 2)
             if own["warning"]:
                 paragraph(own["warning"], indent=2)
-
-
-Sizes = list[tuple[int, Estimate]]
-"""Number of samples, and the estimate from them."""
-
-
-def _sizes(lines: pd.DataFrame) -> Sizes:
-    columns = (lines[name].tolist() for name in ("samples", "value", "low", "high"))
-    return [(samples, Estimate(*numbers)) for samples, *numbers in zip(*columns, strict=True)]
-
-
-def _json(estimates: Mapping[str, Sizes], errors: dict[Any, Any] | None) -> dict[str, Any]:
-    found: dict[str, Any] = {
-        "estimates": {
-            label: [{"samples": samples} | json_form.numbers(one) for samples, one in sizes]
-            for label, sizes in estimates.items()
-        }
-    }
-    if errors:
-        found["sampling_error"] = json_form.number(errors["sampling"])
-        found["own_error"] = json_form.number(errors["own"])
-        found["warning"] = errors["warning"]
-    return found

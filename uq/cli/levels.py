@@ -3,10 +3,9 @@
 from collections.abc import Iterator
 from math import isfinite
 from pathlib import Path
-from typing import Any
 
-from uq import json_form
-from uq.analysis.level_shares import SOLVER, ByLevel, LevelShares, by_level
+from uq.analysis.as_json import levels_json
+from uq.analysis.level_shares import SOLVER, LevelShares, by_level
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.designs.levels import LEVELS
 from uq.methods.indices import S1
@@ -18,7 +17,7 @@ def levels(result: Path, output: str | None, json: bool) -> None:
     ds = open_result(result)
     found = by_level(ds, output)
     if json:
-        print_json(plain(found))
+        print_json(levels_json(found))
         return
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.size}")
     grid([(level, ", ".join(found.inputs_on(level)) or "-") for level in LEVELS])
@@ -41,23 +40,3 @@ def _lines(one: LevelShares) -> Iterator[tuple[str, str, str, str]]:
     for name, share in one.shares.items():
         assumes = share.assumes.removeprefix("that ")
         yield name, S1.text(share.value), S1.interval(share), assumes
-
-
-def plain(found: ByLevel) -> dict[str, Any]:
-    """Return shares as plain data, for JSON."""
-    whole: dict[str, Any] = {
-        "samples": found.samples,
-        "units": found.units,
-        "repeats": found.repeats,
-        "inputs": dict(found.inputs),
-        "outputs": {name: _plain(one) for name, one in found.outputs.items()},
-    }
-    if found.another_regime is not None:
-        whole["regime"] = {"another": json_form.whole(found.another_regime)}
-    return whole
-
-
-def _plain(one: LevelShares) -> dict[str, Any]:
-    shares = {name: json_form.whole(share) for name, share in one.shares.items()}
-    more = {"variance": json_form.number(one.variance), "samples_left_out": one.left_out}
-    return shares | more | {"notes": list(one.notes)}

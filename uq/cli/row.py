@@ -13,7 +13,7 @@ from uq.exploring.row_again import RowAgain, row_again
 from uq.exploring.simulation import with_trajectory
 from uq.rows.results import open_result
 from uq.study.registry import find_model
-from uq.wording import duration, quantity
+from uq.wording import quantity
 
 
 def row(
@@ -75,7 +75,7 @@ def _show(found: RowAgain, rows: int) -> None:
     heading("\ninputs")
     grid(
         [
-            (name, quantity(value, unit), duration(value) if unit == "s" else "")
+            (name, quantity(value, unit))
             for name, value in one.values.items()
             if found.there[name].attrs["role"] == "input"
             for unit in [found.there[name].attrs["units"]]

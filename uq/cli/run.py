@@ -78,9 +78,9 @@ def end(study: Study, ds: xr.Dataset, target: Path, quiet: bool, note: str, mixe
     if not mixed and (line := runner.line_on_other_code(study, target, ds)):
         print(plain_line(line), file=sys.stderr)
     if not quiet:
-        from uq.analysis.summary import summarise
+        from uq.analysis.findings import Findings
 
-        tables.show_summary(ds, summarise(ds))
+        tables.show_findings(Findings(ds))
         console.print()
         console.print(note)
         name = shlex.quote(str(target))

@@ -1,42 +1,11 @@
-"""What ``uq sensitivity`` shows: tables of 80 columns, or JSON."""
+"""What ``uq sensitivity`` shows: tables of 80 columns."""
 
 from collections.abc import Iterator, Mapping
-from math import isfinite
-from typing import Any
 
 from uq.cli.printing import grid, heading, paragraph
 from uq.indices.ranked import Values, lines
-from uq.indices.sensitivities import Sensitivities, TargetIndices
-from uq.json_form import numbers
+from uq.indices.sensitivities import Sensitivities
 from uq.methods.indices import S1, IndexKind, Null
-
-
-def plain(found: Sensitivities) -> dict[str, Any]:
-    """Return indices as plain data, for JSON."""
-    return {
-        "method": found.method,
-        "rows_used": found.rows_used,
-        "groups_dropped": found.groups_dropped,
-        "outputs": {name: _plain_target(one) for name, one in found.targets.items()},
-    }
-
-
-def _plain_target(one: TargetIndices) -> dict[str, Any]:
-    entry: dict[str, Any] = {"rows_used": one.rows_used, "groups_dropped": one.groups_dropped}
-    if one.refused:
-        return entry | {"refused": one.refused}
-    for kind, values in one.indices.values.items():
-        entry[kind.key] = {label: numbers(index) for label, index in values.items()}
-    if one.indices.noise is not None:
-        entry["noise"] = numbers(one.indices.noise)
-    if one.indices.nulls:
-        entry["dummy"] = {
-            key: number
-            for kind, null in one.indices.nulls.items()
-            for key, number in ((kind.key, null.one), (f"{kind.key}_any", null.largest))
-            if isfinite(number)
-        }
-    return entry | {"notes": list(one.indices.notes)}
 
 
 def show(found: Sensitivities) -> None:

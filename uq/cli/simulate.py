@@ -81,11 +81,11 @@ def draw(ds: "xr.Dataset", plot: Path) -> None:
     plot : Path
     """
     from uq.drawing.figure import DOTS_PER_INCH
-    from uq.plots import history
+    from uq.plots import motion
 
     try:
         file_behind(plot).parent.mkdir(parents=True, exist_ok=True)
-        history(ds).savefig(plot, dpi=DOTS_PER_INCH)
+        motion(ds).savefig(plot, dpi=DOTS_PER_INCH)
     except (OSError, ValueError) as error:  # ValueError: a format matplotlib does not know
         raise InputError(f"{plot}: {getattr(error, 'strerror', None) or error}") from None
 

@@ -2,18 +2,34 @@
 
 from collections.abc import Iterator, Mapping
 from itertools import chain
-from math import isnan
+from math import isfinite, isnan
+from typing import NamedTuple
 
 import xarray as xr
 
+from uq.analysis.findings import Findings
 from uq.analysis.life_fit import Fit
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import Described, Summary
-from uq.cli.printing import grid, heading, note, paragraph
+from uq.cli.printing import console, grid, heading, note, paragraph
+from uq.conclusions.answer import conclude
+from uq.conclusions.parts import Answer
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
-from uq.wording import duration, estimated, failed_interval, interval, number
+from uq.rows.variables import outputs_of
+from uq.units import Unit, typical, unit_of
+from uq.wording import estimated, failed_interval, interval, number
+
+_LONG = 3600.0  # s: times in this unit and longer ones are given in seconds, too
+
+_MOST_EFFECTS = 3
+
+
+def show_findings(findings: Findings) -> None:
+    """Print the answer of a study, then its summary."""
+    show_answer(conclude(findings, weighed=False))
+    show_summary(findings.ds, findings.summary)
 
 
 def show_summary(ds: xr.Dataset, summary: Summary) -> None:
@@ -30,19 +46,60 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
         grid(shares, header=("", "share", "95 % interval", "rows", "with failed rows"))
     for name, output in summary.outputs.items():
         meaning = ds[name.partition("[")[0]].attrs["long_name"]
-        unit = "" if output.units == "1" else f" [{output.units}]"
+        block = _block(ds, name, output)
+        unit = "" if output.units == "1" else f" [{block.unit.name}]"
         heading(f"\n{name}{unit}", meaning)
-        grid(_lines(output), header=("", "value", "95 % interval", ""))
+        grid(_lines(output, block), header=("", "value", "95 % interval", ""))
         for one in output.statistics:
             for text in one.notes:
                 paragraph(text, indent=2)
         if output.fits:
-            _show_fits(output.fits)
+            _show_fits(output.fits, block)
     for text in summary.notes:
         note(text)
 
 
+def show_answer(found: Answer) -> None:
+    """Print the answer: what can be promised, what it depends on, and what to do."""
+    lead = found.lead
+    if found.failed or lead is None:
+        paragraph(found.rows_sentence, indent=0)
+    if lead is not None:
+        for line in lead.head:
+            paragraph(line, indent=0)
+        for one in lead.events:
+            paragraph(one.with_cause, indent=0)
+    if found.regimes:
+        paragraph(found.regimes_sentence, indent=0)
+    if lead is not None and (ranking := lead.ranking) is not None:
+        paragraph(ranking.sentence, indent=0)
+        for contribution in ranking.contributions[:_MOST_EFFECTS]:
+            if contribution.effect:
+                paragraph(f"{contribution.words}: {contribution.effect}", indent=2)
+    for advice in found.advice:
+        paragraph(f"To do: {advice.text[:1].lower()}{advice.text[1:]}", indent=0)
+    console.print()
+
+
 Line = tuple[str, str, str, str]
+
+
+class Block(NamedTuple):
+    """How the numbers of an output are shown: their unit, the unit of the model, their sign."""
+
+    unit: Unit
+    units: str
+    is_magnitude: bool
+
+    def per(self, one: Statistic) -> float:
+        """Return the size of the unit of a statistic."""
+        return self.unit.size if one.unit == self.units else 1.0
+
+
+def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
+    quantiles = (one.estimate.value for one in output.parts["quantiles"])
+    unit = unit_of(output.units, typical(quantiles))
+    return Block(unit, output.units, outputs_of(ds)[name.partition("[")[0]].is_angle)
 
 
 def _regime(one: Statistic) -> tuple[str, ...]:
@@ -50,37 +107,40 @@ def _regime(one: Statistic) -> tuple[str, ...]:
     return *share, str(one.facts["count"]), failed_interval(one.failed)
 
 
-def _lines(output: Described) -> Iterator[Line]:
-    """Yield label, value, interval, and the value in hours, days or years."""
+def _lines(output: Described, block: Block) -> Iterator[Line]:
+    """Yield label, value and interval in the unit of the block, and a long time in seconds."""
     for part in output.parts.values():
         shown = [one for one in part if one.is_read_by(Reader.TERMINAL) and one.words()]
         for one in shown:
-            yield _line(one)
+            yield _line(one, block)
             if isnan(one.estimate.value) and one.rows_needed is None and not one.otherwise:
                 yield from _reason(one)
-            yield from _failed(one)
+            yield from _failed(one, block)
             if one.otherwise and one.otherwise.label:
                 yield from _reason(one)
-                yield _line(one.otherwise)
+                yield _line(one.otherwise, block)
                 yield from _reason(one.otherwise)
-                yield from _failed(one.otherwise)
+                yield from _failed(one.otherwise, block)
                 yield "", one.otherwise.estimate.assumes.removeprefix("that "), "", ""
         for assumed in dict.fromkeys(one.estimate.assumes for one in shown):
             if assumed:
                 yield "", f"{shown[0].kind.name} assume", assumed.removeprefix("that "), ""
 
 
-def _line(one: Statistic) -> Line:
-    more = duration(one.estimate.value) if one.unit == "s" else ""
+def _line(one: Statistic, block: Block) -> Line:
+    per, more = block.per(one), ""
+    if one.unit == "s" and per >= _LONG and isfinite(one.estimate.value):
+        more = f"{number(one.estimate.value)} s"
     if one.unit == "rows":
         more = one.unit
     elif form := split_name(one.of)[0]:
         more = f"of its {form}"
-    return estimated(one.label), one.words(), interval(one.estimate), more
+    label = estimated(one.label, block.unit.size, block.is_magnitude)
+    return label, one.words(per), interval(one.estimate, per), more
 
 
-def _failed(one: Statistic) -> Iterator[Line]:
-    if worst := failed_interval(one.failed):
+def _failed(one: Statistic, block: Block) -> Iterator[Line]:
+    if worst := failed_interval(one.failed, block.per(one)):
         yield "  with failed rows", "", worst, ""
 
 
@@ -89,7 +149,7 @@ def _reason(one: Statistic) -> Iterator[Line]:
         yield "", one.estimate.reason, "", ""
 
 
-def _show_fits(fits: Mapping[str, Fit]) -> None:
+def _show_fits(fits: Mapping[str, Fit], block: Block) -> None:
     """Print the laws that fit side by side, with their B-lives, and why the others do not."""
     for law, fit in fits.items():
         if fit.refused:
@@ -102,15 +162,16 @@ def _show_fits(fits: Mapping[str, Fit]) -> None:
     parameters = dict.fromkeys(chain(*(fit.parameters for fit in accepted.values())))
     for name in (*parameters, *B_LIVES):
         extrapolated = any(name in fit.extrapolated for fit in accepted.values())
-        cells = chain(*(_cells(law.get(name)) for law in laws))
+        per = 1.0 if name in ("shape", "sigma") else block.unit.size
+        cells = chain(*(_cells(law.get(name), per) for law in laws))
         lines.append((f"{name}, extrapolated" if extrapolated else name, *cells))
     grid(lines, header=("", *(cell for law in accepted for cell in (law, "95 % interval"))))
     assumed = next(iter(accepted.values())).assumes
     paragraph(f"The numbers of a fitted law assume {assumed}.", indent=2)
 
 
-def _cells(one: Estimate | None) -> tuple[str, str]:
-    return ("", "") if one is None else (number(one.value), interval(one))
+def _cells(one: Estimate | None, per: float) -> tuple[str, str]:
+    return ("", "") if one is None else (number(one.value / per), interval(one, per))
 
 
 def _example(ds: xr.Dataset, status: str) -> str:

@@ -10,12 +10,14 @@ from matplotlib.ticker import LogLocator
 from uq.analysis.convergence import running_estimates
 from uq.drawing.elements_plot import curve_style, display_unit
 from uq.drawing.index_plot import range_of_indices, subject
-from uq.drawing.panel import column, finish, heading
-from uq.drawing.style import COLOURS, LINES, styled
-from uq.drawing.words import as_label, in_words, label
+from uq.drawing.panel import arrows, column, finish, title, whole_numbers
+from uq.drawing.style import INK, LINES, SHADES, styled
+from uq.drawing.words import as_label, label, labelled
 from uq.errors import InputError
 from uq.methods.indices import ST
-from uq.rows.elements import independent_rows, named_elements
+from uq.rows.elements import Floats, independent_rows, named_elements
+
+_MOST_INPUTS = 6
 
 
 @styled
@@ -50,15 +52,18 @@ def convergence(
     if not kind:
         raise InputError(f"{output}: neither its mean nor its median can be estimated")
     chosen = named_elements(independent_rows(ds), output)
-    unit, per = display_unit(chosen[0].units, own["value"].to_numpy(float))
+    unit = display_unit(chosen[0].units, own["value"].to_numpy(float))
     (panel,) = column(axes, 2.1)
     for i, element in enumerate(chosen):
         colour, line = curve_style(i, element, chosen)
-        _curve(panel, own[own["output"] == element.name], per, colour, line, label(ds, element))
+        _curve(
+            panel, own[own["output"] == element.name], unit.size, colour, line, label(ds, element)
+        )
     what = "mean" if kind == "mean" else "median"
-    panel.set_ylabel(as_label(f"{what}: {chosen[0].meaning}", unit, width=30))
-    _over_samples(panel, ds)
-    return finish(panel, entries=len(chosen))
+    known = _over_samples(panel, ds)
+    whole_numbers(panel.yaxis)
+    title(panel, as_label(f"{what}: {chosen[0].meaning}", unit.name, 46), known)
+    return finish(panel)
 
 
 def followed(ds: xr.Dataset, output: str, running: pd.DataFrame) -> tuple[str, pd.DataFrame]:
@@ -102,16 +107,19 @@ def index_convergence(
     if own.empty:
         raise InputError(f"{output}: no total indices of fewer rows are known")
     last = own[own["samples"] == own["samples"].max()].sort_values("value", ascending=False)
-    leading = last["input"].tolist()[: len(COLOURS)]
+    leading = last["input"].tolist()[:_MOST_INPUTS]
     (panel,) = column(axes, 2.1)
     for i, name in enumerate(leading):
-        words = as_label(in_words(ds[name]), width=60)
-        colour, line = COLOURS[i], LINES[i % len(LINES)]
+        words = labelled(ds[name], width=60)
+        colour, line = SHADES[i % len(SHADES)], LINES[(i + i // len(SHADES)) % len(LINES)]
         _curve(panel, own[own["input"] == name], 1.0, colour, line, words)
-    panel.set_ylabel("Total index (ST) [1]")
+    panel.set_ylabel("Total index (ST)")
     panel.set_ylim(range_of_indices(panel.get_ylim()))
-    _over_samples(panel, ds)
-    heading(panel, subject(ds, output))
+    known = _over_samples(panel, ds)
+    for name in leading:
+        samples, _, low, high = _numbers(own[own["input"] == name])
+        arrows(panel, samples, low, high, "y", color=INK)
+    title(panel, as_label(subject(ds, output), width=50), known)
     return finish(panel)
 
 
@@ -123,13 +131,19 @@ def total_indices(running: pd.DataFrame) -> pd.DataFrame:
 def _curve(
     axes: Axes, lines: pd.DataFrame, per: float, colour: str, style: str, words: str
 ) -> None:
-    value, low, high = (lines[end].to_numpy(float) / per for end in ("value", "low", "high"))
-    samples = lines["samples"].to_numpy(float)
+    samples, *numbers = _numbers(lines)
+    value, low, high = (one / per for one in numbers)
     axes.plot(samples, value, color=colour, ls=style, marker=".", label=words)
-    axes.fill_between(samples, low, high, color=colour, alpha=0.2, lw=0)
+    axes.fill_between(samples, low, high, color=colour, alpha=0.3, lw=0)
 
 
-def _over_samples(axes: Axes, ds: xr.Dataset) -> None:
+def _numbers(lines: pd.DataFrame) -> list[Floats]:
+    """Return samples, values, low and high ends."""
+    return [lines[name].to_numpy(float) for name in ("samples", "value", "low", "high")]
+
+
+def _over_samples(axes: Axes, ds: xr.Dataset) -> str:
+    """Draw the axis of samples, and return what the bands are."""
     axes.set_xscale("log", base=2)
     axes.xaxis.set_major_locator(LogLocator(base=2, numticks=6))
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -137,4 +151,4 @@ def _over_samples(axes: Axes, ds: xr.Dataset) -> None:
     replicates = int(ds.attrs["replicates"])
     axes.set_xlabel("Samples" + (f" of each of {replicates} replicates" if replicates > 1 else ""))
     known = any(len(band.get_paths()) for band in axes.collections)
-    axes.set_title("Convergence" + known * ", with 95 % intervals", loc="left")
+    return known * "with 95 % intervals"

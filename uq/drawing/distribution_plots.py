@@ -1,5 +1,6 @@
 """Figures of the distribution of an output: histograms, a lifetime's, a table of quantiles."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -9,19 +10,30 @@ from matplotlib.figure import Figure
 
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles
 from uq.analysis.lifetime import survival
+from uq.analysis.statistics.statistic import Statistic
 from uq.analysis.summary import Summary, summarise
-from uq.drawing.elements_plot import bins, curve_style, display_unit, entitle, occurring_regimes
+from uq.drawing.elements_plot import (
+    bins,
+    curve_style,
+    display_unit,
+    entitle,
+    mark_thresholds,
+    occurring_regimes,
+)
 from uq.drawing.figure import Drawing
-from uq.drawing.panel import column, figure_of, finish, is_wide, logarithmic, roomy
-from uq.drawing.style import MARK, WIDTH, styled, thinned
+from uq.drawing.panel import arrows, column, figure_of, finish, is_wide, logarithmic, roomy
+from uq.drawing.style import INK, MARK, ROWS, WIDTH, styled, thinned
+from uq.drawing.symbols import literal, typeset
 from uq.drawing.words import as_label, label, rows_in_words
 from uq.intervals import Replicates
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
-from uq.wording import TimeUnit, interval, time_unit
+from uq.units import Unit
+from uq.wording import brief
 
 _MOST_PANELS = 4
-_LINE = 0.15  # of the table [inch]
-_BANDS = (("", 0.2, "pointwise 95 % band"), ("band_", 0.1, "light: simultaneous band"))
+_LINE = 0.16  # of the table [inch]
+_COLUMNS = (0.25, 0.55, 1.0)  # right ends
+_BANDS = (("", 0.35, "pointwise 95 % band"), ("band_", 0.15, "light: simultaneous band"))
 
 
 @styled
@@ -45,18 +57,22 @@ def histogram(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figur
     values = [element.at_least for element in chosen]
     (panel,) = column(axes, 2.1)
     together = np.concatenate(values)
-    unit, per = display_unit(chosen[0].units, together)
-    edges, wide = bins(together / per)
+    unit = display_unit(chosen[0].units, together)
+    edges, wide = bins(together / unit.size)
     for i, (element, own) in enumerate(zip(chosen, values, strict=True)):
         colour, line = curve_style(i, element, chosen)
-        style: Any = {"fill": True, "lw": 0} if len(chosen) == 1 else {"ls": line, "lw": 1.2}
-        counts = np.histogram(own / per, edges)[0] / max(len(own), 1)
-        panel.stairs(counts, edges, color=colour, label=label(ds, element), **style)
+        style: Any = {"color": colour, "ls": line, "lw": 1.2}
+        if len(chosen) == 1:
+            style = {"color": ROWS, "fill": True, "lw": 0}
+        counts = np.histogram(own / unit.size, edges)[0] / max(len(own), 1)
+        panel.stairs(counts, edges, label=label(ds, element), **style)
     panel.set(ylim=(0, None), ylabel="Share of rows per bin")
-    panel.set_xlabel(as_label(chosen[0].meaning, unit))
-    logarithmic(panel) if wide else roomy(panel)
+    panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
+    logarithmic(panel) if wide else None
+    mark_thresholds(panel, ds, chosen[0], unit)
+    None if wide else roomy(panel)
     entitle(panel, chosen)
-    return finish(panel, entries=len(chosen))
+    return finish(panel)
 
 
 @styled
@@ -84,30 +100,40 @@ def histogram_by_regime(ds: xr.Dataset, output: str, *, axes: Axes | None = None
     drawn = set(codes[np.any(ended, axis=0)].tolist())
     regimes = {name: one for name, one in occurring_regimes(rows).items() if one[0] in drawn}
     together = np.concatenate([e.values[m] for e, m in zip(chosen, ended, strict=True)])
-    unit, per = display_unit(chosen[0].units, together)
-    edges, wide = bins(together / per)
+    unit = display_unit(chosen[0].units, together)
+    edges, wide = bins(together / unit.size)
     panels = column(axes, 0.7 + 1.1 * len(chosen), len(chosen))
     for panel, element, mask in zip(panels, chosen, ended, strict=True):
         base = np.zeros(len(edges) - 1)
         for name, (code, colour) in regimes.items():
-            own = element.values[mask & (codes == code)] / per
+            own = element.values[mask & (codes == code)] / unit.size
             top = base + np.histogram(own, edges)[0] / max(int(mask.sum()), 1)
             panel.stairs(top, edges, baseline=base, fill=True, color=colour, label=name)
             base = top
-        panel.set(ylim=(0, None), ylabel="Share of rows\nper bin")
+        panel.set(ylim=(0, None), ylabel="Share of\nrows per bin")
         entitle(panel, [element], of=label(ds, element))
-    panels[-1].set_xlabel(as_label(chosen[0].meaning, unit))
-    logarithmic(panels[-1]) if wide else roomy(panels[-1])
+    panels[-1].set_xlabel(as_label(chosen[0].meaning, unit.name))
+    if wide:
+        logarithmic(panels[-1])
+    for panel in panels:
+        mark_thresholds(panel, ds, chosen[0], unit)
+    if not wide:
+        roomy(panels[-1])
     return finish(panels[0])
 
 
 @styled
-def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
+def lifetime(
+    ds: xr.Dataset, output: str, *, summary: Summary | None = None, axes: Axes | None = None
+) -> Figure:
     """Draw the probability that a life has ended against time, with its 95 % bands.
+
+    If the end is a success, the axes say what has happened by then, and what has not yet.
 
     The dark band is pointwise; the light one, where there is one, is simultaneous: it covers the
     whole curve. Marks with intervals show B1, B10 and B50, the times by which 1, 10 and 50 % have
-    ended. The right axis shows the survival probability.
+    ended. Dotted lines are the tolerance bounds that the study asks for. The right axis shows
+    the survival probability.
 
     Parameters
     ----------
@@ -115,6 +141,8 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
         A result.
     output : str
         A lifetime, or one element of it.
+    summary : Summary, optional
+        What `uq.analysis.summary.summarise` returns, if already computed.
     axes : matplotlib.axes.Axes, optional
         Where to draw; by default a new figure.
 
@@ -125,13 +153,14 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
     rows = independent_rows(ds)
     chosen = named_elements(rows, output)
     ends = np.concatenate([e.values[np.isfinite(e.values)] for e in chosen])
-    unit = time_unit(float(np.median(ends)) if len(ends) else 0.0)
+    unit = display_unit("s", ends)
     (panel,) = column(axes, 2.3)
     bands: dict[str, bool] = {}  # in the order in which they are drawn
+    known = (summary or summarise(ds)).outputs
     for i, element in enumerate(chosen):
         curve = survival(ds, element.name)
         curve = curve.isel(time=thinned(curve.sizes["time"]))
-        time = curve["time"].values / unit.seconds
+        time = curve["time"].values / unit.size
         colour, line = curve_style(i, element, chosen)
         words = label(ds, element, never=float(curve["never"]))
         panel.step(time, 1 - curve["survival"], where="post", color=colour, ls=line, label=words)
@@ -140,26 +169,41 @@ def lifetime(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure
             if np.isfinite(low).any():
                 panel.fill_between(time, low, high, step="post", color=colour, alpha=alpha, lw=0)
                 bands[meaning] = True
-        _mark(panel, element, replicates_of(rows), unit, colour)
-    panel.set(ylim=(0, 1.02), ylabel="Probability that\nthe life has ended")
+        described = known.get(element.name)
+        side = "upper" if element.declared.success else "lower"
+        bound = described.find("tolerance", side) if described else None
+        if bound is not None and np.isfinite(bound.estimate.value):
+            panel.axvline(bound.estimate.value / unit.size, color=colour, ls=":", lw=1.2)
+            bands["dotted: tolerance bound"] = True
+    success = chosen[0].declared.success
+    event = typeset(literal(success)) if success else "the life has ended"
+    panel.set(ylim=(0, 1.02), ylabel=f"Probability that\n{event}")
     panel.set_xlabel(as_label(chosen[0].meaning, unit.name))
-    other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
-    other.set_ylabel("Survival probability")
     if is_wide(ends):
         logarithmic(panel)
+    mark_thresholds(panel, ds, chosen[0], unit)
+    panel.set_xlim(panel.get_xlim())
+    for i, element in enumerate(chosen):
+        _mark(panel, element, replicates_of(rows), unit, curve_style(i, element, chosen)[0])
+    other = panel.secondary_yaxis("right", functions=(lambda share: 1 - np.asarray(share),) * 2)
+    other.set_ylabel("Probability of not yet" if success else "Survival probability")
     entitle(panel, chosen, *bands)
-    return finish(panel, entries=len(chosen))
+    return finish(panel)
 
 
-def _mark(axes: Axes, element: Element, replicate: Replicates, unit: TimeUnit, colour: str) -> None:
-    for name, found in life_quantiles(element, B_LIVES, replicate).items():
-        if np.isfinite(found.value):
-            at = found.value / unit.seconds
-            ends = [end if np.isfinite(end) else found.value for end in (found.low, found.high)]
-            reach = np.abs(np.array(ends)[:, None] / unit.seconds - at)
-            axes.errorbar(
-                at, B_LIVES[name], xerr=reach, fmt="o", ms=MARK, lw=1.0, capsize=2.0, color=colour
-            )
+def _mark(axes: Axes, element: Element, replicate: Replicates, unit: Unit, colour: str) -> None:
+    quantiles = life_quantiles(element, B_LIVES, replicate)
+    found = {B_LIVES[name]: one for name, one in quantiles.items() if np.isfinite(one.value)}
+    if not found:
+        return
+    shares = np.array(list(found))
+    value, low, high = np.array([one.numbers for one in found.values()]).T / unit.size
+    edges = axes.get_xlim()
+    axes.plot(value, shares, "o", ms=MARK, color=colour)
+    axes.hlines(shares, np.clip(low, *edges), np.clip(high, *edges), color=colour, lw=1.0)
+    for ends in (low, high):
+        axes.plot(ends, shares, "|", ms=5, mew=1.0, color=colour)
+    arrows(axes, shares, low, high, "x", color=colour)
 
 
 @styled
@@ -187,27 +231,40 @@ def quantile_table(
     outputs = (summary or summarise(ds)).outputs
     found = [outputs[element.name].parts["quantiles"] for element in chosen]
     values = [one.estimate.finite.value for quantiles in found for one in quantiles]
-    unit, per = display_unit(chosen[0].units, np.array(values))
-    words = [label(ds, element) for element in chosen]
-    lines = 3 if any(words) else 2
-    height = _LINE * (4.2 + (lines + 0.4) * len(chosen))
+    unit = display_unit(chosen[0].units, np.array(values))
+    head = as_label(chosen[0].meaning, unit.name, 58).splitlines()
+    blocks = [
+        (label(ds, element), [_quantile(one, unit.size) for one in quantiles])
+        for element, quantiles in zip(chosen, found, strict=True)
+    ]
+    lines = sum(len(quantiles) + bool(words) for words, quantiles in blocks)
+    height = len(head) + 2.8 + lines
     if axes is None:
-        axes = Drawing(figsize=(WIDTH, height)).add_axes((0.02, 0.0, 0.96, 1.0))
+        figure = Drawing(figsize=(WIDTH, _LINE * (height + 0.6)))
+        axes = figure.add_axes((0.02, 0.0, 0.96, 1.0))
     axes.set_axis_off()
-    axes.set(xlim=(0, 1), ylim=(height / _LINE, 0))
-    axes.text(0, 0.3, as_label(chosen[0].meaning, unit, 60), va="top")
-    axes.text(0, 1.5, f"{rows_in_words(chosen)}; 95 % intervals", va="top", color="0.35", size=7)
-    places = [(k + 1) / len(found[0]) for k in range(len(found[0]))]
-    for place, one in zip(places, found[0], strict=True):
-        axes.text(place, 3.6, f"{100 * float(one.key[-1]):g} %", ha="right")
-    for y in (2.6, 3.9, height / _LINE - 0.1):
-        axes.axhline(y, color="black", lw=0.6)
-    for i, (name, quantiles) in enumerate(zip(words, found, strict=True)):
-        y = 5.0 + (lines + 0.4) * i
-        if lines == 3:
-            axes.text(0, y, name)
+    axes.set(xlim=(0, 1), ylim=(height + 0.3, -0.3))
+    axes.text(0, 0, "\n".join(head), va="top")
+    y: float = len(head) + 0.1
+    axes.text(0, y, rows_in_words(chosen), va="top", color="0.45", size=7)
+    columns = ("quantile", "value", "95 % interval")
+    for x, text in zip(_COLUMNS, columns, strict=True):
+        axes.text(x, y + 1.95, text, ha="right", size=7)
+    for line in (y + 1.05, y + 2.15, height + 0.15):
+        axes.axhline(line, color=INK, lw=0.6)
+    y += 2.95
+    for words, quantiles in blocks:
+        if words:
+            axes.text(0, y, words)
             y += 1
-        for place, one in zip(places, quantiles, strict=True):
-            axes.text(place, y, one.words(per), ha="right")
-            axes.text(place, y + 0.95, interval(one.estimate, per), ha="right", size=6)
+        for texts in quantiles:
+            for x, text in zip(_COLUMNS, texts, strict=True):
+                axes.text(x, y, re.sub(r"-(?=\d)", "\N{MINUS SIGN}", text), ha="right")
+            y += 1
     return figure_of(axes)
+
+
+def _quantile(one: Statistic, per: float) -> tuple[str, str, str]:
+    value, ends = brief(one.estimate, per)
+    value = value if np.isfinite(one.estimate.value) else one.words(per)
+    return f"{100 * float(one.key[-1]):g} %", value, ends

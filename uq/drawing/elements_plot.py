@@ -3,25 +3,30 @@
 import textwrap
 from collections.abc import Sequence
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
 from uq.drawing.panel import is_wide
-from uq.drawing.style import COLOURS, LINES
-from uq.drawing.words import rows_in_words
-from uq.rows.elements import Element, Floats, flags
-from uq.wording import unit_of
+from uq.drawing.style import COLOURS, LIMIT, LINES, SHADES
+from uq.drawing.symbols import literal
+from uq.drawing.words import labelled, powers, rows_in_words
+from uq.rows.elements import Element, Floats, analysis_of, flags
+from uq.units import Unit, typical, unit_of
+from uq.wording import in_unit
+
+_MOST_BINS = 60
 
 
 def curve_style(i: int, element: Element, chosen: Sequence[Element]) -> tuple[str, str]:
-    """Return the colour and line style of a curve: of two dimensions, the first sets the line."""
+    """Return the shade and line style of a curve: of two dimensions, the first sets the line."""
     if len(element.place) < 2:
-        return COLOURS[i % len(COLOURS)], LINES[i // len(COLOURS) % len(LINES)]
+        return SHADES[i % len(SHADES)], LINES[(i + i // len(SHADES)) % len(LINES)]
     firsts = list(dict.fromkeys(next(iter(one.place.values())) for one in chosen))
     line = firsts.index(next(iter(element.place.values())))
-    return COLOURS[i % (len(chosen) // len(firsts)) % len(COLOURS)], LINES[line % len(LINES)]
+    return SHADES[i % (len(chosen) // len(firsts)) % len(SHADES)], LINES[line % len(LINES)]
 
 
 def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> None:
@@ -30,18 +35,61 @@ def entitle(axes: Axes, chosen: Sequence[Element], *more: str, of: str = "") -> 
     axes.set_title(textwrap.fill(", ".join(texts), 46), loc="left")
 
 
-def display_unit(units: str, values: Floats) -> tuple[str, float]:
-    """Return the unit of an axis and its length, as in `uq.wording.unit_of`.
+def display_unit(units: str, values: Floats) -> Unit:
+    """Return the unit of an axis that shows these values of an output."""
+    return unit_of(units, typical(values))
+
+
+def input_axis(axes: Axes, parameter: xr.DataArray, values: Floats, width: int = 44) -> float:
+    """Label the horizontal axis as that of an input, and return the size of its unit."""
+    unit = unit_of(parameter.attrs["units"], np.abs(values).max(initial=0.0))
+    axes.set_xlabel(labelled(parameter, unit.name, width))
+    return unit.size
+
+
+def mark_thresholds(
+    axes: Axes, ds: xr.Dataset, element: Element, unit: Unit, vertical: bool = False
+) -> None:
+    """Draw the study's thresholds of an output as lines, those of an angle on both sides.
+
+    One that is so far away that it would squeeze the data is an arrow at the edge.
 
     Parameters
     ----------
-    units : str
-        Of the output.
-    values : ndarray
-        Those to be drawn; only finite ones count.
+    axes : Axes
+        With the data.
+    ds : xarray.Dataset
+    element : Element
+    unit : Unit
+        That of the axis.
+    vertical : bool
+        Whether the output is on the vertical axis.
     """
-    known = np.abs(values[np.isfinite(values)])
-    return unit_of(units, float(np.median(known)) if len(known) else np.nan)[:2]
+    ends, scale = (axes.get_ylim, axes.get_yscale) if vertical else (axes.get_xlim, axes.get_xscale)
+    line = axes.axhline if vertical else axes.axvline
+    for threshold in analysis_of(ds).thresholds.get(element.output, ()):
+        at = threshold / unit.size
+        sign = "±" if element.is_angle else ""
+        words = f"threshold {sign}{powers(in_unit(threshold, unit))}"
+        low, high = ends()
+        for place in (-at, at) if element.is_angle else (at,):
+            style: Any = {"color": LIMIT, "label": words}
+            if _is_near(place, low, high, scale() == "log"):
+                line(place, lw=1.0, ls=(0, (4, 1.5)), **style)
+            else:
+                edge = float(place > high)
+                arrow = ("v^" if vertical else "<>")[int(edge)]
+                spot = (0.5, edge) if vertical else (edge, 0.5)
+                style["label"] += ", outside the frame"
+                axes.plot(*spot, arrow, ms=5, transform=axes.transAxes, clip_on=False, **style)
+            words = f"_{words}"  # one line of the legend
+
+
+def _is_near(place: float, low: float, high: float, logarithmic: bool) -> bool:
+    if logarithmic and place <= 0:
+        return False
+    place, low, high = np.log10([place, low, high]) if logarithmic else (place, low, high)
+    return bool(low - (high - low) / 2 <= place <= high + (high - low) / 2)
 
 
 def bins(values: Floats) -> tuple[Floats, bool]:
@@ -52,9 +100,20 @@ def bins(values: Floats) -> tuple[Floats, bool]:
     scaled = np.log10(values) if wide else values
     if np.ptp(scaled) <= 1e-9 * np.abs(scaled).max():  # but for rounding, one value
         scaled = scaled[:1]
-    count = len(np.histogram_bin_edges(scaled, "scott")) - 1
-    edges = np.histogram_bin_edges(scaled, min(count, 60))
+    low, high = scaled.min(), scaled.max()
+    if high - low <= _MOST_BINS and not wide and (scaled == np.round(scaled)).all():
+        return np.arange(low - 0.5, high + 1.0), False  # counts: a bin for each
+    edges = np.histogram_bin_edges(scaled, _bin_count(scaled))
     return (10**edges if wide else edges), wide
+
+
+def _bin_count(values: Floats) -> int:
+    """Return the number of bins: by Scott's rule, or Freedman's for a peak beside a long tail."""
+    middle = np.subtract(*np.quantile(values, (0.75, 0.25)))
+    widths = [width for width in (3.49 * values.std(), 2 * middle) if width > 0]
+    if not widths:
+        return 1
+    return int(min(np.ceil(np.ptp(values) * np.cbrt(len(values)) / min(widths)), _MOST_BINS))
 
 
 def occurring_regimes(rows: xr.Dataset) -> dict[str, tuple[int, str]]:
@@ -75,4 +134,4 @@ def occurring_regimes(rows: xr.Dataset) -> dict[str, tuple[int, str]]:
     there = set(np.unique(rows["regime"].values).tolist())
     known = [(name, code) for code, name in flags(rows["regime"]) if code >= 0]
     coloured = zip(known, cycle(COLOURS))
-    return {name: (code, colour) for (name, code), colour in coloured if code in there}
+    return {literal(name): (code, colour) for (name, code), colour in coloured if code in there}

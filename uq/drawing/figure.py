@@ -7,6 +7,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator
 
 from uq.drawing.style import styled
 from uq.places import file_behind
@@ -30,16 +31,17 @@ def lay_out(figure: Figure) -> None:
     figure.set_dpi(DOTS_PER_INCH)
     FigureCanvasAgg(figure)
     if engine := figure.get_layout_engine():
-        before = _tick_labels(figure)
         engine.execute(figure)
-        if _tick_labels(figure) != before:  # the new size may call for longer numbers
-            engine.execute(figure)
+        _keep_ticks(figure)  # those of the new size, which may call for longer numbers
+        engine.execute(figure)
         figure.set_layout_engine("none")  # or else each file would repeat it
 
 
-def _tick_labels(figure: Figure) -> list[str]:
-    sides = (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis))
-    return [label.get_text() for axis in sides for label in axis.get_ticklabels()]
+def _keep_ticks(figure: Figure) -> None:
+    """Fix the ticks: others at the next size would need other room."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(FixedLocator(list(axis.get_majorticklocs())))
 
 
 @styled

@@ -5,16 +5,16 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.panel import column, finish, heading, roomy
-from uq.drawing.style import COLOURS, styled
-from uq.drawing.words import as_label, element_in_words, in_words
+from uq.drawing.panel import arrows, column, finish, heading, roomy
+from uq.drawing.style import BARS, INK, styled
+from uq.drawing.words import as_label, element_in_words, labelled, powers
 from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
 from uq.indices.targets import FORMS, split_name
 from uq.rows.elements import named_elements
 from uq.rows.variables import is_category
-from uq.wording import time_unit
+from uq.wording import quantity
 
 
 @styled
@@ -54,37 +54,40 @@ def index_bars(
     kinds, name = found.kinds(), found.name
     last = list(kinds.values())[-1]
     parameters = sorted(last, key=lambda parameter: size(last[parameter]))
-    labels = [as_label(in_words(ds[parameter]), width=30) for parameter in parameters]
+    labels = [labelled(ds[parameter], width=30) for parameter in parameters]
     lines = np.array([max(1.3 * (1 + label.count("\n")), len(kinds)) for label in labels])
     (panel,) = column(axes, 0.8 + 0.13 * lines.sum())
     middle = np.cumsum(lines) - lines / 2
-    thickness = 0.8 * lines.min() / len(kinds)
+    thickness, ends = 0.8 * lines.min() / len(kinds), []
     for i, (kind, values) in enumerate(kinds.items()):
         y = middle + thickness * (len(kinds) / 2 - i - 0.5)
-        value, *ends = np.array([values[parameter].numbers for parameter in parameters]).T
-        panel.barh(y, value, thickness, color=COLOURS[i], label=kind.words)
-        panel.errorbar(value, y, xerr=np.abs(ends - value), fmt="none", ecolor="black", lw=0.8)
+        value, low, high = np.array([values[parameter].numbers for parameter in parameters]).T
+        panel.barh(y, value, thickness, color=BARS[i % len(BARS)], label=kind.words)
+        panel.hlines(y, low, high, color=INK, lw=0.8)
+        ends.append((y, low, high))
     for kind, null in found.indices.nulls.items():
-        colour = COLOURS[list(kinds).index(kind)] if len(kinds) > 1 else "black"
+        colour = BARS[list(kinds).index(kind) % len(BARS)] if len(kinds) > 1 else INK
         one = f"{100 * (1 - null.exceeded):g} % limit for an input without effect"
         limits = {one: null.one, "95 % limit for the largest of them": null.largest}
         for line, (label, limit) in zip(("--", ":"), limits.items(), strict=True):
             if np.isfinite(limit):
                 named = "_" * (label in panel.get_legend_handles_labels()[1])  # each once
                 panel.axvline(limit, color=colour, ls=line, lw=0.8, label=named + label)
-    panel.axvline(0, color="black", lw=0.6)
+    panel.axvline(0, color=INK, lw=0.6)
     shares = all(kind.unit != "output" for kind in kinds)
     if shares:
         panel.set_xlim(range_of_indices(panel.get_xlim()))
+    for y, low, high in ends:
+        arrows(panel, y, low, high, "x", color=INK)
     panel.set_yticks(middle, labels)
     panel.set_ylim(0, lines.sum())
     roomy(panel, ticks=3)  # the labels take most of the width
     known = any(np.isfinite(one.low) for values in kinds.values() for one in values.values())
     form, *_ = split_name(name)
     unit = f"Effect on the {FORMS[form]}" if form in FORMS else "Effect [unit of the output]"
-    axis = "Sensitivity index [1]" if shares else unit
+    axis = "Sensitivity index" if shares else unit
     panel.set_xlabel(axis + known * ",\nwith 95 % interval")
-    heading(panel, subject(ds, name))
+    heading(panel, as_label(subject(ds, name), width=56))
     return finish(panel)
 
 
@@ -110,13 +113,12 @@ def subject(ds: xr.Dataset, name: str) -> str:
     category, _, label = inside.partition("=")
     if is_category(ds, category):
         meaning = ds[category].attrs["long_name"].removeprefix("the ")
-        return as_label(f"whether the {meaning} is {label}", width=56)
+        return f"whether the {meaning} is {label}"
     (element,) = named_elements(ds, inside)
     words = element_in_words(ds, element)
     if threshold:
-        unit = time_unit(float(threshold))
-        at = f"{float(threshold) / unit.seconds:g} {unit.name}"
+        at = powers(quantity(float(threshold), element.units))
         words = f"whether the {words.removeprefix('the ')}{',' * bool(element.place)} is below {at}"
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
-    return as_label(words, width=56)
+    return words

@@ -6,10 +6,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uq.analysis.sampled_inputs import EVERYWHERE, laws_and_values
-from uq.drawing.elements_plot import bins
+from uq.drawing.elements_plot import bins, input_axis
 from uq.drawing.panel import figure_of, grid, logarithmic, roomy
-from uq.drawing.style import COLOURS, styled
-from uq.drawing.words import as_label, named_input
+from uq.drawing.style import INK, ROWS, styled
+from uq.drawing.words import as_label
 from uq.errors import InputError
 from uq.inputs.conditioning import cdf_within
 from uq.inputs.law import Law
@@ -47,19 +47,20 @@ def inputs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     for panel in panels[len(found) :]:
         panel.set_axis_off()
     for panel, (name, (law, values)) in zip(panels, found.items(), strict=False):
-        _panel(panel, law, values, ticks=6 // columns)
         width = 44 // columns
+        per = 1.0
         if law.times is None:
-            panel.set_xlabel(named_input(ds[name], width))
+            per = input_axis(panel, ds[name], values, width)
         else:
             factor = f"{ds[name].attrs['long_name']}: factor on {law.times}"
             panel.set_xlabel(as_label(factor, width=width))
+        _panel(panel, law, values, per, ticks=6 // columns)
     rows = len(next(iter(found.values()))[1])
     panels[0].set_title(f"Share of {rows} rows per bin; line: stated law", loc="left")
     return figure_of(panels[0])
 
 
-def _panel(axes: Axes, law: Law, values: Floats, ticks: int) -> None:
+def _panel(axes: Axes, law: Law, values: Floats, per: float, ticks: int) -> None:
     edges, wide = bins(values)
     edges[0], edges[-1] = min(edges[0], values.min()), max(edges[-1], values.max())
     rows = np.histogram(values, edges)[0] / len(values)
@@ -67,8 +68,8 @@ def _panel(axes: Axes, law: Law, values: Floats, ticks: int) -> None:
     upper = cdf_within(law, np.append(np.nextafter(edges[1:-1], -np.inf), edges[-1]), EVERYWHERE)
     lower = cdf_within(law, np.nextafter(edges[:1], -np.inf), EVERYWHERE)
     stated = np.diff(np.append(lower, upper))
-    axes.stairs(rows, edges, fill=True, color=COLOURS[4])
-    axes.stairs(stated, edges, color=COLOURS[1], lw=1.2)
+    axes.stairs(rows, edges / per, fill=True, color=ROWS)
+    axes.stairs(stated, edges / per, color=INK, lw=1.0)
     axes.set_ylim(0, None)
     roomy(axes, ticks)
     if wide:

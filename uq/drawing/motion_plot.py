@@ -1,19 +1,22 @@
 """Figures of a machine's motion: time histories, phase portraits and Poincaré sections."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from uq.drawing.panel import above, column, figure_of, finish
+from uq.drawing.figure import Drawing
+from uq.drawing.panel import above, column, figure_of, finish, roomy, title
 from uq.drawing.quantities import families, find, label_axes, pair, scale_of, with_quantities
-from uq.drawing.style import COLOURS, LINES, MARK, are_many, point_size, styled
-from uq.drawing.words import as_label, in_words, powers
+from uq.drawing.style import COLOURS, INK, LIMIT, LINES, MARK, PAGE, are_many, point_size, styled
+from uq.drawing.words import labelled, powers
 from uq.errors import InputError
 from uq.rows.elements import Floats
 
+_LAST = 4  # periods of the drive
 _BESIDE = 32  # width of the label of the vertical axis [characters]
 
 
@@ -60,15 +63,71 @@ def history(
     for panel, group, scale in zip(panels, found, scales, strict=True):
         for i, one in enumerate(group):
             colour, line = COLOURS[i % len(COLOURS)], LINES[i % len(LINES)]
-            series, text = one.values * scale.factor, as_label(in_words(one))
+            series, text = one.values * scale.factor, labelled(one)
             panel.plot(time, series, color=colour, ls=line, lw=0.8, label=text)
         if len(group) > 1:
             panel.set_ylabel(f"[{powers(scale.unit)}]")
             panel.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0)
         else:
-            above(panel, as_label(in_words(group[0]), scale.unit))
-    panels[-1].set_xlabel(as_label(in_words(ds["time"]), clock.unit))
+            above(panel, labelled(group[0], scale.unit))
+    panels[-1].set_xlabel(labelled(ds["time"], clock.unit))
     return figure_of(panels[0])
+
+
+@styled
+def motion(ds: xr.Dataset) -> Figure:
+    """Draw a simulated motion: the whole time history, and its last periods beside it.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        From `uq.simulate`, with a ``trajectory``.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A panel for each of at most six quantities. Dashed lines are stops; angles of turning parts
+        lie within half a turn to each side.
+    """
+    trajectory = ds["trajectory"]
+    order = trajectory["shown"].values
+    places = sorted(np.flatnonzero(order >= 0), key=lambda place: order[place])
+    series = with_quantities(ds)
+    period = float(trajectory.attrs["period"])
+    clock = scale_of([ds["time"]])
+    time = ds["time"].values
+    last = time >= time[-1] - _LAST * period
+    columns = 2 if 0 < last.sum() < len(time) / 2 else 1
+    figure = Drawing(figsize=(PAGE, 0.6 + 0.95 * len(places)), layout="constrained")
+    options: dict[str, Any] = {"width_ratios": (3, 2)} if columns == 2 else {}
+    panels = figure.subplots(len(places), columns, squeeze=False, sharex="col", **options)
+    for row, place in zip(panels, places, strict=True):
+        one = series[str(trajectory["quantity"].values[place])]
+        if trajectory["turns"].values[place]:
+            one = one.copy(data=_wrapped(one.values))
+            one.attrs["long_name"] = str(one.attrs["long_name"]).removesuffix(", turns included")
+        scale = scale_of([one])
+        stops = trajectory["lower_stop"].values[place], trajectory["upper_stop"].values[place]
+        for panel, part in zip(row, (slice(None), last), strict=False):
+            y = one.values[part] * scale.factor
+            panel.plot(time[part] * clock.factor, y, color=INK, lw=0.6)
+            for stop in filter(np.isfinite, stops):
+                panel.axhline(stop * scale.factor, color=LIMIT, ls="--", lw=0.8)
+        dashed = "; dashed: stops" if np.isfinite(stops).any() else ""
+        above(row[0], labelled(one, scale.unit, width=60) + dashed)
+    for panel in panels[-1]:
+        panel.set_xlabel(labelled(ds["time"], clock.unit))
+        roomy(panel)
+    if columns == 2:
+        title(panels[0, 1], f"The last {_LAST} periods of the drive")
+    return figure
+
+
+def _wrapped(angle: Floats) -> Floats:
+    """Return an angle [rad] within half a turn to each side, NaN where it jumps from end to end."""
+    wrapped = (angle + np.pi) % (2 * np.pi) - np.pi
+    wrapped[1:][np.abs(np.diff(wrapped)) > np.pi] = np.nan
+    return wrapped
 
 
 @styled

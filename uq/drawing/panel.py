@@ -116,6 +116,32 @@ def is_wide(values: Floats) -> bool:
     return bool(high > 30 * low and middle - low < (high - low) / 4)
 
 
+def arrows(axes: Axes, place: Floats, low: Floats, high: Floats, along: str, **style: Any) -> None:
+    """Draw an arrow at the edge of the frame for each end of an interval that leaves it.
+
+    Parameters
+    ----------
+    axes : Axes
+        With its final limits.
+    place : ndarray
+        Of the intervals, along the other axis.
+    low, high : ndarray
+        Their ends; infinite ones leave any frame, NaN is none.
+    along : {"x", "y"}
+        The axis that the intervals are parallel to.
+    **style
+        Of the arrows.
+    """
+    first, last = axes.get_xlim() if along == "x" else axes.get_ylim()
+    for edge, outside, marker in zip(
+        (first, last), (low < first, high > last), ("<>" if along == "x" else "v^"), strict=True
+    ):
+        if outside.any():
+            points = [place[outside], np.full(outside.sum(), edge)]
+            at = points[::-1] if along == "x" else points
+            axes.plot(*at, marker, ms=3.5, mew=0, clip_on=False, zorder=5, **style)
+
+
 def figure_of(axes: Axes) -> Figure:
     """Return the figure that axes belong to."""
     figure = axes.get_figure(root=True)
@@ -161,6 +187,11 @@ def heading(axes: Axes, text: str) -> None:
         figure.suptitle(text, x=0.01, ha="left", fontsize=8)
     else:
         axes.set_title(f"{text}\n{axes.get_title(loc='left')}".strip(), loc="left")
+
+
+def title(axes: Axes, *lines: str) -> None:
+    """Write lines of text above a panel: what its vertical axis shows, and of what."""
+    axes.set_title("\n".join(filter(None, lines)), loc="left")
 
 
 def above(axes: Axes, text: str) -> None:

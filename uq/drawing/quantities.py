@@ -8,10 +8,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from uq.drawing.style import COLOURS
-from uq.drawing.words import as_label, in_words
+from uq.drawing.symbols import literal
+from uq.drawing.words import in_words, labelled
 from uq.errors import InputError, nearest
 from uq.rows.elements import Floats
-from uq.wording import prefixed, time_unit
+from uq.units import unit_of
 
 
 class Scale(NamedTuple):
@@ -44,7 +45,7 @@ def with_quantities(ds: xr.Dataset) -> xr.Dataset:
     if "trajectory" not in ds:
         return ds
     trajectory = ds["trajectory"]
-    series = trajectory.drop_vars(["unit", "meaning"]).to_dataset("quantity")
+    series = trajectory.reset_coords(drop=True).to_dataset("quantity")
     for one in trajectory.transpose("quantity", "time"):
         words = {"units": one["unit"].item(), "long_name": one["meaning"].item()}
         series[one["quantity"].item()].attrs = words
@@ -105,11 +106,8 @@ def scale_of(variables: Sequence[xr.DataArray]) -> Scale:
         unlike = ", ".join(f"{name} [{unit}]" for unit, name in units.items())
         raise InputError(f"quantities of different units cannot share an axis: {unlike}")
     (unit,) = units
-    largest = max(_largest(one) for one in variables)
-    time = time_unit(largest)
-    if unit == "s" and time.name != "seconds":
-        return Scale(1 / time.seconds, time.name)
-    return Scale(*prefixed(unit, largest))
+    shown = unit_of(unit, max(_largest(one) for one in variables))
+    return Scale(1 / shown.size, shown.name)
 
 
 def label_axes(
@@ -126,8 +124,8 @@ def label_axes(
         Of a line beside the vertical axis [characters].
     """
     scales = scale_of([across]), scale_of([up])
-    axes.set_xlabel(as_label(in_words(across), scales[0].unit))
-    axes.set_ylabel(as_label(in_words(up), scales[1].unit, width))
+    axes.set_xlabel(labelled(across, scales[0].unit))
+    axes.set_ylabel(labelled(up, scales[1].unit, width))
     return scales
 
 
@@ -149,7 +147,9 @@ def place_in(variable: xr.DataArray, i: int) -> str:
     if dim not in variable.coords:
         return f"{dim} {i + 1}"
     value = variable[dim].values[i]
-    return str(value) if isinstance(value, str) else f"{in_words(variable[dim])} {value:g}"
+    if isinstance(value, str):
+        return literal(value)
+    return literal(f"{in_words(variable[dim])} {value:g}")
 
 
 def _largest(variable: xr.DataArray) -> float:

@@ -12,9 +12,11 @@ from matplotlib.figure import Figure
 from uq.drawing.panel import column, finish
 from uq.drawing.quantities import families, find, label_axes, pair, scale_of
 from uq.drawing.style import COLOURS, LINES, are_many, point_size, styled
+from uq.drawing.symbols import literal
 from uq.drawing.words import as_label, powers
 from uq.errors import InputError
-from uq.wording import percent
+from uq.units import Unit
+from uq.wording import in_unit, percent
 
 _MOST_CHANGES = 12  # of regime that are marked along a curve
 _OTHERS, _FAILED = "#BBBBBB", "#FFFFFF"
@@ -114,7 +116,7 @@ def bifurcation(
         points = places[chosen], values[chosen]
         size = point_size("diagram", there.sum())
         many = are_many(int(chosen.sum()))
-        axes.plot(*points, "o", ms=size, mew=0, color=colour, label=word, rasterized=many)
+        axes.plot(*points, "o", ms=size, mew=0, color=colour, label=literal(word), rasterized=many)
     return finish(axes)
 
 
@@ -186,5 +188,6 @@ def _basin(one: xr.Dataset, outputs: Sequence[str]) -> str:
     for name in outputs:
         value = find(one, f"representative_{name}")
         scale = scale_of([value])
-        known.append(f"{value.item() * scale.factor:.3g} {powers(scale.unit)}".removesuffix(" 1"))
+        rounded = float(f"{value.item():.3g}")
+        known.append(powers(in_unit(rounded, Unit(scale.unit, 1 / scale.factor))))
     return as_label(", ".join([*known, percent(float(one["share"]))]), width=60)

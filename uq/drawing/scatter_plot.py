@@ -1,6 +1,7 @@
 """Scatter plots: an output against its most influential inputs, and inputs by regime."""
 
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,25 +11,42 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from uq import intervals, order_statistics
-from uq.drawing.elements_plot import display_unit, entitle, occurring_regimes
-from uq.drawing.panel import finish, grid, is_wide, logarithmic, roomy, whole_numbers
-from uq.drawing.style import COLOURS, point_size, styled, thinned
-from uq.drawing.words import as_label, label, named_input
+from uq.drawing.elements_plot import (
+    display_unit,
+    input_axis,
+    mark_thresholds,
+    occurring_regimes,
+)
+from uq.drawing.panel import finish, grid, is_wide, logarithmic, roomy, title, whole_numbers
+from uq.drawing.style import INK, ROWS, SHADES, point_size, styled, thinned
+from uq.drawing.words import as_label, label, labelled, rows_in_words
 from uq.errors import InputError
 from uq.indices.independent_inputs import independent_inputs
 from uq.methods.indices import RefusedError
 from uq.methods.measures import ks_distances
-from uq.rows.elements import Element, Floats, independent_rows, named_elements, replicates_of
+from uq.rows.elements import (
+    Element,
+    Floats,
+    Mask,
+    independent_rows,
+    named_elements,
+    replicates_of,
+)
 from uq.tails import lacks_variance
+from uq.units import unit_of
 
 _MOST_INPUTS = 3
 _MOST_POINTS = 3000
 _IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
+_EMPTY = 0.05  # around a mean without a row, over the height of the panel, that interrupts a line
+_GAP = 0.1  # between neighbouring rows, over the width of the panel, that interrupts a line
 
 
 @styled
 def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     """Draw an output against its most influential inputs, with conditional means.
+
+    Rows in several regimes have a line for each, which stops where an input has no such row.
 
     Parameters
     ----------
@@ -48,47 +66,77 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     rows = independent_rows(ds)
     element = named_elements(rows, output)[0]
     inputs = independent_inputs(rows)
-    shown = leading(inputs, element)[:_MOST_INPUTS]
-    panels = grid(axes, 0.5 + 1.5 * len(shown), len(shown), sharey=True)[:, 0]
-    finite = np.isfinite(element.values)
-    unit, per = display_unit(element.units, element.values)
-    wide = is_wide(element.values[finite])
-    independent = replicates_of(rows) is None
-    for panel, name in zip(panels, shown, strict=True):
-        _points(panel, inputs[name], element, per)
-        _conditional(panel, inputs[name], element, per, wide, independent)
-        _name_input(panel, rows, name)
+    first = leading(inputs, element)[:_MOST_INPUTS]
+    panels = grid(axes, 0.6 + 1.4 * len(first), len(first), sharey=True)[:, 0]
+    unit = display_unit(element.units, element.values)
+    shown = replace(
+        element,
+        values=element.values / unit.size,
+    )
+    wide = is_wide(shown.values[np.isfinite(shown.values)])
+    parts = _parts(rows, len(element.values))
+    medians = wide or any(_needs_median(shown, own) for own, _ in parts.values())
+    for panel, name in zip(panels, first, strict=True):
+        per = input_axis(panel, rows[name], inputs[name], width=46)
+        x = inputs[name] / per
+        _points(panel, x, shown)
+        for words, (own, colour) in parts.items():
+            _conditional(panel, x, shown, own, colour, words, medians, replicates_of(rows) is None)
+        roomy(panel)
         whole_numbers(panel.yaxis)
-        panel.set_ylabel(as_label(element.meaning, unit, width=24))
         if wide:
             logarithmic(panel, vertical=True)
-    entitle(panels[0], [element], of=label(ds, element))
-    return finish(panels[0], entries=0)  # the panels are high enough to make room
+        mark_thresholds(panel, ds, element, unit, vertical=True)
+    above = as_label(element.meaning, unit.name, 46), label(ds, element)
+    what = "median" if medians else "mean"
+    of_each = f"lines: {what} in slices of a regime's rows" if len(parts) > 1 else ""
+    title(panels[0], *above, rows_in_words([element]), of_each)
+    return finish(panels[0])
 
 
-def _points(axes: Axes, x: Floats, element: Element, per: float) -> None:
-    y, shown = element.values / per, np.zeros(len(x), dtype=bool)
+def _parts(rows: xr.Dataset, count: int) -> dict[str, tuple[Mask, str]]:
+    """Return which rows a line describes, and its colour: of each regime, or of all rows."""
+    regimes = occurring_regimes(rows)
+    if len(regimes) < 2:
+        return {"": (np.ones(count, dtype=bool), INK)}
+    codes = rows["regime"].values
+    return {name: (codes == code, colour) for name, (code, colour) in regimes.items()}
+
+
+def _points(axes: Axes, x: Floats, element: Element) -> None:
+    y, shown = element.values, np.zeros(len(x), dtype=bool)
     shown[thinned(len(x), _MOST_POINTS)] = True
     ended = shown & np.isfinite(y) & ~element.censored
     size = point_size("cloud", shown.sum())
-    style: Any = {"ls": "", "rasterized": True, "alpha": 0.6, "mew": 0}
-    axes.plot(x[ended], y[ended], ".", ms=size, color=COLOURS[4], **style)
+    style: Any = {"ls": "", "rasterized": True, "color": ROWS, "mew": 0}
+    axes.plot(x[ended], y[ended], ".", ms=size, alpha=0.7, **style)
     if (going := shown & element.censored & np.isfinite(y)).any():
-        words = "censored at the horizon"
-        axes.plot(x[going], y[going], "^", ms=size, color=COLOURS[3], label=words, **style)
+        axes.plot(x[going], y[going], "^", ms=size, label="censored at the horizon", **style)
     if (never := shown & element.never).any():
         edge: Any = {"transform": axes.get_xaxis_transform(), "clip_on": False, "rasterized": True}
         words, top = "never (at the top edge)", np.ones(never.sum())
-        axes.plot(x[never], top, "|", ms=5, color=COLOURS[5], label=words, **edge)
+        axes.plot(x[never], top, "|", ms=5, color=SHADES[2], label=words, **edge)
+
+
+def _needs_median(element: Element, own: Mask) -> bool:
+    """Whether the mean of some rows is infinite or without information."""
+    values = element.at_most[own[element.present]]
+    return not np.isfinite(values).all() or lacks_variance(values)
 
 
 def _conditional(
-    axes: Axes, x: Floats, element: Element, per: float, wide: bool, independent: bool
+    axes: Axes,
+    x: Floats,
+    element: Element,
+    own: Mask,
+    colour: str,
+    regime: str,
+    medians: bool,
+    independent: bool,
 ) -> None:
-    """Draw the mean within slices of the input, or the median where the mean is uninformative."""
-    present = element.present
-    x, values = x[present], element.at_most / per
-    medians = wide or not np.isfinite(values).all() or lacks_variance(values)
+    """Draw the mean (or median) of some rows within slices of the input, with its 95 % band."""
+    there = own[element.present]
+    values, x = element.at_most[there], x[element.present][there]
     count = min(_MOST_BINS, len(x) // _IN_BIN)
     if count < 2:
         return
@@ -100,14 +148,27 @@ def _conditional(
     else:
         line = np.array([values[rows].mean() for rows in slices])
         ends = [intervals.mean_interval(values[rows]) for rows in slices]
-    line = np.where(np.isfinite(line), line, np.nan)
-    words = f"{'median' if medians else 'mean'} in slices of {len(x) // count} rows"
-    axes.plot(middle, line, color=COLOURS[1], label=words + independent * ", 95 % band")
+    apart = [
+        np.min(np.abs(values[rows] - at)) if np.isfinite(at) else 0.0
+        for rows, at in zip(slices, line, strict=True)
+    ]
+    empty = np.array(apart) > _EMPTY * np.ptp(axes.get_ylim())
+    line = np.where(np.isfinite(line) & ~empty, line, np.nan)
+    low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
+    # A gap between neighbouring rows interrupts the line: nothing is known in between.
+    inside = np.sort(x)
+    jumps = np.flatnonzero(np.diff(inside) > _GAP * np.ptp(axes.get_xlim()))
+    gaps = np.searchsorted(middle, (inside[jumps] + inside[jumps + 1]) / 2)
+    middle, line, low, high = (np.insert(one, gaps, np.nan) for one in (middle, line, low, high))
+    what = f"{'median' if medians else 'mean'} in slices of {len(x) // count} rows"
+    if independent:
+        what += ", 95 % band"
+    axes.plot(middle, line, color=colour, label=regime or what)
     ended = values[np.isfinite(values)]
     if independent and len(ended):
-        low, high = np.array(ends, dtype=float).T
         top = ended.max()  # an infinite end would hide all others
-        axes.fill_between(middle, low, np.minimum(high, top), color=COLOURS[1], alpha=0.25, lw=0)
+        band: Any = {"facecolor": (colour, 0.25), "edgecolor": (colour, 0.8), "lw": 0.4}
+        axes.fill_between(middle, low, np.minimum(high, top), **band)
 
 
 def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
@@ -124,11 +185,6 @@ def leading(inputs: dict[str, Floats], element: Element) -> list[str]:
         return -float(np.average((means - ranks.mean()) ** 2)) if len(ranks) else 0.0
 
     return sorted(inputs, key=lambda name: between(inputs[name]))
-
-
-def _name_input(axes: Axes, rows: xr.Dataset, name: str, width: int = 38, ticks: int = 6) -> None:
-    axes.set_xlabel(named_input(rows[name], width))
-    roomy(axes, ticks)
 
 
 @styled
@@ -158,6 +214,9 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
         raise InputError("pairs by regime need a model with regimes and two uncertain inputs")
     codes = rows["regime"].values
     leading = _deciding(inputs, codes)[:_MOST_INPUTS]
+    units = {
+        name: unit_of(rows[name].attrs["units"], np.abs(inputs[name]).max()) for name in leading
+    }
     size = len(leading) - 1
     alone = size == 1
     height = 2.1 if alone else 1.45 * size
@@ -177,14 +236,15 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
                 continue
             for name, (code, colour) in regimes.items():
                 own = shown[codes[shown] == code]
-                place = inputs[across][own], inputs[down][own]
-                panel.plot(*place, ".", color=colour, label=name, **points)
+                x, y = (inputs[one][own] / units[one].size for one in (across, down))
+                panel.plot(x, y, ".", color=colour, label=name, **points)
             panel.locator_params(axis="y", nbins=4)
             whole_numbers(panel.yaxis)
+            roomy(panel, 6 if alone else 3)
             if i == size - 1:
-                _name_input(panel, rows, across, *((38, 6) if alone else (17, 3)))
+                panel.set_xlabel(labelled(rows[across], units[across].name, 38 if alone else 17))
             if j == 0:
-                panel.set_ylabel(named_input(rows[down], width=30 if alone else 20))
+                panel.set_ylabel(labelled(rows[down], units[down].name, 30 if alone else 20))
     panels[0, 0].set_title(f"{len(codes)} rows by regime", loc="left")
     return finish(panels[0, 0])
 

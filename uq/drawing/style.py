@@ -5,11 +5,25 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 
-WIDTH = 3.4
+WIDTH = 84 / 25.4
 """One column of a journal [inch]."""
+PAGE = 174 / 25.4
+"""Both columns [inch]."""
 
 # Okabe and Ito, "Color universal design" (2008), without yellow and black.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00")
+"""Of regimes and attractors in figures of a result, which use no colour otherwise but `LIMIT`."""
+
+INK = "black"
+"""Of estimates and laws; a page shows it in the colour of its text."""
+ROWS = "#A0A6AD"
+"""Of rows, one by one or counted."""
+LIMIT = "#C2185B"
+"""Of the thresholds of a study."""
+SHADES = (INK, "#9A9A9A", "#707070", "#BBBBBB")
+"""Of the elements of an output, together with `LINES`."""
+BARS = ("#6B7580", "#B4BBC2", "#8E979F", "#D0D5DA")
+"""Of the kinds of indices."""
 LINES = ("-", "--", "-.", ":")
 
 _STYLE: Any = {
@@ -21,7 +35,6 @@ _STYLE: Any = {
     "legend.fontsize": 7,
     "legend.frameon": False,
     "lines.linewidth": 1.2,
-    "text.parse_math": False,  # a dollar sign in a file is one
     "svg.hashsalt": "vibrolife",
     "pdf.fonttype": 42,  # text that can be searched and edited
 }

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from uq.analysis.findings import Findings
 from uq.analysis.sampled_inputs import laws_and_values
+from uq.conclusions.answer import conclude
 from uq.drawing.catalogue import Subject
 from uq.drawing.convergence_plot import followed, total_indices
 from uq.drawing.elements_plot import occurring_regimes
@@ -37,6 +38,13 @@ def targets(findings: Findings) -> Iterator[Subject]:
         for name, found in targets_of.items():
             if not found.refused and found.kinds():
                 yield Subject(name, method, {"method": method, "found": found})
+
+
+def decided_events(findings: Findings) -> Iterator[Subject]:
+    """Yield each event that an input is known to decide."""
+    for event in conclude(findings).events:
+        if event.curve is not None:
+            yield Subject(event.name, keywords={"event": event})
 
 
 def crossed_targets(findings: Findings) -> Iterator[Subject]:

@@ -6,25 +6,36 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import xarray as xr
-from matplotlib.ticker import EngFormatter
 
+from uq.drawing.symbols import formula, literal, typeset
 from uq.literals import plain
 from uq.rows.elements import Element
-from uq.wording import percent
+from uq.units import powers as powers
+from uq.wording import percent, quantity
 
 
-def as_label(text: str, unit: str = "", width: int = 44) -> str:
-    """Return text for an axis or a panel: capitalised, with its unit, wrapped."""
-    text = plain(text[:1].upper() + text[1:])
+def as_label(text: str, unit: str = "", width: int = 44, symbol: str = "") -> str:
+    """Return text for an axis or a panel: capitalised, with symbols and its unit, wrapped."""
+    text = typeset(plain(text[:1].upper() + text[1:]))
+    if symbol:
+        text += f" ({formula(plain(symbol))})"
     if unit and unit != "1":
-        text += f" [{unbroken(unit)}]"
-    return textwrap.fill(text, width).replace("\u00a0", " ")
+        text += f"\u00a0[{unbroken(unit)}]"  # not alone on a line
+    return _wrapped(text, width).replace("\u00a0", " ")
 
 
-def powers(unit: str) -> str:
-    """Return a CF unit with raised exponents: ``m2 N-1`` becomes ``m² N⁻¹``."""
-    raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-    return re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(raised), unit)
+def _wrapped(text: str, width: int) -> str:
+    """Wrap text by what is seen of it: a formula has less width than its source, and no break."""
+    formulas = re.findall(_FORMULA, text)
+    letters = (re.sub(r"\\mathrm|\\\W|[${}_]", "", one) for one in formulas)
+    seen = (re.sub(r"\\[A-Za-z]+", "x", one) for one in letters)
+    masked = re.sub(_FORMULA, lambda _: _MASK * len(next(seen)), text)
+    whole = iter(formulas)
+    return re.sub(f"{_MASK}+", lambda _: next(whole), textwrap.fill(masked, width))
+
+
+_FORMULA = r"(?<!\\)\$.+?(?<!\\)\$"
+_MASK = "\ue000"
 
 
 def unbroken(unit: str) -> str:
@@ -39,8 +50,8 @@ def place_in_words(ds: xr.Dataset, element: Element) -> str:
         attrs: Mapping[str, Any] = variable[dim].attrs if dim in variable.coords else {}
         if isinstance(value, str):
             words.append(value)
-        elif attrs.get("units") in ("m", "s", "Hz"):
-            words.append(EngFormatter(attrs["units"])(value))
+        elif attrs.get("units", "1") != "1":
+            words.append(powers(quantity(value, attrs["units"])))
         else:
             words.append(f"{dim} {value:g}")
     return ", ".join(words)
@@ -49,7 +60,7 @@ def place_in_words(ds: xr.Dataset, element: Element) -> str:
 def label(ds: xr.Dataset, element: Element, never: float = 0.0) -> str:
     """Return the label of a curve: its place, and the share of rows that never end."""
     share = f"never: {percent(never)}" if never > 0 else ""
-    return ", ".join(filter(None, (place_in_words(ds, element), share)))
+    return literal(", ".join(filter(None, (place_in_words(ds, element), share))))
 
 
 def rows_in_words(chosen: Sequence[Element]) -> str:
@@ -69,11 +80,20 @@ def element_in_words(ds: xr.Dataset, element: Element) -> str:
 
 def in_words(variable: xr.DataArray) -> str:
     """Return the meaning of a variable, with its symbol (never broken) where it has one."""
-    meaning = str(variable.attrs.get("long_name", str(variable.name).replace("_", " ")))
-    symbol = str(variable.attrs.get("symbol", "")).replace(" ", "\u00a0")
-    return f"{meaning} ({symbol})" if symbol else meaning
+    symbol = symbol_of(variable).replace(" ", "\u00a0")
+    return f"{meaning_of(variable)} ({symbol})" if symbol else meaning_of(variable)
 
 
-def named_input(parameter: xr.DataArray, width: int = 44) -> str:
-    """Return the label of an input for an axis."""
-    return as_label(in_words(parameter), parameter.attrs["units"], width)
+def meaning_of(variable: xr.DataArray) -> str:
+    """Return the meaning of a variable."""
+    return str(variable.attrs.get("long_name", str(variable.name).replace("_", " ")))
+
+
+def symbol_of(variable: xr.DataArray) -> str:
+    """Return the symbol of a variable, or ""."""
+    return str(variable.attrs.get("symbol", ""))
+
+
+def labelled(variable: xr.DataArray, unit: str = "", width: int = 44) -> str:
+    """Return the label of a variable, with its symbol as a formula."""
+    return as_label(meaning_of(variable), unit, width, symbol_of(variable))

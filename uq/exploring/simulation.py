@@ -13,6 +13,9 @@ from uq.rows import results
 from uq.rows.one_row import Row, run_row
 from uq.study.registry import find_model
 
+MOST_SHOWN = 6
+"""Quantities in a picture of a motion."""
+
 
 def simulate(
     model: str | Model,
@@ -87,6 +90,8 @@ def _trajectory(row: Row) -> xr.DataArray:
     history = row.model.simulate(params, row.settings, seed=row.seed)
     names = list(history.quantities)
     units, meanings, series = zip(*history.quantities.values(), strict=True)
+    nowhere = (np.nan, np.nan)
+    shown = history.shown or tuple(names[:MOST_SHOWN])
     return xr.DataArray(
         np.stack(series, axis=1),
         dims=("time", "quantity"),
@@ -95,6 +100,10 @@ def _trajectory(row: Row) -> xr.DataArray:
             "quantity": names,
             "unit": ("quantity", list(units)),
             "meaning": ("quantity", list(meanings)),
+            "lower_stop": ("quantity", [history.stops.get(one, nowhere)[0] for one in names]),
+            "upper_stop": ("quantity", [history.stops.get(one, nowhere)[1] for one in names]),
+            "turns": ("quantity", [int(one in history.angles) for one in names]),
+            "shown": ("quantity", [shown.index(one) if one in shown else -1 for one in names]),
         },
-        attrs={"role": "trajectory", "long_name": "time history"},
+        attrs={"role": "trajectory", "long_name": "time history", "period": history.period},
     )

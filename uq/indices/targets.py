@@ -60,7 +60,7 @@ def targets(
     Target
         What `number_of` gives, and of a lifetime T the events T < t. If every target is asked for:
         a value or angle as it is; the logarithm and the rank of a value or lifetime; of a lifetime
-        also the rate 1/T and the events.
+        also the rate 1/T and the events; of others the events y > t, of an angle's magnitude.
     """
     for element in elements:
         if not (every and element.is_lifetime):
@@ -68,7 +68,7 @@ def targets(
         if every and not element.is_angle:
             for form in ("log", "rank", "rate")[: 3 if element.is_lifetime else 2]:
                 yield _transformed(element, form)
-        if element.is_lifetime:
+        if element.is_lifetime or every:
             for threshold in thresholds.get(element.output, ()):
                 yield _event(element, threshold)
 
@@ -103,12 +103,13 @@ def split_name(name: str) -> tuple[str, str, str]:
     -------
     tuple of str
         ``("log", "life[depth=0.5]", "")`` of ``log(life[depth=0.5])``, ``("P", "life", "1000.0")``
-        of ``P(life<1000.0)``, ``("P", "regime=fast", "")`` of ``P(regime=fast)``, ``("", "y", "")``
-        of ``y``.
+        of ``P(life<1000.0)`` and ``P(life>1000.0)``, ``("P", "regime=fast", "")`` of
+        ``P(regime=fast)``, ``("", "y", "")`` of ``y``.
     """
     for form in (*_TRANSFORMS, "P"):
         if name.startswith(f"{form}(") and name.endswith(")"):
-            inside, _, threshold = name[len(form) + 1 : -1].partition("<")
+            text = name[len(form) + 1 : -1]
+            inside, _, threshold = text.partition("<" if "<" in text else ">")
             return form, inside, threshold
     return "", name, ""
 
@@ -167,6 +168,9 @@ def _lighter_form(element: Element) -> str:
 
 
 def _event(element: Element, threshold: float) -> Target:
+    if not element.is_lifetime:
+        above = np.where(element.present, element.for_thresholds > threshold, np.nan)
+        return Target(f"P({element.name}>{threshold!r})", element, above, event=True)
     ended = element.values < threshold
     unknown = int(element.unknown_sides(threshold).sum())
     refused = f"{unknown} of {ended.size} rows were censored before that time" * (unknown > 0)

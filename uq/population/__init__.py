@@ -8,6 +8,8 @@ Reading order; a module imports only those above it:
     smoothing       smoothed importance weights, and whether they can be trusted
     means           weighted means of numbers between 0 and 1, with intervals
     functionals     probabilities and quantiles of a population
+    fleets          units of one world, and how many of them have ended
+    worlds          how the probability of a unit's life spreads over worlds
     densities       the density of the inputs under a study
     reweighting     the rows of a result as those of another study
 """

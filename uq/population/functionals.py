@@ -28,6 +28,11 @@ class Population:
     element : Element
     part : ndarray of int, shape (n,), or None
         The independent part of each row.
+
+    References
+    ----------
+    J. M. Hammersley, "Conditional Monte Carlo", J. ACM 3, 73-76 (1956): a row is the law of a life
+    given all that is not integrated exactly.
     """
 
     element: Element
@@ -135,10 +140,10 @@ class Population:
             return np.inf
         start, unit = place
         side = 1.0 if reached(start) < 0 else -1.0
-        there = _first(start, side * unit, lambda at: (reached(at) >= 0) == (side > 0))
+        there = first_step(start, side * unit, lambda at: (reached(at) >= 0) == (side > 0))
         if there is None:
             return np.inf if side > 0 else nan
-        return exp(_root(reached, there))
+        return exp(root(reached, there))
 
     @property
     def _never(self) -> float:
@@ -171,10 +176,10 @@ class Population:
             below = excess(start) < 0
             if below != (step > 0):
                 return nan
-            there = _first(start, step, lambda x: (excess(x) >= 0) == below)
+            there = first_step(start, step, lambda x: (excess(x) >= 0) == below)
             if there is None:
                 return self._never if below else nan
-            return exp(_root(excess, there))
+            return exp(root(excess, there))
 
         if value == np.inf:
             start, unit = place
@@ -210,13 +215,16 @@ class Population:
         return Estimate(value, least(share, "high"), least(share, "low"))
 
 
-def _root(of: Callable[[float], float], ends: tuple[float, float]) -> float:
+def root(
+    of: Callable[[float], float], ends: tuple[float, float], tolerance: float = _TOLERANCE
+) -> float:
+    """Return where a function changes its sign between two places."""
     from scipy.optimize import brentq  # which takes longer to import than most summaries
 
-    return float(brentq(of, min(ends), max(ends), xtol=_TOLERANCE))
+    return float(brentq(of, min(ends), max(ends), xtol=tolerance))
 
 
-def _first(
+def first_step(
     start: float, step: float, reached: Callable[[float], bool]
 ) -> tuple[float, float] | None:
     """Return the ends of the first growing step in which something is reached."""

@@ -74,7 +74,7 @@ def weighted_share(
     parts = len(found)
     if parts < 2:
         return Estimate(mean)
-    if is_constant(numbers) and 0 < mean < 1:
+    if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
         return Estimate(mean, reason=EXACT)
     low = high = mean
     if 0 < mean < 1:

@@ -28,6 +28,11 @@ class IndependentScale:
     term: Term
     drawn: Floats
 
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the logarithms of lives that it causes."""
+        return float(self.drawn.std())
+
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,)."""
         return self.given(lives, time, 0.0)
@@ -68,6 +73,12 @@ class ConditionalScale:
     mean: Floats
     deviation: float = 1.0
     other: Floats | None = None
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the logarithms of lives that it causes."""
+        drawn = self.drawn if self.other is None else self.drawn / self.other
+        return float(abs(self.exponent) * np.log(drawn).std())
 
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,)."""

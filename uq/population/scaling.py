@@ -143,7 +143,7 @@ def integrated(
         for name, exponent in exponents.items()
         if name not in kept and name not in free
     }
-    reach = {name: law.deviation * _spread_of(law) for name, law in bound.items()}
+    reach = {name: law.deviation * law.spread for name, law in bound.items()}
     widest = max(bound, key=lambda name: reach[name], default="")
     if free and np.hypot.reduce([one.spread for one in free.values()]) >= reach.get(widest, 0.0):
         kept |= dict.fromkeys(bound, "it depends on other inputs, and others scatter lives more")
@@ -245,12 +245,6 @@ def _conditional(name: str, exponent: float, inputs: Inputs) -> ConditionalScale
     mean = np.stack([inputs.normal(names[i]) for i in rest], axis=1) @ slope
     deviation = float(np.sqrt(1 - matrix[own, rest] @ slope))
     return ConditionalScale((name,), law, bounds, exponent, values, mean, deviation)
-
-
-def _spread_of(scale: ConditionalScale) -> float:
-    """Return the standard deviation of the logarithm of the life."""
-    drawn = scale.drawn if scale.other is None else scale.drawn / scale.other
-    return float(abs(scale.exponent) * np.log(drawn).std())
 
 
 def population(

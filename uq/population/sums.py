@@ -17,6 +17,7 @@ _FARTHEST = 8.2  # standard normal quantile beyond which a probability is neglig
 _NODES = 96
 _DEGREE = 24
 _DEEPEST = 12
+_HALVINGS = 50
 
 
 class Term(Protocol):
@@ -34,6 +35,9 @@ class Term(Protocol):
     def below(self, value: Floats, /) -> Floats:
         """Return the probability of less than each value."""
 
+    def at(self, z: Floats, /) -> Floats:
+        """Return the quantiles at the probabilities of standard normal quantiles."""
+
 
 class LogTerm:
     """A multiple of the logarithm of an input.
@@ -49,7 +53,7 @@ class LogTerm:
     """
 
     def __init__(self, law: Law, bounds: tuple[float, float], exponent: float):
-        self._law, self._bounds, self._exponent = law, bounds, exponent
+        self._law, self._bounds, self.exponent = law, bounds, exponent
         ends = ppf_within(law, special.ndtr(np.array([-_FARTHEST, _FARTHEST])), bounds)
         inner = [x for x in law.kinks() if ends[0] < x < ends[1]]
         self.breaks = np.sort(exponent * np.log([ends[0], *inner, ends[1]]))
@@ -57,14 +61,14 @@ class LogTerm:
     def below(self, value: Floats) -> Floats:
         """Return the probability of less than each value."""
         with np.errstate(over="ignore", under="ignore"):
-            share = cdf_within(self._law, np.exp(value / self._exponent), self._bounds)
-        return share if self._exponent > 0 else 1 - share
+            share = cdf_within(self._law, np.exp(value / self.exponent), self._bounds)
+        return share if self.exponent > 0 else 1 - share
 
     def at(self, z: Floats) -> Floats:
         """Return the quantiles at the probabilities of standard normal quantiles."""
-        u = special.ndtr(np.sign(self._exponent) * z)
+        u = special.ndtr(np.sign(self.exponent) * z)
         u = np.clip(u, 2.0**-54, 1 - 2.0**-53)
-        return self._exponent * np.log(ppf_within(self._law, u.ravel(), self._bounds)).reshape(
+        return self.exponent * np.log(ppf_within(self._law, u.ravel(), self._bounds)).reshape(
             z.shape
         )
 
@@ -98,23 +102,32 @@ class Sum:
         self._first, self._second = first, second
         self.breaks = np.unique(np.add.outer(first.breaks, second.breaks))
         coarse = self._pieces(_NODES)
-        self._ends = np.array([*(low for low, _, _ in coarse), coarse[-1][1]])
-        self._coefficients = np.array([c for _, _, c in coarse])
-        middle = (self._ends[1:] + self._ends[:-1]) / 2
+        self.ends = np.array([*(low for low, _, _ in coarse), coarse[-1][1]])
+        self.coefficients = np.array([c for _, _, c in coarse])
+        middle = (self.ends[1:] + self.ends[:-1]) / 2
         if np.abs(self._exactly(middle, 3 * _NODES) - self.below(middle)).max() > ACCURACY:
             raise ArithmeticError("the probability of the sum is not accurate enough")
 
     def below(self, value: Floats) -> Floats:
         """Return the probability of less than each value."""
         value = np.asarray(value)
-        inside = np.clip(value, self._ends[0], self._ends[-1])
-        piece = np.clip(np.searchsorted(self._ends, inside) - 1, 0, len(self._ends) - 2)
-        low, high = self._ends[piece], self._ends[piece + 1]
+        inside = np.clip(value, self.ends[0], self.ends[-1])
+        piece = np.clip(np.searchsorted(self.ends, inside) - 1, 0, len(self.ends) - 2)
+        low, high = self.ends[piece], self.ends[piece + 1]
         x = (2 * inside - low - high) / (high - low)
-        coefficients = np.moveaxis(self._coefficients[piece], -1, 0)
+        coefficients = np.moveaxis(self.coefficients[piece], -1, 0)
         found = chebyshev.chebval(x, coefficients, tensor=False)
-        found = np.where(value <= self._ends[0], 0.0, found)
-        return np.clip(np.where(value >= self._ends[-1], 1.0, found), 0.0, 1.0)
+        found = np.where(value <= self.ends[0], 0.0, found)
+        return np.clip(np.where(value >= self.ends[-1], 1.0, found), 0.0, 1.0)
+
+    def at(self, z: Floats) -> Floats:
+        """Return the quantiles at the probabilities of standard normal quantiles, by bisection."""
+        low, high = (np.full(z.shape, end) for end in self.ends[[0, -1]])
+        for _ in range(_HALVINGS):
+            middle = (low + high) / 2
+            above = self.below(middle) > special.ndtr(z)
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        return np.asarray((low + high) / 2)
 
     def _pieces(self, nodes: int) -> list[tuple[float, float, Floats]]:
         """Return ends and coefficients of polynomials, halved until each is accurate."""

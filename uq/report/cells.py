@@ -19,11 +19,14 @@ class Cell(NamedTuple):
         In small print below: an interval, a meaning.
     key : float or None
         The number to sort by; a cell without one is text.
+    traced : str
+        The key of its number for ``uq trace``; "" if it has none.
     """
 
     text: str
     more: str = ""
     key: float | None = None
+    traced: str = ""
 
 
 class Table(NamedTuple):

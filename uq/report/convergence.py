@@ -6,6 +6,7 @@ import pandas as pd
 
 from uq.analysis.convergence import enough
 from uq.analysis.findings import Findings
+from uq.analysis.tracing.keys import key_of
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.report.outcomes import Outcome
 from uq.report.pictures import Picture, pictures
@@ -60,7 +61,11 @@ def convergence_of(findings: Findings, found: list[Outcome]) -> Convergence:
 
 def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
     cells = (
-        Cell(number(error / one.unit.seconds), key=error) if error == error else Cell("-")
-        for error in map(float, errors[["sampling", "own"]])
+        Cell(number(error / one.unit.size), key=error, traced=traced)
+        if error == error
+        else Cell("-")
+        for name in ("sampling", "own")
+        for error in [float(errors[name])]
+        for traced in [key_of("outputs", one.name, f"{name}_error", verb="convergence")]
     )
     return one.label, one.unit_cell, Cell(str(errors["estimate"])), *cells

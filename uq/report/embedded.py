@@ -1,14 +1,11 @@
 """The rows inside a page, with which its scripts (``live/``) compute."""
 
-import base64
-import json
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from markupsafe import Markup
 
 from uq.analysis.findings import Findings
 from uq.clusters import Clusters
@@ -16,12 +13,15 @@ from uq.drawing.elements_plot import display_unit, occurring_regimes
 from uq.drawing.panel import is_wide
 from uq.drawing.quantities import scale_of
 from uq.drawing.scatter_plot import leading
-from uq.drawing.style import COLOURS
-from uq.drawing.words import element_in_words, in_words, unbroken
+from uq.drawing.style import LIMIT, ROWS
+from uq.drawing.symbols import literal
+from uq.drawing.words import element_in_words, in_words, powers, unbroken
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
 from uq.literals import plain
 from uq.quantile_functions import student
+from uq.report.encoding import encoded
+from uq.report.tolerances import tolerances
 from uq.rows.element import Element
 from uq.rows.elements import (
     analysis_of,
@@ -33,7 +33,8 @@ from uq.rows.elements import (
 )
 from uq.rows.results import failed
 from uq.study.file import AnalysisTable
-from uq.wording import number
+from uq.units import Unit
+from uq.wording import in_unit
 
 MOST_ROWS = 20_000
 """A page holds no more rows: a brush over them takes 0.1 s."""
@@ -42,8 +43,12 @@ MOST_NUMBERS = 480_000
 """Nor more numbers: they take 5 MB."""
 
 
-def embedded(findings: Findings, file: str) -> Markup | None:
-    """Return the rows of a result as JSON that can stand inside a page.
+_STUDENTS = 100
+"""From so many independent parts on, an expansion has enough digits."""
+
+
+def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
+    """Return the rows of a result, for JSON.
 
     Parameters
     ----------
@@ -53,18 +58,9 @@ def embedded(findings: Findings, file: str) -> Markup | None:
 
     Returns
     -------
-    Markup or None
+    dict or None
         None if no row follows the laws of the inputs, or no output has numbers.
     """
-    content = rows_inside(findings, file)
-    if content is None:
-        return None
-    text = json.dumps(content, allow_nan=False).replace("<", "\\u003c")
-    return Markup(text)
-
-
-def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
-    """Return what `embedded` writes."""
     analysis = analysis_of(findings.ds)
     outputs = [one for one in shown_outputs(findings.ds, analysis) if one not in findings.absent]
     whole = findings.rows
@@ -77,16 +73,24 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     columns += [_output(rows, one, analysis) for one in elements]
     drawn = _drawn(elements, analysis)
     first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
+    design = _design(rows)
+    laws = tolerances(rows, elements)
+    if laws is not None and laws["of"]:
+        design["intervals"] += (
+            " Shares here are those of lives as computed; tables above, and other tolerances below,"
+            " integrate what only scales a life."
+        )
     return {
         "file": shlex.quote(plain(file)),
         "total": whole.sizes["sample"],
-        "numbers": _encoded(rows["sample"].values, "<i4"),
-        "failed": _encoded(failed(rows), "u1"),
+        "numbers": encoded(rows["sample"].values, "<i4"),
+        "failed": encoded(failed(rows), "u1"),
         "columns": columns,
         "categories": list(_categories(rows)),
-        "colour": COLOURS[0],
+        "colours": {"rows": ROWS, "limit": LIMIT},
         "first": [first, len(inputs) + drawn],
-        **_design(rows),
+        "tolerances": laws,
+        **design,
     }
 
 
@@ -136,16 +140,13 @@ def _input(rows: xr.Dataset, name: str) -> dict[str, Any]:
 
 def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict[str, Any]:
     unit, per = display_unit(element.units, element.values)
-    if element.units != "s":
-        scale = scale_of([rows[element.output]])
-        unit, per = scale.unit, 1 / scale.factor
     column = _column(element.name, element_in_words(rows, element), unit, per, element.values)
     return column | {
         "role": "output",
         "life": element.is_lifetime,
         "angle": element.is_angle,
         "neverKnownAtOnce": element.declared.never_known_at_once,
-        "censored": _encoded(element.censored, "u1") if element.censored.any() else None,
+        "censored": encoded(element.censored, "u1") if element.censored.any() else None,
         "thresholds": [
             {"value": value, "words": _asked(column, element, value)}
             for value in analysis.thresholds.get(element.output, ())
@@ -155,7 +156,7 @@ def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict
 
 def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
     """Return the event whose probability is asked for."""
-    at = f"{number(value / column['per'])} {column['unit']}".strip()
+    at = powers(in_unit(value, Unit(column["unit"] or "1", column["per"])))
     label = f"|{column['label']}|" if element.is_angle else column["label"]
     return f"P({label} {'<' if element.is_lifetime else '>'} {at})"
 
@@ -167,7 +168,7 @@ def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[s
         "unit": "" if unit == "1" else plain(unbroken(unit)),
         "per": per,
         "wide": is_wide(values[np.isfinite(values)]),
-        "values": _encoded(values, "<f8"),
+        "values": encoded(values, "<f8"),
     }
 
 
@@ -181,13 +182,13 @@ def _categories(rows: xr.Dataset) -> Iterator[dict[str, Any]]:
             yield {
                 "name": name,
                 "label": label,
-                "codes": _encoded(codes, "i1"),
+                "codes": encoded(codes, "i1"),
                 "entries": [
                     {
                         "code": code,
                         "label": plain(words),
                         "count": counts[code],
-                        "colour": colours.get(words, "gray") if name == "regime" else None,
+                        "colour": colours.get(literal(words), ROWS) if name == "regime" else None,
                     }
                     for code, words in flags(rows[name])
                     if counts[code]
@@ -198,7 +199,11 @@ def _categories(rows: xr.Dataset) -> Iterator[dict[str, Any]]:
 def _design(rows: xr.Dataset) -> dict[str, Any]:
     """Return what intervals rest on, and a sentence that says so."""
     part = replicates_of(rows)
-    found: dict[str, Any] = {"independent": are_independent(rows), "replicate": None}
+    found: dict[str, Any] = {
+        "independent": are_independent(rows),
+        "replicate": None,
+        "sample": None,
+    }
     if part is None:
         words = (
             "95 % intervals of shares are Wilson's, or those of Clopper and Pearson where hits or"
@@ -206,6 +211,7 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         )
     elif isinstance(part, Clusters):
         words = "No intervals: the rows of a sample are not independent."
+        found |= {"sample": encoded(part, "<i4")}
     elif (count := len(np.unique(part))) < 2:
         words = (
             "No intervals: formulas for independent rows do not apply to this design, which has no"
@@ -213,12 +219,6 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         )
     else:
         words = f"95 % intervals of shares rest on the scatter between {count} replicates."
-        students: Sequence[float | None] = [None, None] + [
-            student(upper_probability(), one - 1) for one in range(2, count + 1)
-        ]
-        found |= {"replicate": _encoded(part, "<i4"), "students": students}
-    return found | {"intervals": words}
-
-
-def _encoded(values: Any, kind: str) -> str:
-    return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode()
+        found |= {"replicate": encoded(part, "<i4")}
+    students = (student(upper_probability(), parts - 1) for parts in range(2, _STUDENTS))
+    return found | {"students": [None, None, *students], "intervals": words}

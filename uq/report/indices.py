@@ -1,26 +1,23 @@
 """Sensitivities in a report: one table for each target of each method."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from math import isfinite
 from typing import NamedTuple
 
 import xarray as xr
 
 from uq.analysis.findings import Findings
+from uq.analysis.tracing.keys import key_of
 from uq.drawing.index_plot import subject
-from uq.drawing.words import as_label, in_words
 from uq.errors import InputError
 from uq.estimate import Estimate
-from uq.indices.ranked import Values, lines, ranking, size
+from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import TargetIndices, methods
 from uq.methods.indices import S1, IndexKind, Null
 from uq.report.cells import Cell, Table
 from uq.report.pictures import Picture, pictures
-from uq.wording import percent
-
-_LEAST = 0.05
-"""A smaller share of the variance is not reported as leading."""
 
 
 class Subject(NamedTuple):
@@ -35,8 +32,6 @@ class Subject(NamedTuple):
     tables : list of Table
     pictures : tuple of Picture
     notes : list of str
-    leading : str
-        A sentence on the input with the largest index; "" if no index exceeds the null.
     """
 
     name: str
@@ -45,7 +40,6 @@ class Subject(NamedTuple):
     tables: tuple[Table, ...] = ()
     pictures: tuple[Picture, ...] = ()
     notes: tuple[str, ...] = ()
-    leading: str = ""
 
 
 class Method(NamedTuple):
@@ -97,51 +91,35 @@ def _subject(
     ds: xr.Dataset, method: str, found: TargetIndices, drawn: Sequence[Picture]
 ) -> Subject:
     name, indices = found.name, found.indices
-    words = " ".join(subject(ds, name).split())
+    words = subject(ds, name)
+    words = words[:1].upper() + words[1:]
     if found.refused:
         return Subject(name, words, refused=found.refused)
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
     listed = ((f"Indices of {name}", kinds), (f"Second order, of {name}", pairs))
-    tables = tuple(_table(caption, one, indices.nulls) for caption, one in listed if one)
+    traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
+    tables = tuple(_table(caption, one, indices.nulls, traced) for caption, one in listed if one)
     if indices.noise:
-        line = [(Cell("noise"), _cell(S1, indices.noise))]
+        line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
         tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
-    leading = _leading(ds, method, f"{words[:1].lower()}{words[1:]}", found)
-    return Subject(name, words, "", tables, tuple(drawn), indices.notes, leading)
+    return Subject(name, words, "", tables, tuple(drawn), indices.notes)
 
 
-def _leading(ds: xr.Dataset, method: str, words: str, found: TargetIndices) -> str:
-    kinds = found.kinds()
-    if not kinds:
-        return ""
-    kind, (first, *others) = list(kinds)[-1], ranking(kinds)
-    index, null = kinds[kind][first], found.indices.nulls.get(kind, Null(0.0))
-    if size(index) <= (null.largest if isfinite(null.largest) else null.one):
-        return ""
-    name = kind.key if kind.key == method else f"{method}: {kind.key}"
-    what = words if words.startswith(("the ", "whether ")) else f"the {words}"
-    if others and index.low < size(kinds[kind][others[0]]):
-        interval = f"{name} of {first} is {kind.interval(index)}"
-        return f"The leading input for {what} is not settled ({interval})."
-    if kind.unit != "variance" or what.startswith("whether "):
-        leader = in_words(ds[first]).removeprefix("the ")
-        what = what[:1].upper() + what[1:]
-        return f"{what} depends most on the {leader} ({name} = {kind.text(index.value)})."
-    if index.value < _LEAST:
-        text = f"{name} = {kind.text(index.value)} at most"
-        return f"No single input explains much of the variance of {what} ({text})."
-    leader = as_label(in_words(ds[first]), width=1000)
-    return f"{leader} explains {percent(index.value)} of the variance of {what} ({name})."
+def _table(
+    caption: str,
+    values: Values,
+    nulls: Mapping[IndexKind, Null],
+    traced: Callable[..., str],
+) -> Table:
+    def cells(label: str, estimates: Sequence[Estimate]) -> Iterator[Cell]:
+        for kind, one in zip(values, estimates, strict=True):
+            dummy = ("dummy", f"{kind.key}{'_any' * label.startswith('(largest')}")
+            yield _cell(kind, one, traced(*((kind.key, label) if label in values[kind] else dummy)))
 
-
-def _table(caption: str, values: Values, nulls: Mapping[IndexKind, Null]) -> Table:
-    rows = [
-        (Cell(label), *(_cell(kind, one) for kind, one in zip(values, estimates, strict=True)))
-        for label, estimates in lines(values, nulls)
-    ]
+    rows = [(Cell(label), *cells(label, found)) for label, found in lines(values, nulls)]
     return Table(caption, ("input", *(kind.key for kind in values)), rows)
 
 
-def _cell(kind: IndexKind, one: Estimate) -> Cell:
+def _cell(kind: IndexKind, one: Estimate, traced: str) -> Cell:
     key = one.value if isfinite(one.value) else None
-    return Cell(kind.text(one.value), kind.interval(one), key)
+    return Cell(kind.text(one.value), kind.interval(one), key, traced)

@@ -1,11 +1,11 @@
 """The inputs in a report: laws, sources, and how well each number is known."""
 
-import re
 from collections.abc import Iterator
 
 import xarray as xr
 
 from uq.analysis.sampled_inputs import compare, laws_and_values
+from uq.conclusions.sources import mark
 from uq.drawing.words import unbroken
 from uq.inputs.law import Law
 from uq.report.cells import Cell, Table, without_empty_columns
@@ -13,31 +13,9 @@ from uq.rows.elements import study_file_of
 from uq.study.file import Tied
 from uq.wording import law, number
 
-_MARK = re.compile(
-    r"(?:^|[:;,] )(given|inferred|fitted|assumed)\b|(?<!\bnot )\b(given|inferred|fitted|assumed)$"
-)
-
-
-def mark(source: str) -> str:
-    """Return how well a number is known according to its source, or "".
-
-    Parameters
-    ----------
-    source : str
-        Such as ``"Knudsen & Massih 2002, Table 1: given, its exponent inferred"``.
-
-    Returns
-    -------
-    str
-        ``given``, ``inferred``, ``fitted`` or ``assumed``: the first that begins the sentence or
-        one of its parts, or ends it.
-    """
-    found = _MARK.search(source)
-    return (found[1] or found[2]) if found else ""
-
 
 def input_tables(ds: xr.Dataset) -> Iterator[Table]:
-    """Yield the tables of uncertain and fixed inputs, and of rank correlations.
+    """Yield the tables of uncertain inputs and of rank correlations.
 
     Parameters
     ----------
@@ -60,10 +38,15 @@ def input_tables(ds: xr.Dataset) -> Iterator[Table]:
         source = study.dependence.source
         caption = f"Rank correlations{': ' if source else ''}{source}"
         yield Table(caption, ("pair", "stated"), rows)
+
+
+def fixed_inputs(ds: xr.Dataset) -> Table | None:
+    """Return the table of fixed inputs, None where there are none."""
     fixed = [name for name in ds.data_vars if ds[name].attrs["role"] == "fixed"]
-    if fixed:
-        lines = [_fixed(ds, str(name), name in study.fixed) for name in fixed]
-        yield Table("Fixed inputs", ("input", "value", "known", "source"), lines)
+    by_study = study_file_of(ds).fixed
+    lines = [_fixed(ds, str(name), name in by_study) for name in fixed]
+    header = ("input", "value", "known", "source")
+    return Table("Fixed inputs", header, lines) if lines else None
 
 
 def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:

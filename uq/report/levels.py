@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from uq.analysis.findings import Findings
 from uq.analysis.level_shares import SOURCES
+from uq.analysis.tracing.keys import key_of
 from uq.estimate import Estimate
 from uq.methods.indices import S1
 from uq.report.cells import Cell, Table
@@ -34,7 +35,7 @@ def levels_of(findings: Findings) -> Levels | None:
     found = findings.levels
     rows, notes = [], []
     for name, one in found.outputs.items():
-        rows.append((Cell(name), *(_cell(one.shares[source]) for source in SOURCES)))
+        rows.append((Cell(name), *(_cell(name, source, one.shares[source]) for source in SOURCES)))
         notes += [f"{sentence} ({name})" for sentence in one.sentences]
     if (another := found.another_regime) is not None:
         said = another.reason or percent_with_interval(another)
@@ -42,6 +43,7 @@ def levels_of(findings: Findings) -> Levels | None:
     return Levels(found.size, Table("Shares of the variance", ("output", *SOURCES), rows), notes)
 
 
-def _cell(share: Estimate) -> Cell:
+def _cell(name: str, source: str, share: Estimate) -> Cell:
     key = share.value if share.value == share.value else None
-    return Cell(S1.text(share.value), S1.interval(share), key)
+    traced = key_of("outputs", name, source, verb="levels")
+    return Cell(S1.text(share.value), S1.interval(share), key, traced)

@@ -2,19 +2,21 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import isfinite, isnan
+from math import isnan
 
 import xarray as xr
 
 from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary
+from uq.analysis.tracing.keys import key_of
 from uq.contract import Output, Status
 from uq.drawing.words import element_in_words, unbroken
 from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
-from uq.wording import number, percent, percent_interval, unit_of
+from uq.units import typical, unit_of
+from uq.wording import in_unit, percent, percent_interval
 
 
 def status_table(ds: xr.Dataset, summary: Summary) -> Table:
@@ -24,7 +26,8 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
     for label, found in summary.status.items():
         example = str(ds["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
         share = found / max(summary.samples, 1)
-        cells = (Cell(str(found), key=float(found)), Cell(percent(share), key=share))
+        count = Cell(str(found), key=float(found), traced=key_of("status", label))
+        cells = (count, Cell(percent(share), key=share))
         rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
     header = ("status", "rows", "share", "meaning", "first message")
     return without_empty_columns(Table("Status of all rows", header, rows))
@@ -33,7 +36,11 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
 def regime_table(summary: Summary) -> Table:
     """Return the share of each regime among the independent rows."""
     rows = [
-        (Cell(one.label), Cell(f"{count}", key=float(count)), _share(one.estimate))
+        (
+            Cell(one.label),
+            Cell(f"{count}", key=float(count), traced=key_of(*one.key, "count")),
+            _share(one.estimate)._replace(traced=key_of(*one.key, "share")),
+        )
         for one in summary.regimes.values()
         for count in [one.facts["count"]]
     ]
@@ -63,9 +70,7 @@ class Outcome:
         self.name, self.words, self.declared = name, words, declared
         self.parts = described.parts
         quantiles = (one.estimate.value for one in described.parts["quantiles"])
-        found = [value for value in quantiles if isfinite(value)]
-        typical = abs(found[len(found) // 2]) if found else 0.0
-        unit = unit_of(described.units, typical)
+        unit = unit_of(described.units, typical(quantiles))
         self.unit = unit._replace(name=unbroken(unit.name))
 
     @property
@@ -80,11 +85,11 @@ class Outcome:
 
     def in_its_unit(self, value: float) -> str:
         """Return a number of this element, and its unit."""
-        return f"{number(value / self.unit.seconds)} {self.unit_cell.text}".strip()
+        return in_unit(value, self.unit)
 
     def per(self, one: Statistic) -> float:
         """Return the length of the unit in which a statistic is shown."""
-        return self.unit.seconds if one.unit == "s" else 1.0
+        return self.unit.size if one.unit == self.declared.unit else 1.0
 
 
 def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
@@ -140,15 +145,32 @@ def _rows(
             yield outcome.label, outcome.unit_cell, *cells
         else:
             note = "; ".join(filter(None, (one.more for one in here.values())))
-            place = Cell(outcome.in_its_unit(at), key=at)
+            sign = "magnitude " if outcome.declared.is_angle else ""
+            place = Cell(f"{sign}{outcome.in_its_unit(at)}", key=at)
             yield outcome.label, place, *cells, Cell(note)
 
 
 def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
     if one is None:
         return Cell("")
+    traced = key_of("outputs", outcome.name, *one.key)
     if listing.by:  # the small print has its own column
-        return cell(replace(one.best, more=""))
+        return cell(replace(one.best, more=""))._replace(traced=traced)
     if one.estimate.reason and isnan(one.estimate.value) and one.rows_needed is None:
         return Cell("none", one.estimate.reason)
-    return cell(one, outcome.per(one))
+    return cell(one, outcome.per(one))._replace(traced=traced)
+
+
+_WORDS = {
+    "never": "Never: the life is known not to end.",
+    "censored": "Censored: the life exceeds the horizon.",
+    "undefined": "Undefined: the output is not defined in the regime of the row.",
+}
+
+
+def words_used(found: list[Outcome]) -> list[str]:
+    """Return what the counts mean that occur."""
+    counted = {
+        one.key[-1] for outcome in found for one in outcome.parts["counts"] if one.estimate.value
+    }
+    return [text for word, text in _WORDS.items() if word in counted]

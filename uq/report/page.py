@@ -1,5 +1,6 @@
 """The content of the page, which the template beside this file lays out."""
 
+import json
 import re
 import shlex
 from functools import cache
@@ -10,17 +11,20 @@ import xarray as xr
 from markupsafe import Markup, escape
 
 from uq.analysis.findings import Findings
+from uq.conclusions.answer import conclude
+from uq.conclusions.page import STYLE, others, regimes
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.literals import plain
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
-from uq.report.embedded import embedded
-from uq.report.headlines import headlines
+from uq.report.embedded import rows_inside
+from uq.report.fleets import fleet_table
+from uq.report.headlines import headline
 from uq.report.indices import sensitivity_of
-from uq.report.inputs import input_tables
+from uq.report.inputs import fixed_inputs, input_tables
 from uq.report.levels import levels_of
-from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
+from uq.report.outcomes import outcomes, regime_table, result_tables, status_table, words_used
 from uq.report.pictures import pictures
 from uq.rows.elements import study_file_of
 from uq.rows.results import failed, open_result
@@ -86,7 +90,7 @@ def templates() -> Any:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"breakable": _breakable, "quoted": shlex.quote}
+    environment.filters |= {"breakable": _breakable, "inside": _inside, "quoted": shlex.quote}
     return environment
 
 
@@ -95,9 +99,15 @@ def _breakable(text: str) -> Markup:
     return Markup(re.sub(r"([_,\[])(?=\S)", r"\1<wbr>", str(escape(plain(text)))))
 
 
+def _inside(content: Any) -> Markup:
+    """Return plain data as JSON that can stand inside a page."""
+    return Markup(json.dumps(content, allow_nan=False).replace("<", "\\u003c"))
+
+
 def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
     """Return what the template lays out."""
     findings = Findings(ds)
+    answer = conclude(findings)
     summary = findings.summary
     found = outcomes(ds, summary)
     methods = sensitivity_of(findings)
@@ -110,8 +120,12 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "study": study_file_of(ds),
         "design": DESIGNS[ds.attrs["design"]],
         "summary": summary,
-        "headlines": headlines(summary, lost, found, methods),
+        "answer": headline(answer, drawn),
+        "other_answers": others(answer),
+        "regimes_answered": regimes(answer),
+        "answer_style": STYLE,
         "inputs": list(input_tables(ds)),
+        "inputs_fixed": fixed_inputs(ds),
         "inputs_drawn": list(pictures(findings, "inputs")),
         "status": status_table(ds, summary),
         "failed": lost,
@@ -119,12 +133,14 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "rows_drawn": list(pictures(findings, "rows")),
         "convergence": convergence_of(findings, found),
         "results": list(result_tables(found)),
+        "words_used": words_used(found),
         "results_drawn": [one for one in drawn if one.of.name not in lives],
         "lives": list(result_tables(found, of_lives=True)),
         "lives_drawn": [one for one in drawn if one.of.name in lives],
         "levels": levels_of(findings),
+        "fleets": fleet_table(findings),
         "methods": methods,
-        "rows_inside": embedded(findings, file),
+        "rows_inside": rows_inside(findings, file),
         "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
         "text_is_cut": len(ds.attrs["study"]) > _SHOWN_TEXT,
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],

@@ -16,6 +16,10 @@ class RowLaw(Protocol):
     def inputs(self) -> tuple[str, ...]:
         """What it integrates."""
 
+    @property
+    def spread(self) -> float:
+        """Standard deviation of the logarithms of lives that this causes."""
+
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,), from its life; 0 where that is NaN."""
 

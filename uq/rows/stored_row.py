@@ -72,4 +72,5 @@ class _Nothing:
 
 
 def _refused(*arguments: Any) -> NoReturn:
+    """Stand in for the batch function: rows of a result are shown, never computed."""
     raise NotImplementedError("this model only describes a result")

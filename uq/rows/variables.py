@@ -65,6 +65,8 @@ def output_variables(
             attrs["accuracy"] = float(getattr(settings, output.accuracy))
         if output.is_lifetime:
             attrs["never_known_at_once"] = int(output.never_known_at_once)
+        if output.success:
+            attrs["success"] = output.success
         if output.scales:
             attrs["scales"] = json.dumps(dict(output.scales))
         if output.is_category:
@@ -95,6 +97,7 @@ def outputs_of(ds: xr.Dataset) -> dict[str, Output]:
             bool(variable.attrs["may_be_undefined"]),
             censored_name(str(name)) in ds,
             tuple(variable.attrs.get("flag_meanings", "").split()[1:]),
+            success=str(variable.attrs.get("success", "")),
             never_known_at_once=bool(variable.attrs.get("never_known_at_once", True)),
             scales=json.loads(variable.attrs.get("scales", "{}")),
         )

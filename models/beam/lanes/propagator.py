@@ -41,9 +41,10 @@ def advance(
     else:
         advance_blocks(*told)
     # Steps too long for the ringing of a long contact amplify it: this is no motion of the beam.
-    lost = np.flatnonzero(~(np.abs(state[:, 2 * m + X1]) <= _LOST * (1 + system.free_reach)))
-    for field in (state, *record):
-        field[lost] = np.nan
+    lost = ~(np.abs(state[:, 2 * m + X1]) <= _LOST * (1 + system.free_reach))
+    if lost.any():
+        for field in (state, *record):
+            field[lost] = np.nan
     return record
 
 

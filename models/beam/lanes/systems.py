@@ -64,7 +64,7 @@ class System(NamedTuple):
 
     def take(self, rows: NDArray[np.intp]) -> "System":
         """Return some of the beams."""
-        arrays = (a[rows] for a in self[:-3])
+        arrays = (a.take(rows, axis=0) for a in self[:-3])
         return System._make([*arrays, self.beams.take(rows), self.steps, self.wave])
 
 
@@ -170,7 +170,10 @@ def systems(b: Beams, steps: int) -> Iterator[tuple[NDArray[np.intp], System]]:
     for size in np.unique(width[sound]):
         part = np.flatnonzero(sound & (width == size))
         some = system.take(part)
-        cut = some._replace(modes=some.modes[:, :, :size], begin=some.begin[:, :, :size])
+        cut = some._replace(
+            modes=np.ascontiguousarray(some.modes[:, :, :size]),
+            begin=np.ascontiguousarray(some.begin[:, :, :size]),
+        )
         yield part, cut
 
 

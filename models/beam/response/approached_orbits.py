@@ -126,18 +126,21 @@ def _fixed_points(strobed: _Map, state: Array, size: Array) -> NDArray[np.intp]:
     """Move states to nearby fixed points of the map; return the rows where there is one."""
     by_residual, regular = inverse(np.eye(state.shape[1]) - strobed.derivative(state))
     found = np.zeros(len(state), bool)
-    left, longest = np.flatnonzero(regular), _FARTHEST * size
+    left, going, longest = np.arange(len(state)), regular, _FARTHEST * size
     for _ in range(_STEPS):
+        if not going.all():
+            rows = np.flatnonzero(going)
+            left, by_residual, strobed = left[rows], by_residual[rows], strobed.take(rows)
         if not len(left):
             break
-        image, _ = strobed.take(left).advance(state[left])
+        image, _ = strobed.advance(state[left])
         residual = (image - state[left])[:, :, None]
-        step = product(by_residual[left], residual)[:, :, 0]
+        step = product(by_residual, residual)[:, :, 0]
         state[left] += step
         length = np.abs(step).max(axis=1)
         shrinking = length <= longest[left]
         longest[left] = _FASTER * length
         last = shrinking & (length <= _LAST * size[left])
         found[left[last]] = True
-        left = left[shrinking & ~last]
+        going = shrinking & ~last
     return np.flatnonzero(found)

@@ -106,16 +106,16 @@ def look(
     lag = np.arange(1, LONGEST_PERIOD + 1)
     tried = np.tile(_NEAR / _NEARER / lag, (n, 1))
     left, segment, total = rows, 0, shortest
+    part = system.take(left)
     while len(left):
-        part, now, here = system.take(left), state[left], gaps[left].copy()
+        now, here = state[left], gaps[left]
         record = propagator.advance(part, now, here, np.zeros_like(here), SEGMENT)
         state[left] = now
-        batches[left, segment] = record.work.mean(axis=1)
+        batches[left, segment], size, apart, silence = _observe(record.work, record.strobe)
         if segment >= shortest // 4:
             out.peak[left] = np.maximum(out.peak[left], record.peak)
-        size = np.abs(record.strobe).max(axis=(1, 2))
-        before, distance[left] = distance[left], _distances(record.strobe, size)
-        quiet[left] = np.where((record.work == 0).all(axis=(1, 2)), quiet[left] + SEGMENT, 0)
+        before, distance[left] = distance[left], apart
+        quiet[left] = np.where(silence, quiet[left] + SEGMENT, 0)
         silent = never_touches[left] & (quiet[left] >= np.maximum(SEGMENT, TURNS * part.beams.turn))
         _note_silence(out, left[silent])
         guess = np.zeros(len(left), int)
@@ -139,6 +139,8 @@ def look(
             if 2 * total > longest:
                 break
             left, total = left[unsettled], 2 * total
+        if len(left) < len(now):
+            part = system.take(left)
 
 
 def _settle_random(
@@ -161,14 +163,31 @@ def _settle_random(
 
 
 @kernel
-def _distances(strobe, size):
-    """Return the distances of strobe points k periods apart, relative to the response's size.
+def _observe(work, strobe):
+    """Return what a segment of n responses shows.
 
-    For each k, the largest of the last `LONGEST_PERIOD` distances.
+    Returns
+    -------
+    mean : ndarray, shape (n, 2)
+        Work per period.
+    size : ndarray, shape (n,)
+        Largest displacement or velocity.
+    distance : ndarray, shape (n, LONGEST_PERIOD)
+        Of strobe points k periods apart, relative to the size; for each k, the largest of the last
+        `LONGEST_PERIOD`.
+    silence : ndarray of bool, shape (n,)
+        Whether neither stop has been touched.
     """
     n, periods, _ = strobe.shape
+    mean, size, silence = np.zeros((n, 2)), np.zeros(n), np.ones(n, np.bool_)
     distance = np.zeros((n, LONGEST_PERIOD))
     for row in range(n):
+        for s in range(2):
+            for at in range(periods):
+                mean[row, s] += work[row, at, s]
+                silence[row] &= work[row, at, s] == 0
+                size[row] = max(size[row], abs(strobe[row, at, s]))
+            mean[row, s] /= periods
         for at in range(periods - LONGEST_PERIOD, periods):
             x, v = strobe[row, at]
             for k in range(1, LONGEST_PERIOD + 1):
@@ -176,7 +195,7 @@ def _distances(strobe, size):
                 distance[row, k - 1] = max(distance[row, k - 1], apart)
         for k in range(LONGEST_PERIOD):
             distance[row, k] /= size[row]
-    return distance
+    return mean, size, distance, silence
 
 
 def _guess(before: Array, now: Array, tried: Array) -> NDArray[np.int64]:

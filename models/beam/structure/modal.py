@@ -79,7 +79,7 @@ class Beams(NamedTuple):
 
     def take(self, rows: NDArray[np.intp]) -> "Beams":
         """Return some of the beams."""
-        return Beams._make(a[rows] for a in self)
+        return Beams._make(a.take(rows, axis=0) for a in self)
 
 
 def beams(p: Rows, settings: Settings, seed: NDArray[np.uint64] | None = None) -> Beams:

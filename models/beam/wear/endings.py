@@ -2,12 +2,12 @@
 
 from models.beam.response.response import NO_IMPACT
 from models.beam.wear.progress import note_look
-from models.numerics.jit import lean
+from models.numerics.jit import inlined
 
 _EXTINCT = 1e-6  # of the first work-rate: wear ends below it, near the free amplitude
 
 
-@lean
+@inlined
 def is_extinct(i, life, rate, grown):
     """Return whether contact is too weak for a greater depth ever to be reached.
 
@@ -19,7 +19,7 @@ def is_extinct(i, life, rate, grown):
     return weak and life.free_reach[i] < 1.01 * min(right, left)
 
 
-@lean
+@inlined
 def was_last(i, life, out, now, grown):
     """Return whether wear ended within a step, and no growth to reach lies within it."""
     if not is_extinct(i, life, now, grown):
@@ -32,7 +32,7 @@ def was_last(i, life, out, now, grown):
     return True
 
 
-@lean
+@inlined
 def has_ended(i, life, nothing):
     """Return whether contact has ended for good."""
     right = life.initial[i, 0] + life.grown[i, 0]
@@ -41,7 +41,7 @@ def has_ended(i, life, nothing):
     return silent or is_extinct(i, life, life.rate[i], nothing)
 
 
-@lean
+@inlined
 def note_end(i, life, out, spacing):
     """Record the end of wear of beam i in its history."""
     life.regime[i] = NO_IMPACT

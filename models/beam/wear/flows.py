@@ -6,14 +6,14 @@ covers the scatter of aperiodic wear, and changes of the response, which it foll
 """
 
 from models.beam.wear.progress import FIRST_STEP, KEEP, ONWARD, STEPPING, wear_on
-from models.numerics.jit import lean
+from models.numerics.jit import inlined
 
 _APPROACHING = 4  # rounds in which the response must come closer to an orbit
 _MEMORY = 0.25  # weight of the newest round in a running rate
 _BLOCK = 4  # rounds
 
 
-@lean
+@inlined
 def begin_flow(i, life):
     """Prepare for the first round of a flow."""
     life.rounds[i] = 0
@@ -23,7 +23,7 @@ def begin_flow(i, life):
         life.block_inverse[i, s] = 0.0
 
 
-@lean
+@inlined
 def flow(i, life, out, now, grown, nearing, regime, spacing):
     """Let the time of a round of a flow pass; end the flow where the response nears an orbit."""
     life.regime[i] = regime
@@ -47,7 +47,7 @@ def flow(i, life, out, now, grown, nearing, regime, spacing):
     return KEEP
 
 
-@lean
+@inlined
 def _end_block(i, life):
     """Add the error of a block: as of a step over which the rate jumps."""
     time = life.block[i, 2]

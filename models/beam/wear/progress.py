@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from models.beam.structure.modal import Array
 from models.beam.wear.regimes import LONGEST_PERIOD, History
-from models.numerics.jit import lean
+from models.numerics.jit import inlined
 
 STEP_FACTOR, FLOW_FACTOR = 3.0, 11.0  # half-width of the 90 % interval over the errors: measured
 
@@ -172,7 +172,7 @@ class Worn(NamedTuple):
         )
 
 
-@lean
+@inlined
 def wear_on(i, life, out, time, growth, rate, spacing):
     """Let a time pass in which the gaps of beam i grow to a given rate of wear."""
     for depth in range(life.growths.shape[1]):
@@ -190,13 +190,13 @@ def wear_on(i, life, out, time, growth, rate, spacing):
         life.grown[i, site] += growth[site]
 
 
-@lean
+@inlined
 def scale(i, life):
     """Return the growth that counts as a relative growth of one."""
     return max(life.grown[i, 0], life.grown[i, 1]) + life.growths[i, 0] / 2
 
 
-@lean
+@inlined
 def control(i, life, out):
     """Return the site that wears fastest among those that have not reached the last growth."""
     last = life.growths.shape[1] - 1
@@ -205,7 +205,7 @@ def control(i, life, out):
     return 0 if right >= left else 1
 
 
-@lean
+@inlined
 def _note_crossings(i, life, out, depth, time, growth, rate):
     """Record when beam i reaches one growth, with a rate linear in the growth along the way."""
     goal = life.growths[i, depth]
@@ -232,7 +232,7 @@ def _note_crossings(i, life, out, depth, time, growth, rate):
             out.ratio[i, depth] = slower / (life.initial[i, site] + goal)
 
 
-@lean
+@inlined
 def note_look(i, life, out, look, part, time, growth, rate):
     """Record gaps, work-rates and regime of beam i, interpolated, in its history."""
     history = out.history

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from models.beam.response.response import APERIODIC, ASYMMETRIC, NO_IMPACT, PERIODIC, SYMMETRIC
 from models.beam.structure.modal import Array
-from models.numerics.jit import kernel, lean
+from models.numerics.jit import inlined, kernel
 
 ROUND = 16  # periods between two judgements of a response
 LONGEST_PERIOD = ROUND // 2
@@ -53,7 +53,7 @@ class History(NamedTuple):
         return History(time, gaps, work, np.full((n, looks), UNKNOWN, np.int8))
 
 
-@lean
+@inlined
 def watch(strobe, apart):
     """Compare the strobe points of a round with those k periods before.
 
@@ -92,7 +92,7 @@ def watch(strobe, apart):
     return period, nearing
 
 
-@lean
+@inlined
 def regime_of(period, right, left):
     """Return the regime of a response near an orbit of k periods, from the work at each site."""
     if right + left == 0.0:

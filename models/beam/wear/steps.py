@@ -22,18 +22,18 @@ from models.beam.wear.progress import (
     scale,
     wear_on,
 )
-from models.numerics.jit import lean
+from models.numerics.jit import inlined
 
 _TIGHT = 0.1  # error of a step over the accuracy asked for
 _GENEROUS = 0.125  # of it, below which the next step is twice as long
 _SMOOTH = 1 / 6  # error of a step without a change of branch, over the one with it
 _JUMP = 0.2  # change of a rate, other than expected, that may be one of branch
-_FEWEST, _LEFT, _MOST = 3, 8, 16  # rounds held: near an orbit, away from any, at most
+_FEWEST, _LEFT, _MOST = 2, 8, 16  # rounds held: near an orbit, away from any, at most
 _CALM, _QUIET = 1e-4, 1e-8  # change of work from round to round when settled; need not shrink
 _SHRINKING = 0.8  # factor of that change from one round to the next
 
 
-@lean
+@inlined
 def begin_hold(i, life, now):
     """Prepare for the first round in which the gaps of beam i are held."""
     life.mode[i] = HOLDING
@@ -44,7 +44,7 @@ def begin_hold(i, life, now):
         life.total[i, s] = 0.0
 
 
-@lean
+@inlined
 def hold(i, life, out, now, grown, period, nearing, regime, accuracy, largest, spacing):
     """Hold the gaps until the response has settled; then accept the step, or take it back."""
     calm = _is_calm(i, life, now)
@@ -86,7 +86,7 @@ def hold(i, life, out, now, grown, period, nearing, regime, accuracy, largest, s
     return KEEP
 
 
-@lean
+@inlined
 def _is_calm(i, life, now):
     """Return whether the sum of the sites' wear, and their difference, change less and less."""
     whole = now[0] + now[1]
@@ -100,7 +100,7 @@ def _is_calm(i, life, now):
     return calm
 
 
-@lean
+@inlined
 def _expected(i, life, site, grown):
     """Return the inverse rate of a site after a step, extrapolated from the step before."""
     inverse, before = 1 / life.rate[i, site], life.rate_before[i, site]
@@ -110,7 +110,7 @@ def _expected(i, life, site, grown):
     return inverse + (inverse - 1 / before) / run * grown
 
 
-@lean
+@inlined
 def _is_even(i, life, out, now, grown):
     """Return whether no rate has changed so much that it may have jumped."""
     even = True
@@ -123,7 +123,7 @@ def _is_even(i, life, out, now, grown):
     return even
 
 
-@lean
+@inlined
 def _step_error(i, life, out, now, grown, factor):
     """Return the error of a step relative to the lives still to be found; note it for each site.
 
@@ -152,24 +152,33 @@ def _step_error(i, life, out, now, grown, factor):
     return largest
 
 
-@lean
+@inlined
+def _integral(before, begin, end, run, length):
+    """Return the integral over a step, from the values at its ends and a run before, if any."""
+    total = length * (begin + end) / 2
+    if run > 0:
+        curvature = ((end - begin) / length - (begin - before) / run) / (run + length)
+        total -= curvature * length**3 / 6
+    return total
+
+
+@inlined
 def _accept(i, life, out, now, grown, smooth, regime, spacing):
     """Let the time of a step pass."""
     site = control(i, life, out)
     other = 1 - site
-    rate, after = life.rate[i, site], now[site]
+    rate, after, before = life.rate[i, site], now[site], life.rate_before[i, site]
     time = 0.0
     if grown[site] > 0 and rate > 0:
         begin = 1 / rate
         end = 1 / after if after > 0 else begin
-        time = grown[site] * (begin + end) / 2
-        run = life.grown[i, site] - life.grown_before[i, site]
-        if smooth and life.rate_before[i, site] > 0 and run > 0:
-            slope = (begin - 1 / life.rate_before[i, site]) / run
-            curvature = ((end - begin) / grown[site] - slope) / (run + grown[site])
-            time -= curvature * grown[site] ** 3 / 6
-        ends = life.rate[i, other] * begin + now[other] * end
-        grown[other] = grown[site] * ends / 2
+        run, earlier = 0.0, begin
+        if smooth and before > 0:
+            run, earlier = life.grown[i, site] - life.grown_before[i, site], 1 / before
+        length = grown[site]
+        time = _integral(earlier, begin, end, run, length)
+        ratios = life.rate_before[i, other] * earlier, life.rate[i, other] * begin, now[other] * end
+        grown[other] = max(0.0, _integral(*ratios, run, length))
     for s in range(2):
         life.step_error[i, s] += life.error[i, s] ** 2
         life.grown_before[i, s] = life.grown[i, s]

@@ -6,23 +6,22 @@ from numpy.typing import NDArray
 from models.beam.response.response import APERIODIC, NO_IMPACT
 from models.beam.response.settling import TURNS
 from models.beam.structure.modal import Array
-from models.beam.structure.propagation import FIRST_MODE, Propagator, System
+from models.beam.structure.propagation import Propagator, System
 from models.beam.wear.progress import (
-    BACK,
     FIRST_STEP,
     FLOWING,
-    KEEP,
     OVER,
     STEPPING,
     Progress,
     Worn,
 )
 from models.beam.wear.regimes import ROUND
-from models.beam.wear.rounds import judge, plan
+from models.beam.wear.rounds import judge, keep, plan
+from models.numerics.blocks import LANES
 from models.numerics.elementary import log1p
 
 LOOKS = 32  # while the faster gap grows to the last depth
-LONGEST_STEP = 0.22  # relative growth of a gap
+LONGEST_STEP = 0.24  # relative growth of a gap
 OVERTIME = 4  # a flow may last this many times its intended periods
 _ENOUGH = 8192  # further periods
 _SILENCE = 64  # periods without contact, at least, after which a beam that can avoid contact will
@@ -90,24 +89,22 @@ def wear_down(
         min(FIRST_STEP, largest),
     )
     left, now, here = np.arange(n), state.copy(), gaps.copy()
-    kept, kept_gaps = state.copy(), gaps.copy()
+    clock = propagator.CLOCK % state.shape[1]
+    before, kept, kept_gaps = state.copy(), state.copy(), gaps.copy()
     for _ in range((OVERTIME * periods + _ENOUGH) // ROUND):
-        growth, push = np.empty((len(left), 2)), np.empty(len(left))
+        growth = np.empty((len(left), 2))
         verdict = np.empty(len(left), np.int8)
-        plan(left, life, out, here, pace, growth, push)
-        now[:, FIRST_MODE] += push
+        plan(left, life, out, here, now, kept, before, clock, pace, growth)
         record = propagator.advance(system, now, here, growth, ROUND)
         judge(
             left, life, out, here, record.work, record.strobe, accuracy, largest, spacing, verdict
         )
-        good, back = verdict == KEEP, verdict == BACK
-        kept[good], kept_gaps[good] = now[good], here[good]
-        now[back], here[back] = kept[back], kept_gaps[back]
+        keep(verdict, now, here, kept, kept_gaps, before)
         going = life.mode[left] != OVER
-        if not going.all():
+        if len(left) - going.sum() >= max(1, len(left) // LANES):  # to select beams takes time
             rows = np.flatnonzero(going)
             left, now, here, system = left[rows], now[rows], here[rows], system.take(rows)
-            kept, kept_gaps = kept[rows], kept_gaps[rows]
+            before, kept, kept_gaps = before[rows], kept[rows], kept_gaps[rows]
         if not len(left):
             break
     missing = ~out.reached

@@ -1,24 +1,40 @@
-"""The memory layout of sixteen moles."""
+"""The memory layout of a block of moles."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from models.numerics import dop8
-from models.numerics.blocks import LANES, aligned, layout
+from models.numerics.blocks import aligned
+
+LANES = 32
+"""Moles at a time: enough for sums to be limited by loads instead of by latency."""
 
 # Quantities of a lane, followed by its tangents, which have the first five each.
 U, V, X, CURRENT, P, ADDED, SINE, COSINE = range(8)
 PLAIN = 8
 MEASURED = 5
 
+ORDER = 12
+"""Order of the series."""
+TERMS = ORDER + 2
+
+# Series of a lane, beginning with those whose errors count. The mole's velocity, which is linear in
+# v and time, has none. PATH and AREA are the first and the second integral of u, WORK that of i p;
+# RISE is L', SQUARE i^2; the factors of the tangents' equations, the guard that ends a step, and
+# values for the moment follow, and five series of each tangent.
+U_S, V_S, FLUX_S, P_S, CURRENT_S, ADDED_S, SINE_S, COSINE_S = range(8)
+PATH_S, AREA_S, WORK_S, RISE_S, SQUARE_S, FORCE_S = range(8, 14)
+BEND_S, PULL_S, TURN_S, GUARD_S, HERE_S = range(14, 19)
+SHARED = 19
+WATCHED = 4
+
 # Rows of a block's memory, beginning with the constants of a lane in its present mode.
 (
     STEP,
     A,
     B,
-    D,
-    E,
+    RATIO,
+    DRIFT,
     STIFFNESS,
     FORCE,
     DAMPING,
@@ -32,32 +48,35 @@ MEASURED = 5
     GAP,
 ) = range(16)
 
-# Integrals over a trial step, and their sums so far: of the velocity, the powers of impacts and
-# supply, and the contact force.
+# Sums so far: of the velocity, the powers of impacts and supply, and the contact force.
 PROGRESS, IMPACT, ELECTRIC, IMPULSE = range(4)
 INTEGRALS = 4
-INTEGRAL, SUM = 16, 20
-
-# Derivatives of F with respect to u and i, and of i' with respect to u, v, i and p.
-JACOBIAN = 24
+SUM = 16
 
 # Guards, positive while the mode lasts: of the stop, of the bar's and of the mole's friction. Their
-# coefficients, and their values and rates at both ends of a step.
+# coefficients; their values and slopes at the beginning, in the middle and at the end of a step.
 TOUCH, BAR, MOLE = range(3)
 GUARDS = 3
-OPEN, BAR_SLIP, MOLE_SLIP, BAR_HOLD, MOLE_HOLD = range(30, 35)
-BAR_OFFSET, MOLE_OFFSET, BAR_LIMIT, MOLE_LIMIT = range(35, 39)
-START, START_RATE, END, END_RATE = (39 + i * GUARDS for i in range(4))
+OPEN, BAR_SLIP, MOLE_SLIP, BAR_HOLD, MOLE_HOLD = range(20, 25)
+BAR_OFFSET, MOLE_OFFSET, BAR_LIMIT, MOLE_LIMIT = range(25, 29)
+LOOKS = 3
+VALUE, RATE = 29, 38
+PRESSED = 47  # the force on the bar there
+
+# The guard that ends a step: its coefficients of u, v, F, 1 and t; where it lies between two
+# places; where it is zero or the step ends, and the latest place for that, in steps.
+MET, OF_U, OF_V, OF_F, OF_1, OF_T, LEFT, RIGHT, REACH, MOST = range(50, 60)
 
 # Mode, clock, bookkeeping.
-ROW, BAR_MODE, MOLE_MODE, TOUCHING, HALF, TARGET, CONTACTS, ENTRIES = range(51, 59)
-WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(59, 67)
+ROW, BAR_MODE, MOLE_MODE, TOUCHING, HALF, CONTACTS, ENTRIES = range(60, 67)
+WISH, LONGEST, TIME, HALF_PERIOD, LOW, HIGH, TRIALS, LOOK = range(67, 75)
 
-# The coil: inductance added by the bar in its middle, its width, and the longest step near it.
-ADDED_MOST, WIDTH, COIL_STEP = range(67, 70)
+# The coil: inductance added by the bar in its middle, its width, and the inverse of the inductance.
+ADDED_MOST, WIDTH, INVERSE = range(75, 78)
 
-GROWTH = 70  # logarithm of the factor by which tangents were divided
-ROWS = 71
+GROWTH = 78  # logarithm of the factor by which tangents were divided
+SHARE = 79  # of the series whose errors count: the inverse of the error allowed
+ROWS = SHARE + WATCHED
 
 LONGEST_PERIOD = 64
 """Number of common periods among which a repetition is sought."""
@@ -66,52 +85,31 @@ TO_REPEAT = 2 * LONGEST_PERIOD
 
 
 class Block(NamedTuple):
-    """Memory of sixteen lanes; the numbers of one lane are LANES apart.
+    """Memory of a block of lanes; the numbers of one lane are LANES apart.
 
     Attributes
     ----------
-    whole : ndarray
-        States, arguments and slopes; see `models.numerics.blocks.Layout`.
-    state, new : ndarray
-        Views of states and arguments; after the last stage `new` is the new state.
-    end : ndarray
-        Slopes at the new state.
+    state : ndarray
+        States, including tangents.
+    series : ndarray
+        TERMS coefficients of each series, of powers of the time in units of the step.
     memory : ndarray
         Everything else; see the rows above.
-    share, error : ndarray
-        See `models.numerics.dop8.estimator`.
     ring : ndarray, shape (LANES, TO_REPEAT, MEASURED)
         (u, v, x, |i|, |p|) at the last common periods.
     """
 
-    whole: Any
     state: Any
-    new: Any
-    end: Any
+    series: Any
     memory: Any
-    share: Any
-    error: Any
     ring: Any
 
     @staticmethod
     def made(columns: int) -> "Block":
         """Return memory for lanes with this many columns of tangents."""
-        size = quantities(columns)
-        where = layout(size, dop8.STAGES)
-        whole = aligned(where.size)
-        n = size * LANES
         return Block(
-            whole,
-            whole[where.state : where.state + n],
-            whole[where.argument : where.argument + n],
-            aligned(n),
+            aligned((PLAIN + MEASURED * columns) * LANES),
+            aligned((SHARED + MEASURED * columns) * TERMS * LANES),
             aligned(ROWS * LANES),
-            aligned(MEASURED * LANES),
-            aligned((1 + 2 * MEASURED) * LANES),
             np.empty((LANES, TO_REPEAT, MEASURED)),
         )
-
-
-def quantities(columns: int) -> int:
-    """Return the number of quantities of a lane with this many columns of tangents."""
-    return PLAIN + MEASURED * columns

@@ -4,7 +4,7 @@ import math
 
 from models.mole.lanes import block as at
 from models.mole.lanes.block import BAR, LANES, MOLE, TOUCH
-from models.mole.lanes.modes import enter, force_on_bar
+from models.mole.lanes.modes import enter, force_on_bar, see
 from models.mole.parameters import PHYSICAL
 from models.mole.theory.friction import bar_hold, decide, mole_hold, response
 from models.numerics.jit import lean
@@ -22,9 +22,14 @@ def happen(which, q, lane, m, y, columns):
         m[at.TOUCHING * LANES + lane] = 0 if touching else 1
         m[at.CONTACTS * LANES + lane] += 0 if touching else 1
         y[at.U * LANES + lane] = q.stop_gap
+        see(q, lane, m, y)
     elif which == BAR and bar == 0:
         # The force has just reached its limit: the direction of slip is known.
-        m[at.BAR_MODE * LANES + lane] = 1 if force + bar_hold(q, mole).offset > 0 else -1
+        bar = 1.0 if force + bar_hold(q, mole).offset > 0 else -1.0
+        m[at.BAR_MODE * LANES + lane] = bar
+        if mole == 0 and q.mole_limit == 0:
+            # No friction holds the mole, on which the force is still zero.
+            m[at.MOLE_MODE * LANES + lane] = -bar
     elif which == MOLE and mole == 0:
         m[at.MOLE_MODE * LANES + lane] = 1 if mole_hold(q, bar).offset - force > 0 else -1
     else:
@@ -43,10 +48,6 @@ def happen(which, q, lane, m, y, columns):
         before, after = response(q, bar, mole), response(q, new_bar, new_mole)
         _saltate(lane, y, which, columns, force, before, after)
     enter(q, lane, m, y)
-    # A slip or a separation that has just begun starts from zero.
-    begun = which == TOUCH or m[(at.BAR_MODE + which - BAR) * LANES + lane] != 0
-    if begun:
-        m[(at.START + which) * LANES + lane] = 0.0
 
 
 @lean
@@ -72,13 +73,6 @@ def turn_relay(q, lane, m, y):
     if q.formulation == PHYSICAL:
         jump = q.voltage * y[at.SINE * LANES + lane]
         y[at.P * LANES + lane] += jump if half % 2 == 0 else -jump
-    stop = m[(at.START + TOUCH) * LANES + lane]
-    bar, mole = m[(at.START + BAR) * LANES + lane], m[(at.START + MOLE) * LANES + lane]
-    enter(q, lane, m, y)
-    # A slip that begins now starts from zero.
-    m[(at.START + TOUCH) * LANES + lane] *= 0.0 if stop == 0 else 1.0
-    m[(at.START + BAR) * LANES + lane] *= 0.0 if bar == 0 else 1.0
-    m[(at.START + MOLE) * LANES + lane] *= 0.0 if mole == 0 else 1.0
 
 
 @lean

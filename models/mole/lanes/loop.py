@@ -1,24 +1,27 @@
-"""Sixteen moles at a time, each with its own step and with every event located.
+"""Many moles at a time, each with its own step and with every event located: the hot loop.
 
-All lanes take a trial step; then each lane is treated on its own. A lane whose guards stay positive
-accepts it. One that has met an event tries again with a step that ends there, which takes two or
-three trials. Steps end exactly where the relay switches. A lane whose row is done takes the next
-row. Lanes are independent, so a row's bits do not depend on its neighbours.
+All lanes expand their motion into series, which reach as far as the error allows. Guards that fall
+through zero on the way are found along the series, and their zeros refined in all lanes at once:
+steps end exactly there, and where the relay switches. No step is rejected. A lane whose row is done
+takes the next row. Lanes are independent, so a row's bits do not depend on its neighbours.
 """
 
+import math
 from collections.abc import Callable
 
 from models.mole.lanes import block as at
-from models.mole.lanes.block import INTEGRALS, LANES, MEASURED, Block, quantities
-from models.mole.lanes.modes import judge
-from models.mole.lanes.rates import renew, slopes
+from models.mole.lanes.block import LANES, MEASURED, Block
+from models.mole.lanes.events import happen, turn_relay
+from models.mole.lanes.expand import expand, expand_tangents
+from models.mole.lanes.locate import find, refine
+from models.mole.lanes.looks import limit_step, look, next_step
+from models.mole.lanes.modes import mole_of
+from models.mole.lanes.move import move, move_tangents
 from models.mole.lanes.rows import GOING, OUT_OF_BUDGET, STUCK, Task, idle, load, unload
-from models.mole.lanes.steps import accept, conclude
 from models.mole.lanes.strobe import strobe
-from models.numerics import dop8
-from models.numerics.blocks import layout
 from models.numerics.jit import kernel, lean
 
+_DONE = 1 - 1e-12  # of half a control period: the rest is rounding error
 _SHORTEST = 1e-15  # s
 
 
@@ -35,66 +38,57 @@ def propagator(columns: int) -> Callable[..., None]:
     kernel
         ``propagate(task, block)``, with a `Task` and a `Block`, returns when every row is done.
     """
-    size = quantities(columns)
-    rates = slopes(columns)
-    combine = dop8.combiner(size)
-    estimate = dop8.estimator(size, MEASURED)
-    first = layout(size, dop8.STAGES).slopes
-    whole = size * LANES
-
-    @lean
-    def keep(m, y, new):
-        """Store the new state of the lanes whose step was accepted."""
-        for q in range(size):
-            for lane in range(LANES):
-                j = q * LANES + lane
-                y[j] = new[j] if m[at.LOOK * LANES + lane] == 0.0 else y[j]
-        for q in range(INTEGRALS):
-            for lane in range(LANES):
-                part = m[(at.INTEGRAL + q) * LANES + lane]
-                part = part if m[at.LOOK * LANES + lane] == 0.0 else 0.0
-                m[(at.SUM + q) * LANES + lane] += part
 
     @lean
     def propagate(task, block):
         # Unpack tuples before the loop: inside it, every access would be reference-counted.
-        w, y, new, end, m, share, error, ring = block
+        y, w, m, ring = block
         table, rows = task.table, task.record.shape[0]
         waiting = running = 0
         for lane in range(LANES):
-            load(lane, min(waiting, rows - 1), task, m, y, share, columns)
+            load(lane, min(waiting, rows - 1), task, m, y, columns)
             if waiting < rows:
                 running += 1
                 waiting += 1
             else:
                 idle(lane, m)
         while running > 0:
-            for j in range(INTEGRALS * LANES):
-                m[at.INTEGRAL * LANES + j] = 0.0
-            renew(m, y)
-            for stage in range(1, dop8.STAGES + 1):
-                k = w[first + (stage - 1) * whole : first + stage * whole]
-                rates(m, y if stage == 1 else new, k, dop8.WEIGHTS[stage - 1])
-                combine(stage, w)
-            estimate(w, share, error)
-            rates(m, new, end, 0.0)
-            judge(m, new, end)
-            accept(m, error)
-            keep(m, y, new)
             for lane in range(LANES):
-                if m[at.LOOK * LANES + lane] == 0.0 or m[at.ROW * LANES + lane] < 0:
+                next_step(lane, m, y)
+            expand(m, y, w)
+            if columns > 0:
+                expand_tangents(m, y, w, columns)
+            limit_step(m, w)
+            look(m, y, w)
+            for lane in range(LANES):
+                if m[at.LOOK * LANES + lane] > 0.0:
+                    find(lane, m, y, w)
+            refine(m, w)
+            move(m, y, w)
+            if columns > 0:
+                move_tangents(m, y, w, columns)
+            for lane in range(LANES):
+                met, row = int(m[at.MET * LANES + lane]), int(m[at.ROW * LANES + lane])
+                ended = m[at.TIME * LANES + lane] >= _DONE * m[at.HALF_PERIOD * LANES + lane]
+                over = m[at.TRIALS * LANES + lane] >= task.budget
+                stuck = not m[at.STEP * LANES + lane] > _SHORTEST
+                if row < 0 or not (met >= 0 or ended or over or stuck):
                     continue
                 outcome = GOING
-                if conclude(lane, table, m, y, new, end, error[lane], size, columns):
+                if met >= 0:
+                    happen(met, mole_of(table, row), lane, m, y, columns)
+                if ended:
+                    turn_relay(mole_of(table, row), lane, m, y)
                     outcome = strobe(lane, task, m, y, ring, columns)
-                if outcome == GOING and m[at.TRIALS * LANES + lane] >= task.budget:
+                    stuck |= not abs(y[at.CURRENT * LANES + lane]) < math.inf
+                if outcome == GOING and over:
                     outcome = OUT_OF_BUDGET
-                if not m[at.STEP * LANES + lane] > _SHORTEST:
+                if stuck:
                     outcome = STUCK
                 if outcome != GOING:
                     unload(lane, task, m, y, columns, outcome)
                     if waiting < rows:
-                        load(lane, waiting, task, m, y, share, columns)
+                        load(lane, waiting, task, m, y, columns)
                         waiting += 1
                     else:
                         idle(lane, m)

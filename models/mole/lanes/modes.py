@@ -1,4 +1,4 @@
-"""Modes of sixteen moles: their constants and guards.
+"""Modes of a block of moles: their constants, and the coefficients of their guards.
 
 A guard is positive while its part of the mode lasts: the distance to the stop; the slip velocity of
 an interface in its direction, or the friction limit less the force required for sticking.
@@ -7,14 +7,12 @@ an interface in its direction, or the friction limit less the force required for
 import math
 
 from models.mole.lanes import block as at
-from models.mole.lanes.block import BAR, LANES, MOLE, TOUCH
-from models.mole.theory.equations import coil_step
+from models.mole.lanes.block import LANES
 from models.mole.theory.friction import bar_hold, mole_hold, response
 from models.mole.theory.system import Mole
-from models.numerics.fma import fma
 from models.numerics.jit import lean
 
-_LONGEST = 0.6  # step times the fastest rate
+_LONGEST = 1.0  # step times the fastest rate
 
 
 @lean
@@ -57,12 +55,14 @@ def force_on_bar(q, touching, u, v, i):
 
 @lean
 def enter(q, lane, m, y):
-    """Set everything that depends on a lane's mode: constants, longest step, initial guards."""
+    """Set everything that depends on a lane's mode: constants, coefficients of guards."""
     bar, mole = m[at.BAR_MODE * LANES + lane], m[at.MOLE_MODE * LANES + lane]
     touching = m[at.TOUCHING * LANES + lane] == 1
     mode = response(q, bar, mole)
     m[at.A * LANES + lane], m[at.B * LANES + lane] = mode.a, mode.b
-    m[at.D * LANES + lane], m[at.E * LANES + lane] = mode.d, mode.e
+    ratio = mode.d / mode.a if mode.a != 0 else 0.0
+    m[at.RATIO * LANES + lane] = ratio
+    m[at.DRIFT * LANES + lane] = mode.e - ratio * mode.b
     stop = q.contact_stiffness if touching else 0.0
     stiffness = q.spring_stiffness + stop
     m[at.STIFFNESS * LANES + lane], m[at.CONTACT * LANES + lane] = stiffness, stop
@@ -85,61 +85,10 @@ def enter(q, lane, m, y):
     limit = 1.0 if bar == 0 else hold.limit
     m[at.MOLE_LIMIT * LANES + lane] = limit if mole == 0 else 0.0
 
-    u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
-    i, p = y[at.CURRENT * LANES + lane], y[at.P * LANES + lane]
-    force, added, rise = force_on_bar(q, touching, u, v, i)
-    y[at.ADDED * LANES + lane] = added
-    bend = -2 * q.sharpness * (added + u * rise)
-    current = (p - (q.resistance + rise * v) * i) / (q.coil_inductance + added)
-    rate_v, rate_x = mode.a * force + mode.b, mode.d * force + mode.e
-    change = i * current * rise + (0.5 * i * i * bend - stiffness) * v - q.damping * rate_v
-    m[at.COIL_STEP * LANES + lane] = coil_step(u, v, m[at.WIDTH * LANES + lane])
-    open_ = m[at.OPEN * LANES + lane]
-    m[(at.START + TOUCH) * LANES + lane] = open_ * (q.stop_gap - u)
-    m[(at.START_RATE + TOUCH) * LANES + lane] = -open_ * v
-    _start(lane, m, 0, v, rate_v, force, change)
-    _start(lane, m, 1, x, rate_x, force, change)
-
 
 @lean
-def _start(lane, m, which, speed, rate, force, change):
-    slip = m[(at.BAR_SLIP + which) * LANES + lane]
-    hold = m[(at.BAR_HOLD + which) * LANES + lane]
-    load = force + m[(at.BAR_OFFSET + which) * LANES + lane]
-    spare = m[(at.BAR_LIMIT + which) * LANES + lane] - hold * abs(load)
-    side = hold if load > 0 else -hold
-    m[(at.START + BAR + which) * LANES + lane] = slip * speed + spare
-    m[(at.START_RATE + BAR + which) * LANES + lane] = slip * rate - side * change
-
-
-@lean
-def judge(m, y, k):
-    """Set guards and, times the step, their rates at the end of a step."""
-    for lane in range(LANES):
-        u, v, x = y[at.U * LANES + lane], y[at.V * LANES + lane], y[at.X * LANES + lane]
-        i, added = y[at.CURRENT * LANES + lane], y[at.ADDED * LANES + lane]
-        kv, kx = k[at.V * LANES + lane], k[at.X * LANES + lane]
-        slope = m[at.SLOPE * LANES + lane]
-        rise = slope * u * added
-        bend = slope * added * fma(slope * u, u, 1.0)
-        stiffness, damping = m[at.STIFFNESS * LANES + lane], m[at.DAMPING * LANES + lane]
-        force = fma(0.5 * i * i, rise, m[at.FORCE * LANES + lane])
-        force = fma(-damping, v, fma(-stiffness, u, force))
-        change = fma(i * k[at.CURRENT * LANES + lane], rise, -damping * kv)
-        change = fma(fma(0.5 * i * i, bend, -stiffness) * v, m[at.STEP * LANES + lane], change)
-        m[at.COIL_STEP * LANES + lane] = coil_step(u, v, m[at.WIDTH * LANES + lane])
-        open_ = m[at.OPEN * LANES + lane]
-        m[(at.END + TOUCH) * LANES + lane] = open_ * (m[at.GAP * LANES + lane] - u)
-        m[(at.END_RATE + TOUCH) * LANES + lane] = -open_ * v * m[at.STEP * LANES + lane]
-        slip, hold = m[at.BAR_SLIP * LANES + lane], m[at.BAR_HOLD * LANES + lane]
-        load = force + m[at.BAR_OFFSET * LANES + lane]
-        side = hold if load > 0 else -hold
-        spare = fma(-side, load, m[at.BAR_LIMIT * LANES + lane])
-        m[(at.END + BAR) * LANES + lane] = fma(slip, v, spare)
-        m[(at.END_RATE + BAR) * LANES + lane] = fma(slip, kv, -side * change)
-        slip, hold = m[at.MOLE_SLIP * LANES + lane], m[at.MOLE_HOLD * LANES + lane]
-        load = force + m[at.MOLE_OFFSET * LANES + lane]
-        side = hold if load > 0 else -hold
-        spare = fma(-side, load, m[at.MOLE_LIMIT * LANES + lane])
-        m[(at.END + MOLE) * LANES + lane] = fma(slip, x, spare)
-        m[(at.END_RATE + MOLE) * LANES + lane] = fma(slip, kx, -side * change)
+def see(q, lane, m, y):
+    """Set the inductance that the bar of a lane adds, after a change of u."""
+    u = y[at.U * LANES + lane]
+    y[at.ADDED * LANES + lane] = q.bar_inductance * math.exp(-q.sharpness * u * u)
+    m[at.INVERSE * LANES + lane] = 1 / (q.coil_inductance + y[at.ADDED * LANES + lane])

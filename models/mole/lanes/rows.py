@@ -8,8 +8,7 @@ import numpy as np
 from models.mole.lanes import block as at
 from models.mole.lanes.block import INTEGRALS, LANES, MEASURED, PLAIN
 from models.mole.lanes.events import set_supply
-from models.mole.lanes.modes import enter, force_on_bar, mole_of
-from models.mole.lanes.steps import next_step
+from models.mole.lanes.modes import enter, force_on_bar, mole_of, see
 from models.mole.parameters import PHYSICAL
 from models.mole.theory.friction import decide
 from models.mole.theory.system import Mole
@@ -64,7 +63,7 @@ class Task(NamedTuple):
     tolerance : float
         Of a step, relative to the scales.
     budget : int
-        Trial steps of a row in all its runs.
+        Steps of a row in all its runs.
     """
 
     table: Any
@@ -97,7 +96,7 @@ def begin(table, displacement, velocity, record):
 
 
 @lean
-def load(lane, row, task, m, y, share, columns):
+def load(lane, row, task, m, y, columns):
     """Load a row into a lane."""
     q, r = mole_of(task.table, row), task.record[row]
     m[at.ROW * LANES + lane] = row
@@ -105,7 +104,6 @@ def load(lane, row, task, m, y, share, columns):
     m[at.MOLE_MODE * LANES + lane] = int(r[MOLE_MODE])
     m[at.TOUCHING * LANES + lane] = int(r[TOUCHING])
     m[at.HALF * LANES + lane] = int(r[HALF])
-    m[at.TARGET * LANES + lane] = -1
     m[at.CONTACTS * LANES + lane] = m[at.ENTRIES * LANES + lane] = 0
     for j in range(MEASURED):
         y[j * LANES + lane] = r[U + j]
@@ -127,18 +125,18 @@ def load(lane, row, task, m, y, share, columns):
     m[at.ELASTANCE * LANES + lane] = q.elastance
     m[at.SPEED * LANES + lane] = q.supply_speed
     m[at.GAP * LANES + lane] = q.stop_gap
-    share[at.U * LANES + lane] = 1 / (task.tolerance * SCALES[0])
-    share[at.V * LANES + lane] = 1 / (task.tolerance * SCALES[1])
-    share[at.X * LANES + lane] = 1 / (task.tolerance * SCALES[2])
-    share[at.CURRENT * LANES + lane] = 10 * q.resistance / (task.tolerance * q.voltage)
-    share[at.P * LANES + lane] = 1 / (task.tolerance * q.voltage)
+    m[at.SHARE * LANES + lane] = 1 / (task.tolerance * SCALES[0])
+    m[(at.SHARE + 1) * LANES + lane] = 1 / (task.tolerance * SCALES[1])
+    most = q.coil_inductance + q.bar_inductance
+    m[(at.SHARE + 2) * LANES + lane] = 10 * q.resistance / (task.tolerance * q.voltage * most)
+    m[(at.SHARE + 3) * LANES + lane] = 1 / (task.tolerance * q.voltage)
     m[at.HALF_PERIOD * LANES + lane] = 0.5 * q.control_period
     m[at.LOW * LANES + lane] = m[at.HIGH * LANES + lane] = r[U]
     m[at.TRIALS * LANES + lane] = r[TRIALS]
     set_supply(q, lane, m, y)
     enter(q, lane, m, y)
+    see(q, lane, m, y)
     m[at.WISH * LANES + lane] = m[at.LONGEST * LANES + lane]
-    next_step(lane, m, np.inf)
 
 
 @lean
@@ -167,7 +165,6 @@ def unload(lane, task, m, y, columns, outcome):
 
 @lean
 def idle(lane, m):
-    """Stop a lane for which no row is left."""
+    """Stop a lane for which no row is left: its state is no number from now on."""
     m[at.ROW * LANES + lane] = -1
-    m[at.STEP * LANES + lane] = 0.0
-    m[at.HALF_PERIOD * LANES + lane] = np.inf
+    m[at.LONGEST * LANES + lane] = 0.0

@@ -12,7 +12,7 @@ Reading order; a module imports only those above it:
     following      n machines followed step by step
     tangents       a revolution with its derivatives with respect to the start
     chords         Newton's method with derivatives that are kept
-    multiplier     the largest Floquet multiplier of many orbits
+    multiplier     the largest Floquet multiplier of an orbit
     orbit          the synchronous motion as a periodic orbit, by Newton's method
 
 It is a `models.numerics.propagator.Propagator`.

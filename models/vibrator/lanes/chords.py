@@ -4,24 +4,24 @@ Convergence is linear, but an iteration costs only the motion itself.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from models.numerics.blocks import LANES, aligned, copy
+from models.numerics.blocks import LANES, copy
 from models.numerics.fma import fma
-from models.numerics.jit import kernel
-from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, Part, load, turn_back
-from models.vibrator.lanes.steps import AT, SIZE, prepare, step_5
-from models.vibrator.lanes.tangents import ANCHOR
+from models.numerics.jit import inlined, kernel, spliced
+from models.vibrator.lanes.packed import STATE, turn_back
+from models.vibrator.lanes.steps import AT, prepare, step_5
+from models.vibrator.lanes.tangents import ANCHOR, ENTRIES
 
 _NEAR = 0.05  # longest first step
 _SHRINKING = 0.25  # factor per step; slower convergence is given up
 _CHORDS = 8
 CLOSE_ENOUGH = 1e-8  # the error that one more step leaves is less than a tenth of this
 _WHOLE = STATE * LANES
+_PSI_2, _W_1, _W_2, _PERIOD = (i * LANES for i in (3, 7, 8, 9))  # in a step, which lacks psi_1
 
 
 @kernel
-def _solve(inverse, miss, step):
+def multiply(inverse, miss, step):
     """Set the steps of all lanes to the products of inverse and miss."""
     for i in range(STATE):
         o = i * _WHOLE
@@ -32,8 +32,46 @@ def _solve(inverse, miss, step):
             step[i * LANES + lane] = total
 
 
+@inlined
+def angle_and_period(step, time, lane):
+    """Return the length of a step: in psi_2 [rad] plus, relative, in the period."""
+    return abs(step[_PSI_2 + lane]) + abs(step[_PERIOD + lane]) / time[lane]
+
+
+@inlined
+def length(step, time, turn, lane):
+    """Return the length of a step: in psi_2 [rad], in the period and, per turn, in the speeds."""
+    speeds = abs(step[_W_1 + lane]) + abs(step[_W_2 + lane])
+    return angle_and_period(step, time, lane) + speeds * time[lane] / turn
+
+
+@inlined
+def take(step, factor, at, time, lane):
+    """Add a multiple of a step to the state and the time of one lane."""
+    j = lane
+    for i in range(STATE):
+        if i != ANCHOR:
+            at[i * LANES + lane] = fma(factor, step[j], at[i * LANES + lane])
+            j += LANES
+    time[lane] = fma(factor, step[j], time[lane])
+
+
+@spliced
+def move(c, at, time, steps, mirror, turn, image, work):
+    """Set `image` to where all lanes return after a part of a revolution."""
+    w, h = work
+    y = w[AT.position : AT.position + _WHOLE]
+    for lane in range(LANES):
+        h[lane] = time[lane] / steps
+    prepare(c, h, w)
+    copy(at, y)
+    for _ in range(steps):
+        step_5(w)
+    turn_back(y, mirror, turn, image)
+
+
 @kernel
-def _take(step, at, time, last, turn):
+def _advance(step, at, time, last, turn):
     """Take the step of each lane that is still going; return how many go on.
 
     `last` holds the length of the last step, 0 once close, and NaN once given up.
@@ -41,16 +79,8 @@ def _take(step, at, time, last, turn):
     some = 0
     for lane in range(LANES):
         if last[lane] > 0.0:
-            j = lane
-            for i in range(STATE):
-                if i != ANCHOR:
-                    at[i * LANES + lane] += step[j]
-                    j += LANES
-            time[lane] += step[j]
-            # In psi_2 [rad], in the period and, per turn, in the speeds.
-            speeds = abs(step[7 * LANES + lane]) + abs(step[8 * LANES + lane])
-            size = abs(step[3 * LANES + lane]) + abs(step[j]) / time[lane]
-            size += speeds * time[lane] / turn
+            take(step, 1.0, at, time, lane)
+            size = length(step, time, turn, lane)
             if size < _SHRINKING * last[lane] and time[lane] > 0.0:
                 last[lane] = size if size >= CLOSE_ENOUGH else 0.0
             else:
@@ -59,87 +89,44 @@ def _take(step, at, time, last, turn):
     return some
 
 
-@kernel
-def _approach(constants, state, time, guess, image, inverse, steps, mirror, turn, close, work):
-    c, w, h, at, t, back, factors, miss, step, last = work
-    y = w[AT.position : AT.position + _WHOLE]
-    for first in range(0, state.shape[0], LANES):
-        load(constants, first, c)
-        load(state, first, at)
-        load(guess, first, t)
-        load(image, first, back)
-        load(inverse, first, factors)
-        last[:] = _NEAR / _SHRINKING
-        for _ in range(_CHORDS + 1):
-            for j in range(_WHOLE):
-                miss[j] = at[j] - back[j]
-            _solve(factors, miss, step)
-            if _take(step, at, t, last, turn) == 0:
-                break
-            for lane in range(LANES):
-                h[lane] = t[lane] / steps
-            prepare(c, h, w)
-            copy(at, y)
-            for _ in range(steps):
-                step_5(w)
-            turn_back(y, mirror, turn, back)
-        for n in range(first, min(first + LANES, state.shape[0])):
-            close[n] = last[n - first] == 0.0
-            if close[n]:
-                time[n] = t[n - first]
-                for i in range(STATE):
-                    state[n, i] = at[i * LANES + n - first]
-
-
-def approach(
-    constants: Array,
-    state: Array,
-    time: Array,
-    image: Array,
-    inverse: Array,
-    steps: int,
-    part: Part,
-) -> NDArray[np.bool_]:
-    """Improve guesses near an orbit in place; leave the others unchanged.
+@spliced
+def approach(c, at, time, end, inverse, steps, mirror, turn, close, work):
+    """Improve guesses near an orbit.
 
     Where convergence is slow, the guess was not near an orbit.
 
     Parameters
     ----------
-    constants : ndarray, shape (n, CONSTANTS)
-    state : ndarray, shape (n, 10)
-        Guess, at psi_1 = 0.
-    time : ndarray, shape (n,)
-        Guess of the time after which the motion returns [s].
-    image : ndarray, shape (n, 10)
-        To where it returns.
-    inverse : ndarray, shape (n, 10, 10)
-        Of the derivatives of image less start.
+    c : ndarray
+        Constants of the machines, in lanes.
+    at : ndarray, shape (STATE * LANES,)
+        Guess, at psi_1 = 0; updated in place.
+    time : ndarray, shape (LANES,)
+        Guess of the time after which the motion returns [s]; updated in place.
+    end : ndarray, shape (STATE * ENTRIES * LANES,)
+        Where the guess returns, as `models.vibrator.lanes.tangents.differentiate` sets it.
+    inverse : ndarray, shape (STATE * STATE * LANES,)
+        Of the derivatives of end less start.
     steps : int
         In that time.
-    part : Part
-        Of a revolution.
-
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-        Where the guess has been improved.
+    mirror, turn
+        See `models.vibrator.lanes.packed.Part`.
+    close : ndarray of bool, shape (LANES,)
+        Set to where the guess has been improved; elsewhere it is spoilt.
+    work : tuple of ndarray
+        Rooms for motion, steps, ends, misses, steps of the state, and their lengths.
     """
-    n = len(state)
-    close = np.empty(n, bool)
-    work = (
-        aligned(CONSTANTS * LANES),
-        aligned(SIZE),
-        aligned(LANES),
-        aligned(_WHOLE),
-        aligned(LANES),
-        aligned(_WHOLE),
-        aligned(STATE * _WHOLE),
-        aligned(_WHOLE),
-        aligned(_WHOLE),
-        aligned(LANES),
-    )
-    factors, guess = inverse.reshape(n, STATE * STATE), time[:, None].copy()
-    mirror, turn = part.mirror, part.turn
-    _approach(constants, state, time, guess, image, factors, steps, mirror, turn, close, work)
-    return close
+    w, h, back, miss, step, last = work
+    for i in range(STATE):
+        for lane in range(LANES):
+            back[i * LANES + lane] = end[i * ENTRIES * LANES + lane]
+    last[:] = _NEAR / _SHRINKING
+    for _ in range(_CHORDS + 1):
+        for j in range(_WHOLE):
+            miss[j] = at[j] - back[j]
+        multiply(inverse, miss, step)
+        if _advance(step, at, time, last, turn) == 0:
+            break
+        move(c, at, time, steps, mirror, turn, back, (w, h))
+    for lane in range(LANES):
+        close[lane] = last[lane] == 0.0

@@ -1,9 +1,11 @@
 """The fast propagator: n rigid machines advanced by steps of fixed length, with notes of them."""
 
+import math
+
 import numpy as np
 
 from models.numerics.blocks import LANES, aligned
-from models.numerics.jit import inlined, kernel
+from models.numerics.jit import kernel, spliced
 from models.vibrator.lanes.machines import Machines
 from models.vibrator.lanes.notes import (
     CONSTANTS_ROOM,
@@ -21,7 +23,7 @@ from models.vibrator.lanes.steps import AT, SIZE, prepare, step_5, step_8
 _DEAD = 1e-140
 
 
-@inlined
+@spliced
 def _advance(take_step, constants, h, state, target, steps, band, notes, work):
     c, w, note, step_size, aim = work
     y = w[AT.position : AT.position + STATE * LANES]
@@ -35,7 +37,7 @@ def _advance(take_step, constants, h, state, target, steps, band, notes, work):
         load(target, first, aim)
         for lane in range(LANES):
             angle = c[4 * LANES + lane]
-            c[COS * LANES + lane], c[SIN * LANES + lane] = np.cos(angle), np.sin(angle)
+            c[COS * LANES + lane], c[SIN * LANES + lane] = math.cos(angle), math.sin(angle)
         prepare(c, step_size, w)
         begin(w, aim, note)
         for step in range(steps):

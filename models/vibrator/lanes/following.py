@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from models.numerics.blocks import LANES, aligned
-from models.numerics.jit import kernel
+from models.numerics.blocks import LANES, aligned, copy
+from models.numerics.jit import kernel, spliced
 from models.vibrator.lanes.packed import CONSTANTS, STATE, Array, load, store
 from models.vibrator.lanes.steps import AT, SIZE, prepare, step_5
 
@@ -45,50 +45,38 @@ def follow(constants: Array, state: Array, time: Array, steps: int) -> Array:
     return trace
 
 
-@kernel
-def _measure(constants, start, h, steps, mean, ripple, work):
-    c, w, step_size, total, low, high = work
-    y = w[AT.position : AT.position + STATE * LANES]
-    for first in range(0, start.shape[0], LANES):
-        load(constants, first, c)
-        load(h, first, step_size)
-        load(start, first, y)
-        prepare(c, step_size, w)
-        total[:], low[:], high[:] = 0.0, np.inf, -np.inf
-        for _ in range(steps):
-            step_5(w)
-            for lane in range(LANES):
-                angle = w[_PSI_1 + lane] - w[_PSI_2 + lane]
-                total[lane] += angle
-                low[lane] = angle if angle < low[lane] else low[lane]
-                high[lane] = angle if angle > high[lane] else high[lane]
-        for n in range(first, min(first + LANES, start.shape[0])):
-            lane = n - first
-            mean[n] = total[lane] / steps
-            ripple[n] = max(high[lane] - mean[n], mean[n] - low[lane])
-
-
-def disphasing(constants: Array, state: Array, time: Array, steps: int) -> tuple[Array, Array]:
-    """Return the disphasing angles of n machines as means over some time.
+@spliced
+def disphasing(c, at, time, steps, mean, ripple, work):
+    """Find the disphasing angles of all lanes as means over some time.
 
     Parameters
     ----------
-    constants, state, time, steps
-        As in `follow`.
-
-    Returns
-    -------
-    mean, ripple : ndarray, shape (n,)
-        Mean over the steps, and the largest deviation from it [rad].
+    c : ndarray
+        Constants of the machines, in lanes.
+    at : ndarray, shape (STATE * LANES,)
+    time : ndarray, shape (LANES,)
+        [s]
+    steps : int
+        In that time.
+    mean, ripple : ndarray, shape (LANES,)
+        Set to the means over the steps, and the largest deviations from them [rad].
+    work : tuple of ndarray
+        Rooms for motion, steps, and the smallest and largest angles.
     """
-    mean, ripple = np.empty((2, len(state)))
-    work = (
-        aligned(CONSTANTS * LANES),
-        aligned(SIZE),
-        aligned(LANES),
-        aligned(LANES),
-        aligned(LANES),
-        aligned(LANES),
-    )
-    _measure(constants, state, (time / steps)[:, None], steps, mean, ripple, work)
-    return mean, ripple
+    w, h, low, high = work
+    for lane in range(LANES):
+        h[lane] = time[lane] / steps
+    prepare(c, h, w)
+    copy(at, w[AT.position : AT.position + STATE * LANES])
+    mean[:], low[:], high[:] = 0.0, np.inf, -np.inf
+    for _ in range(steps):
+        step_5(w)
+        for lane in range(LANES):
+            angle = w[_PSI_1 + lane] - w[_PSI_2 + lane]
+            mean[lane] += angle
+            low[lane] = angle if angle < low[lane] else low[lane]
+            high[lane] = angle if angle > high[lane] else high[lane]
+    for lane in range(LANES):
+        mean[lane] /= steps
+        over, under = high[lane] - mean[lane], mean[lane] - low[lane]
+        ripple[lane] = over if over > under else under

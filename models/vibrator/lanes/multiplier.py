@@ -10,9 +10,9 @@ import numpy as np
 
 from models.numerics.blocks import LANES, aligned
 from models.numerics.fma import fma
-from models.numerics.jit import inlined, kernel
+from models.numerics.jit import inlined, kernel, spliced
 from models.vibrator.lanes.packed import STATE, Array
-from models.vibrator.lanes.tangents import ANCHOR, COLUMNS
+from models.vibrator.lanes.tangents import ANCHOR, COLUMNS, ENTRIES
 
 _SQUARINGS = 40  # |A^n| may differ from radius^n by a factor c: an error of log(c)/2^40 is left
 _FEWEST = 8  # the 256th power: a third eigenvalue 6 % smaller has faded to 1e-7
@@ -62,22 +62,23 @@ def _square(a, square, out, next_square, trace):
 
 
 @kernel
-def _load(end, first, w, square):
-    """Load the derivatives of revolutions into lanes; spare lanes repeat the last."""
-    last = end.shape[0] - 1
-    for lane in range(LANES):
-        n = min(first + lane, last)
-        total = 0.0
-        for j in range(COLUMNS):
-            late = end[n, ANCHOR, 1 + j] / end[n, ANCHOR, 1 + COLUMNS]
-            row = 0
-            for i in range(STATE):
-                if i != ANCHOR:
-                    change = end[n, i, 1 + j] - end[n, i, 1 + COLUMNS] * late
+def _load(end, w, square):
+    """Load the derivatives of the passage of psi_1 = 0, and their squared norm."""
+    anchor = ANCHOR * ENTRIES * LANES
+    square[:] = 0.0
+    for j in range(COLUMNS):
+        row = 0
+        for i in range(STATE):
+            if i != ANCHOR:
+                o = i * ENTRIES * LANES
+                for lane in range(LANES):
+                    rate = end[anchor + (ENTRIES - 1) * LANES + lane]
+                    late = end[anchor + (1 + j) * LANES + lane] / rate
+                    change = end[o + (1 + j) * LANES + lane]
+                    change -= end[o + (ENTRIES - 1) * LANES + lane] * late
                     w[(row * COLUMNS + j) * LANES + lane] = change
-                    total += change * change
-                    row += 1
-        square[lane] = total
+                    square[lane] += change * change
+                row += 1
 
 
 @inlined
@@ -108,45 +109,42 @@ def _settle(k, squares, traces, level, radius):
     return some
 
 
-@kernel
-def _radius(end, out, work):
-    a, b, squares, traces, level, radius = work
-    for first in range(0, end.shape[0], LANES):
-        _load(end, first, a, squares[0])
-        level[:] = _SQUARINGS + 1.0
-        done = 0
-        while done < _SQUARINGS:
-            _square(a, squares[done], b, squares[done + 1], traces[done + 1])
-            _square(b, squares[done + 1], a, squares[done + 2], traces[done + 2])
-            done += 2
-            if done > _FEWEST and _settle(done, squares, traces, level, radius) == 0:
-                break
-        for lane in range(LANES):
-            if level[lane] > _SQUARINGS:
-                level[lane], radius[lane] = done, np.sqrt(squares[done, lane])
-        for k in range(done - 1, -1, -1):
-            for lane in range(LANES):
-                smaller = np.sqrt(squares[k, lane] * radius[lane])
-                radius[lane] = smaller if k < level[lane] else radius[lane]
-        for n in range(first, min(first + LANES, end.shape[0])):
-            out[n] = radius[n - first]
-
-
-def largest_multiplier(end: Array) -> Array:
-    """Return the spectral radius of the Poincaré map of the section psi_1 = 0.
+@spliced
+def largest_multiplier(end, wanted, radius, work):
+    """Set `radius` to the spectral radii of the Poincaré maps of the section psi_1 = 0.
 
     Parameters
     ----------
-    end : ndarray, shape (n, 10, 11)
-        As `models.vibrator.lanes.tangents.revolve` returns it, for periodic orbits.
-
-    Returns
-    -------
-    ndarray, shape (n,)
+    end : ndarray, shape (STATE * ENTRIES * LANES,)
+        As `models.vibrator.lanes.tangents.differentiate` sets it, for periodic orbits.
+    wanted : ndarray of bool, shape (LANES,)
+        In which lanes.
+    radius : ndarray, shape (LANES,)
         The largest modulus of the Floquet multipliers except the trivial 1.
+    work : tuple of ndarray
+        Rooms of `rooms`.
     """
-    out = np.empty(len(end))
+    a, b, squares, traces, level = work
+    _load(end, a, squares[0])
+    for lane in range(LANES):
+        level[lane] = _SQUARINGS + 1.0 if wanted[lane] else 0.0
+    done = 0
+    while done < _SQUARINGS:
+        _square(a, squares[done], b, squares[done + 1], traces[done + 1])
+        _square(b, squares[done + 1], a, squares[done + 2], traces[done + 2])
+        done += 2
+        if done > _FEWEST and _settle(done, squares, traces, level, radius) == 0:
+            break
+    for lane in range(LANES):
+        if level[lane] > _SQUARINGS:
+            level[lane], radius[lane] = done, np.sqrt(squares[done, lane])
+    for k in range(done - 1, -1, -1):
+        for lane in range(LANES):
+            smaller = np.sqrt(squares[k, lane] * radius[lane])
+            radius[lane] = smaller if k < level[lane] else radius[lane]
+
+
+def rooms() -> tuple[Array, ...]:
+    """Return the arrays in which `largest_multiplier` works."""
     squares, traces = aligned(2 * (_SQUARINGS + 1) * LANES).reshape(2, -1, LANES)
-    work = aligned(_WHOLE), aligned(_WHOLE), squares, traces, aligned(LANES), aligned(LANES)
-    _radius(end, out, work)
-    return out
+    return aligned(_WHOLE), aligned(_WHOLE), squares, traces, aligned(LANES)

@@ -64,6 +64,15 @@ def load(table, first, out):
 
 
 @kernel
+def gather(table, rows, out):
+    """Load the rows of an (n, q) table with these indices into lanes, as `load` does."""
+    last = len(rows) - 1
+    for lane in range(LANES):
+        for i in range(table.shape[1]):
+            out[i * LANES + lane] = table[rows[min(lane, last)], i]
+
+
+@kernel
 def store(lanes, first, table):
     """Store lanes back into their rows of an (n, q) table."""
     for n in range(first, min(first + LANES, table.shape[0])):

@@ -7,9 +7,9 @@ column needs stays in the fastest cache; stage by stage it would not.
 
 import numpy as np
 
-from models.numerics.blocks import LANES, aligned
+from models.numerics.blocks import LANES, aligned, copy
 from models.numerics.fma import fma
-from models.numerics.jit import inlined, kernel
+from models.numerics.jit import inlined, kernel, spliced
 from models.numerics.nystrom import weights
 from models.numerics.tableaux import TSITOURAS_5
 from models.vibrator.lanes.derivatives import FACTORS, SUPPORTS, change, linearise, support
@@ -23,6 +23,7 @@ from models.vibrator.lanes.packed import (
     Part,
     load,
     machine,
+    store,
     turn_back,
 )
 from models.vibrator.lanes.steps import AT, SIZE, combine_5, prepare
@@ -30,6 +31,9 @@ from models.vibrator.lanes.steps import AT, SIZE, combine_5, prepare
 ANCHOR = 3  # psi_1
 FREE = [i for i in range(STATE) if i != ANCHOR]
 COLUMNS = len(FREE)
+ENTRIES = COLUMNS + 2
+"""Of each component of an end: itself, its derivatives by the start, and its rate."""
+
 _WHOLE = STATE * LANES
 _STAGES = len(TSITOURAS_5.b)
 _, _C2, _C3, _C4, _C5, _C6 = TSITOURAS_5.c
@@ -47,6 +51,9 @@ _SUPPORT = _STAGES * FACTORS
 _COLUMN = _SUPPORT + SUPPORTS
 _TANGENTS = _COLUMN + _WHOLE
 _BLOCK = _TANGENTS + COLUMNS * _WHOLE
+
+ROOMS = (SIZE, LANES, _BLOCK, _WHOLE)
+"""Sizes of the arrays in which `differentiate` works: motion, steps, derivatives, ends."""
 
 
 @inlined
@@ -121,7 +128,7 @@ def _begin(c, h, w):
             column += 1
 
 
-@kernel
+@spliced
 def _step(c, w, tangents):
     """Advance states and derivatives by one step."""
     _look(w)
@@ -139,42 +146,77 @@ def _look(w):
         w[AT.at + j] = w[AT.position + j]
 
 
-@kernel
-def _revolve(constants, start, h, steps, mirror, turn, end, work):
-    c, w, step, tangents, back = work
+@spliced
+def differentiate(c, start, time, steps, mirror, turn, end, work):
+    """Set `end` to where all lanes return after a part of a revolution, with derivatives.
+
+    Parameters
+    ----------
+    c : ndarray
+        Constants of the machines, in lanes.
+    start : ndarray, shape (STATE * LANES,)
+    time : ndarray, shape (LANES,)
+        Of this part [s].
+    steps : int
+        In that time.
+    mirror, turn
+        See `models.vibrator.lanes.packed.Part`.
+    end : ndarray, shape (STATE * ENTRIES * LANES,)
+        As `revolve` returns it, in lanes.
+    work : tuple of ndarray
+        Rooms of `ROOMS`.
+    """
+    w, h, tangents, back = work
     y = w[AT.position : AT.position + _WHOLE]
+    for lane in range(LANES):
+        h[lane] = time[lane] / steps
+    prepare(c, h, w)
+    copy(start, y)
+    _begin(c, h, tangents)
+    for _ in range(steps):
+        _step(c, w, tangents)
+    _look(w)
+    accelerate(w)
+    turn_back(y, mirror, turn, back)
+    for i in range(STATE):
+        for lane in range(LANES):
+            end[i * ENTRIES * LANES + lane] = back[i * LANES + lane]
+    _note(c, w, tangents, mirror, end)
+
+
+@kernel
+def _note(c, w, tangents, mirror, end):
+    """Record the derivatives of the states, by the start and by time."""
+    for i in range(STATE):
+        o = i * ENTRIES * LANES
+        for column in range(COLUMNS):
+            o += LANES
+            at = _TANGENTS + column * _WHOLE + i * LANES
+            for lane in range(LANES):
+                change = tangents[at + lane]
+                if i == 0 or i == DEGREES:
+                    up = machine(c, lane).support_offset
+                    change = fma(-up, tangents[at + 2 * LANES + lane], change)
+                per_step = 1.0 if i < DEGREES else 1 / w[AT.step + lane]
+                end[o + lane] = mirror[i] * (change * per_step)
+        o += LANES
+        for lane in range(LANES):
+            if i < DEGREES:
+                rate = w[AT.velocity + i * LANES + lane]
+            else:
+                rate = w[AT.rise + (i - DEGREES) * LANES + lane] * (1 / w[AT.step + lane])
+            end[o + lane] = mirror[i] * rate
+
+
+@kernel
+def _revolve(constants, start, time, steps, mirror, turn, out, work):
+    c, y, t, end, rooms = work
     for first in range(0, start.shape[0], LANES):
         load(constants, first, c)
-        load(h, first, step)
         load(start, first, y)
-        prepare(c, step, w)
-        _begin(c, step, tangents)
-        for _ in range(steps):
-            _step(c, w, tangents)
-        _look(w)
-        accelerate(w)
-        turn_back(y, mirror, turn, back)
-        for n in range(first, min(first + LANES, start.shape[0])):
-            for i in range(STATE):
-                end[n, i, 0] = back[i * LANES + n - first]
-            _note(c, w, tangents, n - first, mirror, end[n])
-
-
-@kernel
-def _note(c, w, tangents, lane, mirror, end):
-    """Record the derivatives of the state of a lane, by the start and by time."""
-    up, per_step = machine(c, lane).support_offset, 1 / w[AT.step + lane]
-    for i in range(STATE):
-        for column in range(COLUMNS):
-            o = _TANGENTS + column * _WHOLE + lane
-            change = tangents[o + i * LANES]
-            if i == 0 or i == DEGREES:
-                change = fma(-up, tangents[o + (i + 2) * LANES], change)
-            end[i, 1 + column] = mirror[i] * (change if i < DEGREES else change * per_step)
-    for i in range(DEGREES):
-        rise = w[AT.rise + i * LANES + lane] * per_step
-        end[i, 1 + COLUMNS] = mirror[i] * w[AT.velocity + i * LANES + lane]
-        end[DEGREES + i, 1 + COLUMNS] = mirror[DEGREES + i] * rise
+        load(time, first, t)
+        differentiate(c, y, t, steps, mirror, turn, end, rooms)
+        store(end, first, out)
 
 
 def revolve(constants: Array, start: Array, time: Array, steps: int, part: Part) -> Array:
@@ -196,16 +238,16 @@ def revolve(constants: Array, start: Array, time: Array, steps: int, part: Part)
         By columns: the state after that time, turned back; its derivatives with respect to the
         components of the start except psi_1; and its rates.
     """
-    end = np.empty((len(start), STATE, 2 + COLUMNS))
+    out = np.empty((len(start), STATE * ENTRIES))
     work = (
         aligned(CONSTANTS * LANES),
-        aligned(SIZE),
-        aligned(LANES),
-        aligned(_BLOCK),
         aligned(_WHOLE),
+        aligned(LANES),
+        aligned(STATE * ENTRIES * LANES),
+        tuple(aligned(size) for size in ROOMS),
     )
-    _revolve(constants, start, (time / steps)[:, None], steps, part.mirror, part.turn, end, work)
-    return end
+    _revolve(constants, start, time[:, None], steps, part.mirror, part.turn, out, work)
+    return out.reshape(-1, STATE, ENTRIES)
 
 
 def monodromy(machines: Machines, state: Array, period: Array, steps: int) -> Array:

@@ -19,6 +19,7 @@ from models.vibrator.theory import averaged
 
 STEPS = 24  # of the orbit, unless the machine is stiff
 LADDER = tuple(base << k for k in range(7) for base in (24, 36))
+ACCURATE = 3e-7  # estimated error of the angle above which steps are halved [rad]
 _FINE = 16  # points per step among which extremes are sought
 
 
@@ -61,7 +62,7 @@ def propose(machines: Machines, steps: int) -> Known:
     ----------
     machines : Machines
     steps : int
-        In a revolution, 24 at least; 0 chooses for each machine.
+        In a revolution, 24 at least; 0 chooses for each machine, as many as are accurate.
 
     Returns
     -------
@@ -82,7 +83,7 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
     wanted : ndarray of bool, shape (n,)
         Where there is a guess.
     steps : int
-        In a revolution, 24 at least; 0 chooses for each machine.
+        In a revolution, 24 at least; 0 chooses for each machine, as many as are accurate.
 
     Returns
     -------
@@ -91,21 +92,35 @@ def search(machines: Machines, speed: Array, angle: Array, wanted: Any, steps: i
     n = len(speed)
     speed, angle = np.where(wanted, speed, 1.0), np.where(wanted, angle, 0.0)
     state, period = _harmonic(machines.p, speed, angle), 2 * np.pi / speed
-    none = Orbits(np.zeros(n, bool), state, period, *np.full((3, n), np.nan))
+    none = Orbits(np.zeros(n, bool), state, period, *np.full((4, n), np.nan))
     known = Known(np.zeros(n, bool), none, np.zeros(n, np.int64), np.full(n, np.nan))
     needed = np.maximum(period * machines.fastest / STABLE, max(steps, STEPS))
     rung = np.array([*LADDER, 0])[np.searchsorted(LADDER, needed)]
     rung = np.where((rung > 0) & (steps > 0) & (needed <= steps), steps, rung)
-    for count in np.unique(rung[wanted & (rung > 0)]).tolist():
-        rows = np.flatnonzero(wanted & (rung == count))
-        constants = machines.constants[rows]
-        orbits = find_orbits(constants, state[rows], period[rows], count)
-        slowest = CAPTURED_BELOW * machines.synchronous_speed[rows].max(axis=1)
-        fast = 2 * np.pi / orbits.period >= slowest
-        found = orbits.found & (orbits.multiplier < 1) & fast
-        disphasing = np.where(found, wrapped(orbits.angle), np.nan)
-        known.learn(rows, Known(found, orbits, np.full(len(rows), count), disphasing))
+    rows = np.flatnonzero(wanted & (rung > 0))
+    while len(rows):
+        for count in np.unique(rung[rows]).tolist():
+            some = rows[rung[rows] == count]
+            new = _search(machines, some, state, period, count)
+            better = new.orbits.found | ~known.found[some]
+            known.learn(some[better], new.take(better))
+        inaccurate = known.found[rows] & (known.orbits.error[rows] > ACCURATE)
+        rows = rows[inaccurate & (steps == 0) & (2 * rung[rows] <= LADDER[-1])]
+        state[rows], period[rows] = known.orbits.state[rows], known.orbits.period[rows]
+        rung[rows] *= 2
     return known
+
+
+def _search(
+    machines: Machines, rows: NDArray[np.intp], state: Array, period: Array, steps: int
+) -> Known:
+    """Find the stable synchronous orbits of some machines by this many steps."""
+    orbits = find_orbits(machines.constants[rows], state[rows], period[rows], steps)
+    slowest = CAPTURED_BELOW * machines.synchronous_speed[rows].max(axis=1)
+    fast = 2 * np.pi / orbits.period >= slowest
+    found = orbits.found & (orbits.multiplier < 1) & fast
+    disphasing = np.where(found, wrapped(orbits.angle), np.nan)
+    return Known(found, orbits, np.full(len(rows), steps), disphasing)
 
 
 def _harmonic(p: Rows, speed: Array, angle: Array) -> Array:

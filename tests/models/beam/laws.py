@@ -16,6 +16,8 @@ class Law:
     The first two columns of a state are free for laws that remember.
     """
 
+    CLOCK = -1
+
     def __init__(self, work, noise=0.0):
         self.work, self.noise = work, noise
         self.random, self.periods = np.random.default_rng(5), 0

@@ -72,6 +72,52 @@ def test_it_moves_as_the_exact_propagator(formulation, frequency):
     assert record[0, HIGH] == pytest.approx(motion.highest, abs=1e-10)
 
 
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+@pytest.mark.parametrize(
+    ("bar_friction", "mole_friction", "phase", "displacement"),
+    [
+        (9.0, 0.1, -1.67, -0.0410458),  # the bar stops before the mole would begin to slip
+        (8.72, 0.02, 1.471, -0.0326306),  # the force on the mole reaches its limits on both sides
+        (7.31, 0.02, 1.778, -0.0380499),  # or one, from zero and back
+    ],
+)
+def test_slips_shorter_than_a_step_are_found(
+    bar_friction, mole_friction, phase, displacement, tolerance
+):
+    """Slips of half a millisecond to one and a half, in steps of up to three."""
+    p = Params(
+        bar_friction=bar_friction,
+        mole_friction=mole_friction,
+        supply_phase=phase,
+        initial_displacement=displacement,
+        control_frequency=2.5,
+    )
+    q = mole(p, "physical")
+    record = go(machines([p], tolerance), 2)
+    motion = exact.propagate(q, exact.start(p, q), 2 * q.control_period, 1e-12)
+    np.testing.assert_allclose(record[0, 0], motion.state.y[0], atol=2 * tolerance * SIZES[0])
+    assert record[0, PROGRESS] == pytest.approx(motion.state.y[5], abs=2 * tolerance * SIZES[0])
+
+
+def test_without_friction_on_the_ground_momentum_is_conserved():
+    """Bars that stick or not, some thrown back by the stop; voltages up to thirty times nominal."""
+    n = 256
+    fields = {
+        "bar_friction": RNG.choice([0.0, 1e-3, 0.1, 0.6, 9.0], n),
+        "supply_voltage": RNG.choice([20.0, 82.02, 600.0, 2500.0], n),
+        "supply_phase": RNG.uniform(-np.pi, np.pi, n),
+        "initial_displacement": RNG.uniform(-0.05, 0.02, n),
+        "mole_friction": np.zeros(n),
+    }
+    p = Params(**{k: np.broadcast_to(v, n) for k, v in (Params()._asdict() | fields).items()})
+    record = go(machines(np.transpose(p), 1e-8), 30)
+    share = p.bar_mass / (p.bar_mass + p.mole_mass)
+    u, v, x = record[:, :3].T
+    np.testing.assert_allclose(x, -share * v, rtol=0, atol=1e-11)
+    moved = -share * (u - p.initial_displacement)
+    np.testing.assert_allclose(record[:, PROGRESS], moved, rtol=0, atol=1e-9)
+
+
 def test_moles_anywhere_within_the_bounds_move_as_the_exact_propagator():
     """Bars flung far and fast, every other one through a narrow coil."""
     bounds = [MODEL.parameter(name).bounds for name in MODEL.parameter_names]

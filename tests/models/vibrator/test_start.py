@@ -2,17 +2,19 @@
 
 import numpy as np
 import pytest
+from machines import over_the_bounds
 
 from models.vibrator.equations.system import systems
 from models.vibrator.exact import propagator
 from models.vibrator.lanes.machines import prepared
+from models.vibrator.lanes.orbit import find_orbits
 from models.vibrator.paper import closed_forms
 from models.vibrator.paper.centre import combined_centre, reduced_inertia, reduced_mass
 from models.vibrator.paper.table1 import machines
 from models.vibrator.parameters import REGIMES, Params, Settings
 from models.vibrator.start import fast
 from models.vibrator.start.regimes import ASYNCHRONOUS, CAPTURED, LOCKED_0, LOCKED_PI, wrapped
-from models.vibrator.start.synchronous import search
+from models.vibrator.start.synchronous import propose, search
 from models.vibrator.theory import averaged
 from uq.contract import Status
 
@@ -50,6 +52,22 @@ def test_the_published_table_is_met():
     assert (out.angular_amplitude[asymmetric] < 1e-4).all()
     assert (out.angular_amplitude[[2, 6]] < 1e-12).all()
     assert (out.regime == LOCKED_0).all()
+
+
+def test_angles_are_accurate_over_all_bounds():
+    p = over_the_bounds(3000, 8)._replace(
+        mount_stiffness=np.full(3000, np.inf),
+        mount_rotational_stiffness=np.full(3000, np.inf),
+        feed_mass=np.zeros(3000),
+    )
+    exists = averaged.disphasing(p).stable
+    m = prepared(Params._make(field[exists] for field in p))
+    known = propose(m, 0)
+    assert known.found.sum() > 10
+    for i in np.flatnonzero(known.found):
+        state, period = known.orbits.state[[i]], known.orbits.period[[i]]
+        fine = find_orbits(m.constants[[i]], state, period, 4 * known.steps[i])
+        assert fine.found and abs(wrapped(fine.angle[0] - known.disphasing[i])) < 1e-6
 
 
 def test_theory_and_simulation_agree_at_small_angles():

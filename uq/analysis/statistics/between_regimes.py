@@ -45,7 +45,9 @@ def between_regimes(element: Element, context: Context) -> Iterator[Statistic]:
     split = between_share(target.values, codes, context.replicate)
     if isfinite(split.value):
         label = "variance between regimes"
-        yield Statistic(("between_regimes",), label, split, kind=_KIND, of=target.name)
+        yield Statistic(
+            ("between_regimes",), label, split, kind=_KIND, of=target.name, by=(between_share,)
+        )
 
 
 def between_share(

@@ -9,10 +9,12 @@ from uq import json_form
 from uq.analysis.estimators import MEAN, SD
 from uq.analysis.statistics.statistic import FACT, Context, Kind, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
-from uq.moments import Moments, moments
+from uq.intervals import mean_interval
+from uq.moments import Moments, moments, sd_interval, standard_deviation
 from uq.population.means import weighted_moments
 from uq.population.smoothing import Smoothed
 from uq.rows.elements import Element
+from uq.tails import heavier_tail
 
 
 def _numbers(one: Statistic) -> dict[str, Any]:
@@ -44,8 +46,9 @@ def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
         found = _weighted(element, context, context.weights, found)
     more = found.caution or ""
     unit = element.units
-    yield Statistic(("mean",), "mean", found.mean, unit, MOMENT, more=more, estimator=MEAN)
-    yield Statistic(("sd",), "sd", found.sd, unit, SPREAD, estimator=SD)
+    mean, sd = (moments, mean_interval), (standard_deviation, sd_interval)
+    yield Statistic(("mean",), "mean", found.mean, unit, MOMENT, more=more, estimator=MEAN, by=mean)
+    yield Statistic(("sd",), "sd", found.sd, unit, SPREAD, estimator=SD, by=sd)
     reasons = _reasons(found)
     tail = found.tail
     yield Statistic(
@@ -56,6 +59,7 @@ def moments_of(element: Element, context: Context) -> Iterator[Statistic]:
         column="tail_k",
         notes=(*dict.fromkeys(reasons.values()), *filter(None, [found.caution])),
         facts={"tail": tail and tail._asdict(), "reasons": reasons, "caution": found.caution},
+        by=(heavier_tail,),
     )
 
 

@@ -3,17 +3,23 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from uq import order_statistics
 from uq.analysis.estimators import quantile_of
 from uq.analysis.failed_rows import bounded
+from uq.analysis.kaplan_meier import kaplan_meier
 from uq.analysis.life_quantiles import B_LIVES, life_quantiles, quantile_estimate, rows_needed
 from uq.analysis.statistics.statistic import COUNT, Context, Kind, Listing, Reader, Statistic
 from uq.estimate import NOTHING, Estimate
+from uq.population.functionals import Population
 from uq.rows.elements import Element
 
 _LIVES = Listing(
     "B-lives: B10 is the time by which 10 % have ended", first="lifetime", of_lives=True
 )
 LIFE = Kind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
+_BY = (order_statistics.quantile, order_statistics.quantile_interval)
+_BY_KAPLAN_MEIER = (life_quantiles, kaplan_meier)
+_LAWS = (Population,)
 _ROWS = replace(COUNT, listing=_LIVES, readers=Reader.REPORT)
 
 
@@ -34,11 +40,11 @@ def quantiles(element: Element, context: Context) -> Iterator[Statistic]:
             column=f"q{name}",
             heading=f"{100 * p:g} % quantile",
             rows_needed=rows_needed(element, p),
-            sentence="Median {brief}." if p == 0.5 else "",
             estimator=quantile_of(element, p),
+            by=_BY if element.is_plain else _LAWS,
         )
         guess = guesses.get(name, NOTHING)
-        otherwise = replace(one, label=f"{one.label}, if", estimate=guess)
+        otherwise = replace(one, label=f"{one.label}, if", estimate=guess, by=_BY_KAPLAN_MEIER)
         yield replace(one, otherwise=otherwise) if guess.assumes else one
 
 
@@ -51,12 +57,14 @@ def b_lives(element: Element, context: Context) -> Iterator[Statistic]:
         p = B_LIVES[name]
         yield Statistic(
             ("b_lives", name),
-            name,
+            f"{100 * p:g} % by" if element.declared.success else name,
             found,
             element.units,
             LIFE,
             rows_needed=None if found.assumes else rows_needed(element, p),
+            column=name,
             estimator=quantile_of(element, p),
+            by=(_BY_KAPLAN_MEIER if found.assumes else _BY) if element.is_plain else _LAWS,
         )
     for label, rows in (("never ending", element.never), ("censored", element.censored)):
         label = f"rows {label}"

@@ -184,9 +184,6 @@ class Statistic:
         The value of the output that it refers to.
     of : str
         The quantity that it describes, if not the output itself.
-    sentence : str
-        For the top of a report; ``{brief}``, ``{number}`` and ``{share}`` are its value, ``{at}``
-        as above.
     more : str
         Small print in a report.
     notes : tuple of str
@@ -195,6 +192,9 @@ class Statistic:
         The JSON of a `FACT`.
     estimator : Estimator, optional
         How it depends on the rows, for the difference between two studies with paired rows.
+    by : tuple of callable
+        The functions that compute it, whose docstrings state what they estimate and cite the
+        source; by default its maker.
     """
 
     key: tuple[str, ...]
@@ -211,11 +211,11 @@ class Statistic:
     falls: bool = False
     at: float | None = None
     of: str = ""
-    sentence: str = ""
     more: str = ""
     notes: tuple[str, ...] = ()
     facts: Mapping[str, Any] = field(default_factory=dict)
     estimator: Estimator | None = None
+    by: tuple[Callable[..., Any], ...] = ()
 
     def is_read_by(self, reader: Reader) -> bool:
         """Whether this reader shows it."""

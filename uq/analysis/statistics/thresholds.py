@@ -9,7 +9,9 @@ import numpy as np
 from uq import json_form
 from uq.analysis.estimators import Sample, share
 from uq.analysis.failed_rows import bounded
+from uq.analysis.kaplan_meier import kaplan_meier
 from uq.analysis.life_quantiles import ended_by
+from uq.analysis.lifetime import survival
 from uq.analysis.statistics.statistic import Context, Kind, Listing, Statistic, entry
 from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some, share_interval
@@ -96,9 +98,9 @@ def _probabilities(
             heading=f"P({side})",
             falls=side == "below",
             at=threshold,
-            sentence=_sentence(element, side),
             facts={"undefined": undefined},
             estimator=replace(share(_hits(threshold, place)), counts_hits=element.is_plain),
+            by=(share_of, share_interval) if element.is_plain else (Population,),
         )
         if not element.is_plain and sides is None:
             yield replace(one, estimate=Estimate(reason=_unknown_sides(element, threshold)))
@@ -122,7 +124,7 @@ def _by_kaplan_meier(
     return replace(
         one,
         estimate=Estimate(reason=reason),
-        otherwise=replace(one, label=label, estimate=guess),
+        otherwise=replace(one, label=label, estimate=guess, by=(ended_by, kaplan_meier, survival)),
         more="; ".join(filter(None, small)) if one.falls else "",
     )
 
@@ -141,12 +143,3 @@ def _hits(threshold: float, place: int) -> Callable[[Element], Sample | None]:
         return None if sides is None else Sample(~element.failed, sides[place].astype(float))
 
     return sample
-
-
-def _sentence(element: Element, side: str) -> str:
-    """Return the sentence of a report on a threshold: for lives, the share that has ended."""
-    if side != ("below" if element.is_lifetime else "above"):
-        return ""
-    if element.is_angle:
-        return "{share} exceed {at} in magnitude."
-    return "{share} end within {at}." if element.is_lifetime else "{share} exceed {at}."

@@ -38,8 +38,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         keeps_empty=True,
     )
     bound = Kind(write=_write, has_interval=False, listing=listing, readers=COUNT.readers)
-    headline = f"{coverage}/{confidence} lower bound: {{number}}." if element.is_lifetime else ""
-    for name, found, sentence in (("lower", lower, headline), ("upper", upper, "")):
+    for name, found in (("lower", lower), ("upper", upper)):
         yield Statistic(
             ("tolerance", name),
             f"tolerance, {name}",
@@ -49,7 +48,7 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
             rows_needed=needed if isnan(found.value) else None,
             column=f"tolerance_{name}",
             heading=name,
-            sentence=sentence,
+            by=(tolerance_bounds,),
         )
     yield Statistic(
         ("tolerance", "rows_needed"),
@@ -58,4 +57,5 @@ def tolerance(element: Element, context: Context) -> Iterator[Statistic]:
         "rows",
         replace(COUNT, listing=listing, readers=COUNT.readers & ~Reader.TERMINAL),
         column="tolerance_rows_needed",
+        by=(rows_for_bound,),
     )

@@ -107,12 +107,16 @@ def summary(
 ) -> None:
     """Show how rows ended, and statistics of each output."""
     from uq.analysis.as_json import summary_json
+    from uq.analysis.findings import Findings
     from uq.analysis.summary import summarise
     from uq.cli import tables
     from uq.cli.printing import print_json
     from uq.rows.results import open_result
 
     ds = open_result(result)
+    if not (fits or json or plain) and regime is None:
+        tables.show_findings(Findings(ds))
+        return
     found = summarise(ds, regime=regime, fits=fits, plain=plain)
     print_json(summary_json(found)) if json else tables.show_summary(ds, found)
 
@@ -129,12 +133,13 @@ def sensitivity(
 ) -> None:
     """Show from which inputs the scatter comes."""
     from uq.cli.printing import print_json
-    from uq.cli.sensitivity import plain, show
+    from uq.cli.sensitivity import show
+    from uq.indices.as_json import sensitivity_json
     from uq.indices.sensitivities import sensitivities
     from uq.rows.results import open_result
 
     found = sensitivities(open_result(result), method, output, regime)
-    print_json(plain(found)) if json else show(found)
+    print_json(sensitivity_json(found)) if json else show(found)
 
 
 def levels(
@@ -146,6 +151,23 @@ def levels(
     from uq.cli import levels
 
     levels.levels(result, output, json)
+
+
+def fleet(
+    result: given.ResultFile,
+    size: Annotated[int, typer.Option(min=1, metavar="N", help="Number of units.")],
+    by: Annotated[
+        list[float] | None,
+        typer.Option(metavar="T", help="A time [s]; default: the study's thresholds."),
+    ] = None,
+    allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,
+    output: Annotated[str | None, typer.Option(metavar="NAME", help="The life.")] = None,
+    json: given.Json = False,
+) -> None:
+    """Show when the first of many units ends."""
+    from uq.cli import fleet as fleets
+
+    fleets.fleet(result, size, by or [], allow, output, json)
 
 
 def convergence(
@@ -191,6 +213,20 @@ def twin(
     from uq.cli import estimates
 
     estimates.twin(result, model, json)
+
+
+def trace(
+    result: given.ResultFile,
+    key: Annotated[
+        str, typer.Argument(metavar="KEY", help="Its path in JSON: outputs/life/quantiles/0.05.")
+    ],
+    model: given.ModelReference = None,
+    json: given.Json = False,
+) -> int:
+    """Show where a number comes from, and compute it again."""
+    from uq.cli import trace as tracing
+
+    return tracing.trace(result, key, model, json)
 
 
 def plot(

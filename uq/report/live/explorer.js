@@ -35,7 +35,7 @@ function explorerOf(rows) {
   const chips = rows.categories.filter(one => one.entries.length > 1).map(category => {
     const buttons = category.entries.map(({code, label, colour, count}) => {
       const chip = make("button", {type: "button", class: "chip", "on:click": () => selection.toggle(category, code)},
-        ...(colour ? [make("span", {class: "dot", style: `background:${colour}`})] : []), `${label} (${count})`);
+        ...dotOf(colour), `${label} (${count})`);
       selection.listeners.push(() => press());
       const press = () => chip.setAttribute("aria-pressed", selection.shows(category, code));
       press();

@@ -34,7 +34,8 @@ class Found {
 
   numbers(mask) {
     return this.events.map(({column, value, hits}) => {
-      const unknown = column?.life && column.states.some((state, row) => mask[row] && state === CENSORED && column.values[row] < value);
+      const isUnknown = (state, row) => mask[row] && state === CENSORED && column.values[row] < value;
+      const unknown = column?.life && column.states.some(isUnknown);
       if (!unknown) return shareOf(this.rows, hits, mask);
       const curve = outliving(column, mask), before = curve.at.filter(time => time < value).length;
       return {share: 1 - (before ? curve.share[before - 1] : 1), count: curve.count, low: NaN, high: NaN,
@@ -53,7 +54,7 @@ class Found {
     const chosen = isAll ? this.all : this.numbers(mask);
     const heads = ["", ...(isAll ? [] : ["chosen rows"]), "all rows"].map(text => make("th", {scope: "col"}, text));
     const lines = this.events.map(({key, words, colour}, i) => make("tr", {"data-key": key},
-      make("th", {scope: "row"}, ...(colour ? [make("span", {class: "dot", style: `background:${colour}`})] : []), words),
+      make("th", {scope: "row"}, ...dotOf(colour), words),
       ...(isAll ? [] : [cellOf(chosen[i])]), cellOf(this.all[i])));
     const everything = this.everything(column);
     const some = isAll ? everything : outliving(column, mask);
@@ -79,10 +80,10 @@ class Found {
   }
 }
 
-function cellOf({share, low, high, count, more}) {
-  const ends = isFinite(low) ? `${percent(low).replace(" %", "")} to ${percent(high)}` : "";
+function cellOf({share, low, high, more}) {
+  const ends = isFinite(low) ? `${percent(low).replace("\u00a0%", "")} to\u00a0${percent(high)}` : "";
   return make("td", {class: "number", "data-low": low, "data-high": high},
-    count ? data(share, percent(share)) : "\u2013", make("small", {}, [ends, more].filter(Boolean).join("; ")));
+    isNaN(share) ? "\u2013" : data(share, percent(share)), make("small", {}, [ends, more].filter(Boolean).join("; ")));
 }
 
 function medianOf(column, curve) {

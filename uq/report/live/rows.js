@@ -24,7 +24,8 @@ class Column {
 
   // A value in the unit shown, such as "12.3 kN".
   words(value, digits = 4) {
-    return `${number(value / this.per, digits)} ${this.unit}`.trim();
+    const between = this.unit.startsWith("10") ? "\u00b7" : " "; // a unit such as 10⁻¹⁵ m²
+    return `${number(value / this.per, digits)}${between}${this.unit}`.trim();
   }
 
   wordsOfRow(row) {
@@ -68,6 +69,7 @@ class Rows {
     this.numbers = numbersOf(plain.numbers, Int32Array);
     this.failed = numbersOf(plain.failed, Uint8Array);
     this.replicate = plain.replicate ? numbersOf(plain.replicate, Int32Array) : null;
+    this.sample = plain.sample ? numbersOf(plain.sample, Int32Array) : null;
     this.columns = plain.columns.map(one => new Column(one, this.failed));
     this.categories = plain.categories.map(one => new Category(one));
   }

@@ -41,7 +41,7 @@ class Scatter {
     pen.clearRect(0, 0, this.width, this.height);
     Object.assign(pen, {fillStyle: text, strokeStyle: line, font: `12px ${style.fontFamily}`, lineWidth: 1});
     this.drawAxes(pen);
-    this.drawPoints(pen, text);
+    this.drawPoints(pen, text, style.getPropertyValue("--accent"));
     for (const [row, size] of [[this.at, 5], [this.picked, 7]]) {
       if (row < 0) continue;
       pen.strokeStyle = style.color;
@@ -92,7 +92,7 @@ class Scatter {
   }
 
   // Rows that are not chosen lie behind, faint; chosen ones have the colour of their regime.
-  drawPoints(pen, faint) {
+  drawPoints(pen, faint, accent) {
     const {mask} = this.selection, {regime, count} = this.rows;
     const size = count > 4000 ? 2 : count > 800 ? 3 : 4;
     const points = (colour, alpha, shown) => {
@@ -104,7 +104,7 @@ class Scatter {
       pen.globalAlpha = 1;
     };
     if (!this.selection.isAll) points(faint, 0.25, row => !mask[row]);
-    if (!regime) return points(this.rows.colour, 0.8, row => mask[row]);
+    if (!regime) return points(this.selection.isAll ? this.rows.colours.rows : accent, 0.8, row => mask[row]);
     for (const {code, colour} of regime.entries) points(colour, 0.8, row => mask[row] && regime.codes[row] === code);
   }
 

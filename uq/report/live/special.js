@@ -1,22 +1,23 @@
 // Special functions, to about twelve digits.
 
-// The normal law's probability of less than x (W. J. Cody, Math. Comp. 23, 631 (1969), by continued
-// fraction and series).
+// The normal law's probability of less than x (J. F. Hart, Computer Approximations, 1968, as given by
+// G. West, "Better approximations to cumulative normal functions", Wilmott, May 2005).
 function normalBelow(x) {
   const z = Math.abs(x);
-  if (z > 38) return x > 0 ? 1 : 0;
-  const density = Math.exp(-z * z / 2) / Math.sqrt(2 * Math.PI);
-  let upper;
-  if (z < 3) {
-    let term = z, sum = z;
-    for (let n = 1; Math.abs(term) > 1e-17 * sum; n++) sum += term *= z * z / (2 * n + 1);
-    upper = 0.5 - density * sum;
-  } else {
-    let tail = z;
-    for (let n = 80; n > 0; n--) tail = z + n / tail;
-    upper = density / tail;
+  let tail = 0;
+  if (z < 7.07106781186547) {
+    const above = ((((((0.0352624965998911 * z + 0.700383064443688) * z + 6.37396220353165) * z
+      + 33.912866078383) * z + 112.079291497871) * z + 221.213596169931) * z + 220.206867912376);
+    const below = (((((((0.0883883476483184 * z + 1.75566716318264) * z + 16.064177579207) * z
+      + 86.7807322029461) * z + 296.564248779674) * z + 637.333633378831) * z + 793.826512519948) * z
+      + 440.413735824752);
+    tail = Math.exp(-z * z / 2) * above / below;
+  } else if (z < 38) {
+    let fraction = z + 0.65;
+    for (let n = 20; n > 0; n--) fraction = z + n / fraction;
+    tail = Math.exp(-z * z / 2) / fraction / Math.sqrt(2 * Math.PI);
   }
-  return x > 0 ? 1 - upper : upper;
+  return x > 0 ? 1 - tail : tail;
 }
 
 // C. Lanczos, SIAM J. Numer. Anal. 1, 86 (1964).

@@ -1,21 +1,23 @@
 // Numbers as words, and elements of the page.
 
+const RAISED = "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
+
 function number(value, digits = 4) {
   if (!isFinite(value)) return isNaN(value) ? "\u2013" : value > 0 ? "\u221e" : "\u2212\u221e";
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-4 || size >= 1e6)) {
     const [mantissa, power] = value.toExponential(digits - 1).split("e");
-    const raised = [...String(Number(power))].map(one => "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"["-0123456789".indexOf(one)]);
+    const raised = [...String(Number(power))].map(one => RAISED["-0123456789".indexOf(one)]);
     return `${Number(mantissa)}\u00b710${raised.join("")}`.replace("-", "\u2212");
   }
   return String(Number(value.toPrecision(digits))).replace("-", "\u2212");
 }
 
 function percent(share) {
-  if (share > 0 && share < 0.01) return `${Number((100 * share).toPrecision(2))} %`;
+  if (share > 0 && share < 0.01) return `${Number((100 * share).toPrecision(2))}\u00a0%`;
   const rest = Number((1 - share).toFixed(12));
   const digits = rest > 0 && rest < 0.001 ? -Math.floor(Math.log10(100 * rest)) : 1;
-  return `${(100 * share).toFixed(digits)} %`;
+  return `${(100 * share).toFixed(digits)}\u00a0%`;
 }
 
 // An element with attributes and contents; a name with ":" is an event.
@@ -34,6 +36,11 @@ function draw(tag, attributes, ...contents) {
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
   element.append(...contents);
   return element;
+}
+
+// A dot in the colour of a regime.
+function dotOf(colour) {
+  return colour ? [make("span", {class: "dot", style: `background:${colour}`})] : [];
 }
 
 // A number that a program can read, too.

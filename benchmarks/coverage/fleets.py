@@ -1,0 +1,92 @@
+"""Fleets: life = depth / rate, with a lognormal rate that units share and a depth of their own."""
+
+import numpy as np
+from scipy import special, stats
+from scipy.optimize import brentq
+
+from benchmarks.coverage.scaled import CAUTIOUS, LIFE, lognormal_term
+from benchmarks.coverage.tally import Tally
+from uq.analysis.fleet_numbers import HIGH, LOW, FleetNumbers
+from uq.population.fleets import Units
+from uq.population.scale_laws import IndependentScale
+from uq.rows.element import Element
+from uq.rows.nesting import Nesting
+
+SAMPLES = 200
+OWN, SHARED = 0.5, 0.5
+"""Standard deviations of the logarithms of depth and rate."""
+
+NODES = np.linspace(-8, 8, 8001)
+
+CASES = {
+    "units": (50, 50, False),
+    "some-units": (50, 10, False),
+    "exact": (1, 50, True),
+    "exact-many": (1, 40_000, True),
+}
+"""Units of each sample, units of the fleet, whether the depth is integrated."""
+
+BEYOND = "10 of 200 samples lie beyond such a point: their share is exact, and conservative"
+REASONS = {
+    "P(at most": CAUTIOUS,
+    "number ended": CAUTIOUS,
+    "median of the first, ": BEYOND,
+}
+
+
+def given(time, z):
+    """Return P(a unit ends before a time) in a world whose rate has this probit."""
+    return special.ndtr((np.log(time) + SHARED * z) / OWN)
+
+
+def over_worlds(function):
+    """Return the mean over worlds."""
+    return float(np.average(function(NODES), weights=np.exp(-(NODES**2) / 2)))
+
+
+def first_by(time, size):
+    """Return P(the first of a fleet ends before a time)."""
+    return over_worlds(lambda z: -np.expm1(size * special.log_ndtr(-special.ndtri(given(time, z)))))
+
+
+def drawn(units, integrated, rng):
+    """Return the units of random worlds."""
+    shape = (SAMPLES, units)
+    depth = OWN * rng.standard_normal(shape)
+    life = np.exp(depth - SHARED * rng.standard_normal((SAMPLES, 1))).ravel()
+    nothing = np.zeros(life.size, dtype=bool)
+    law = IndependentScale(("depth",), lognormal_term(OWN), depth.ravel()) if integrated else None
+    element = Element("life", "life", LIFE, {}, life, nothing, nothing, law)
+    sample, unit = np.unravel_index(np.arange(life.size), shape)
+    place = Nesting(SAMPLES, units, 1, sample, unit, 0 * unit, np.zeros(SAMPLES, np.int64))
+    return Units(element, place, None, () if integrated else ("depth",))
+
+
+def fleets(name, repetitions):
+    """Count what `uq fleet` reports."""
+    units, size, integrated = CASES[name]
+    how = "depth integrated" if integrated else f"of {units} units"
+    tally = Tally(f"fleet of {size}, {SAMPLES} samples, {how}", REASONS)
+    middle = brentq(lambda x: first_by(np.exp(x), size) - 0.5, -8, 2)
+    time, allow = np.exp(middle + 0.3), size // 10
+    z = {share: stats.norm.ppf(share) for share in (LOW, HIGH)}
+    reached = -np.expm1(np.log(0.5) / size)
+    rng = np.random.default_rng(7)
+    for _ in range(repetitions):
+        of = FleetNumbers(drawn(units, integrated, rng), size, allow, None, True)
+        first, failed, kept = of.first(0.5), of.failed(time), of.at_most_allowed(time)
+        tally.estimate("median of the first", np.exp(middle), first.estimate)
+        mean = over_worlds(lambda z: given(time, z))
+        tally.estimate("number ended", size * mean, failed.estimate)
+        share = over_worlds(lambda z: special.bdtr(allow, size, given(time, z)))
+        tally.estimate(f"P(at most {allow})", share, kept.estimate)
+        for end, share in (("low", LOW), ("high", HIGH)):
+            text = f"{100 * share:g} % of samples"
+            alone = np.exp(OWN * special.ndtri(reached) + SHARED * z[share])
+            tally.estimate(f"median of the first, {text}", alone, getattr(first, end))
+            tally.estimate(
+                f"number ended, {text}", size * given(time, z[share]), getattr(failed, end)
+            )
+            least = special.bdtr(allow, size, given(time, -z[share]))
+            tally.estimate(f"P(at most {allow}), {text}", least, getattr(kept, end))
+    return tally.lines()

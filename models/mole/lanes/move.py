@@ -1,0 +1,105 @@
+"""Steps of a block of moles: every lane goes as far as its series reaches or its guards allow."""
+
+from models.mole.lanes import block as at
+from models.mole.lanes.block import LANES, MEASURED, ORDER, PLAIN, SHARED, TERMS
+from models.mole.lanes.expand import value
+from models.numerics.fma import fma
+from models.numerics.jit import inlined, lean
+
+_SERIES = TERMS * LANES
+_HERE = at.HERE_S * _SERIES
+_PLACE = _HERE + 9 * LANES
+
+
+@inlined
+def decaying(x):
+    """Return exp(-x) for x >= 0, to 1e-14, or 0 if x is more than 64; without branches."""
+    y = -(x if x < 64.0 else 64.0) / 128
+    e = fma(y, 1 / 6227020800, 1 / 479001600)
+    e = fma(y, fma(y, e, 1 / 39916800), 1 / 3628800)
+    e = fma(y, fma(y, e, 1 / 362880), 1 / 40320)
+    e = fma(y, fma(y, e, 1 / 5040), 1 / 720)
+    e = fma(y, fma(y, e, 1 / 120), 1 / 24)
+    e = fma(y, fma(y, e, 1 / 6), 1 / 2)
+    e = fma(y, fma(y, e, 1.0), 1.0)
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    return e * e if x < 64.0 else 0.0
+
+
+@lean
+def move(m, y, w):
+    """Advance all lanes; add to their sums."""
+    for lane in range(LANES):
+        w[_PLACE + lane] = m[at.REACH * LANES + lane]
+    value(w, ORDER + 1, at.U_S * _SERIES, _PLACE, _HERE)
+    value(w, ORDER + 1, at.V_S * _SERIES, _PLACE, _HERE + LANES)
+    value(w, ORDER + 1, at.FLUX_S * _SERIES, _PLACE, _HERE + 2 * LANES)
+    value(w, ORDER + 1, at.P_S * _SERIES, _PLACE, _HERE + 3 * LANES)
+    value(w, ORDER + 1, at.SINE_S * _SERIES, _PLACE, _HERE + 4 * LANES)
+    value(w, ORDER + 1, at.COSINE_S * _SERIES, _PLACE, _HERE + 5 * LANES)
+    value(w, ORDER + 1, at.PATH_S * _SERIES, _PLACE, _HERE + 6 * LANES)
+    value(w, ORDER + 1, at.AREA_S * _SERIES, _PLACE, _HERE + 7 * LANES)
+    value(w, ORDER + 1, at.WORK_S * _SERIES, _PLACE, _HERE + 8 * LANES)
+    for lane in range(LANES):
+        time = m[at.REACH * LANES + lane] * m[at.STEP * LANES + lane]
+        u_0, v_0 = y[at.U * LANES + lane], y[at.V * LANES + lane]
+        x_0, i_0 = y[at.X * LANES + lane], y[at.CURRENT * LANES + lane]
+        u, v, flux = w[_HERE + lane], w[_HERE + LANES + lane], w[_HERE + 2 * LANES + lane]
+        ratio, drift = m[at.RATIO * LANES + lane], m[at.DRIFT * LANES + lane]
+        added = (
+            decaying(-0.5 * m[at.SLOPE * LANES + lane] * u * u) * m[at.ADDED_MOST * LANES + lane]
+        )
+        inverse = 1 / (m[at.COIL * LANES + lane] + added)
+        m[at.INVERSE * LANES + lane] = inverse
+        i = flux * inverse
+        y[at.U * LANES + lane], y[at.V * LANES + lane] = u, v
+        y[at.X * LANES + lane] = fma(drift, time, fma(ratio, v - v_0, x_0))
+        y[at.CURRENT * LANES + lane] = i
+        y[at.P * LANES + lane] = w[_HERE + 3 * LANES + lane]
+        y[at.SINE * LANES + lane] = w[_HERE + 4 * LANES + lane]
+        y[at.COSINE * LANES + lane] = w[_HERE + 5 * LANES + lane]
+        y[at.ADDED * LANES + lane] = added
+        m[at.TIME * LANES + lane] += time
+        m[at.TRIALS * LANES + lane] += 1.0
+        # With x = rest + ratio v + drift t: integrals of x, of (u - G) and of (u - G) x.
+        rest, gap = fma(-ratio, v_0, x_0), m[at.GAP * LANES + lane]
+        deep_0, deep = u_0 - gap, u - gap
+        contact = m[at.CONTACT * LANES + lane]
+        pressed = fma(-gap, time, w[_HERE + 6 * LANES + lane])
+        # By parts: the integral of t u is that of u times the time, less the integral of that.
+        later = time * fma(-0.5 * gap, time, w[_HERE + 6 * LANES + lane])
+        later -= w[_HERE + 7 * LANES + lane]
+        worked = fma(rest, pressed, drift * later)
+        worked = fma(0.5 * ratio, (deep - deep_0) * (deep + deep_0), worked)
+        path = fma(ratio, u - u_0, fma(0.5 * drift * time, time, rest * time))
+        stored = 0.5 * (flux * i - w[at.FLUX_S * _SERIES + lane] * i_0)
+        j = at.SUM * LANES + lane
+        m[j + at.PROGRESS * LANES] += path
+        m[j + at.IMPACT * LANES] += contact * worked
+        m[j + at.ELECTRIC * LANES] += w[_HERE + 8 * LANES + lane] - stored
+        m[j + at.IMPULSE * LANES] += contact * pressed
+
+
+@lean
+def move_tangents(m, y, w, columns):
+    """Advance the tangents of all lanes."""
+    for column in range(columns):
+        z = (PLAIN + MEASURED * column) * LANES
+        first = (SHARED + MEASURED * column) * _SERIES
+        for q in range(MEASURED):
+            value(w, ORDER + 1, first + q * _SERIES, _PLACE, _HERE + q * LANES)
+        for lane in range(LANES):
+            du, dv = w[_HERE + lane], w[_HERE + LANES + lane]
+            flux, dp = w[_HERE + 2 * LANES + lane], w[_HERE + 4 * LANES + lane]
+            rise = m[at.SLOPE * LANES + lane] * y[at.U * LANES + lane] * y[at.ADDED * LANES + lane]
+            linked = fma(-rise * y[at.CURRENT * LANES + lane], du, flux)
+            j = z + at.X * LANES + lane
+            y[j] = fma(m[at.RATIO * LANES + lane], dv - y[z + LANES + lane], y[j])
+            y[z + lane], y[z + LANES + lane] = du, dv
+            y[z + at.CURRENT * LANES + lane] = linked * m[at.INVERSE * LANES + lane]
+            y[z + at.P * LANES + lane] = dp

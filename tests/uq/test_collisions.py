@@ -1,0 +1,64 @@
+"""No text of a figure touches another, or sticks out, with the longest names of the machines."""
+
+import numpy as np
+import pytest
+from computed import asking, kinds, linear, with_output
+from drawn import collisions
+
+from models import beam, mole, vibrator
+from uq.analysis.findings import Findings
+from uq.drawing.catalogue import drawables
+from uq.drawing.figure import lay_out
+from uq.plots import FIGURES
+
+
+def dressed(ds, model):
+    """Give inputs and outputs the longest names of a machine, with its symbols and units."""
+    parameters = [model.parameter(name) for name in model.parameter_names]
+    longest = sorted(parameters, key=lambda one: -len(one.meaning + one.symbol))
+    names = [name for name in ds.data_vars if ds[name].attrs.get("role") == "input"]
+    for name, one in zip(names, longest, strict=False):
+        ds[name].attrs |= {"long_name": one.meaning, "symbol": one.symbol, "units": one.unit}
+    meanings = sorted((one.meaning for one in model.outputs.values()), key=len)
+    for name in ds.data_vars:
+        if ds[name].attrs.get("role") == "output" and name != "regime":
+            ds[name].attrs["long_name"] = meanings[-1]
+    return ds
+
+
+def figures(ds):
+    found = Findings(ds)
+    kinds_of = {name: one for name, one in FIGURES.items() if "running" not in one.needs}
+    for one in drawables(kinds_of, found):
+        figure = one.draw()
+        lay_out(figure)
+        yield one.file, figure
+
+
+@pytest.mark.parametrize("model", [beam.MODEL, mole.MODEL, vibrator.MODEL], ids=lambda m: m.name)
+def test_no_text_of_a_figure_touches_another(model):
+    ds = linear(samples=100)
+    ds = with_output(ds, "small", 1e-5 * ds["y"].values)
+    ds = asking(ds, outputs=["small"], thresholds={"small": 9e-5}, sensitivity=["rbd-fast"])
+    for name, figure in figures(dressed(ds, model)):
+        assert not collisions(figure), name
+
+
+def test_no_text_of_a_figure_by_regime_touches_another():
+    ds = asking(kinds(samples=100), outputs=["work"], sensitivity=["rbd-fast"])
+    for name, figure in figures(dressed(ds, vibrator.MODEL)):
+        assert not collisions(figure), name
+
+
+def test_thresholds_are_drawn_wherever_the_output_is():
+    ds = with_output(linear(samples=100), "psi", np.radians(np.linspace(-20, 20, 100)), "angle")
+    ds["psi"].attrs["units"] = "rad"
+    ds = asking(ds, outputs=["psi"], thresholds={"psi": float(np.radians(12))})
+    shown = dict(figures(ds))
+    for name in ("histogram-psi", "scatter-psi"):
+        (labels,) = [
+            [one.get_text() for one in legend.get_texts()] for legend in shown[name].legends
+        ]
+        assert "threshold ±12°" in labels
+    lines = [line.get_xdata()[0] for line in shown["histogram-psi"].axes[0].lines]
+    assert lines == pytest.approx([-12, 12])

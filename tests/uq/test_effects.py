@@ -1,0 +1,66 @@
+"""Average effects: slopes that are known, directions that are not claimed, shares over an input."""
+
+import numpy as np
+import pytest
+
+from uq.analysis.effects import effects
+from uq.analysis.event_curve import event_curve
+from uq.clusters import Clusters
+
+RNG = np.random.default_rng(5)
+
+
+def test_the_slope_of_a_power_law_is_its_exponent():
+    x = RNG.lognormal(0.0, 0.3, (500, 2))
+    noise = 0.1 * x[:, 0] * RNG.normal(size=500)
+    found = effects(np.log(x[:, 0] ** -2 * x[:, 1]) + noise, {"a": x[:, 0], "b": x[:, 1]})
+    assert found["a"].logarithmic and found["a"].direction == -1 and found["b"].direction == 1
+    assert found["a"].slope.low < -2 < found["a"].slope.high
+    assert found["b"].slope.low < 1 < found["b"].slope.high
+
+
+def test_an_effect_that_turns_has_no_direction():
+    x = RNG.uniform(-np.pi, np.pi, 2000)
+    (sine,) = effects(np.sin(x), {"x": x}).values()
+    (cosine,) = effects(np.cos(x), {"x": x}).values()
+    assert sine.slope.low > 0 and sine.turns and sine.direction == 0
+    assert cosine.direction == 0
+    (bent,) = effects(np.exp(x), {"x": x}).values()
+    assert not bent.turns and bent.direction == 1
+
+
+def test_an_input_without_effect_has_no_direction():
+    x, noise = RNG.normal(size=(2, 400))
+    (found,) = effects(noise, {"x": x}).values()
+    assert found.slope.low < 0 < found.slope.high and found.direction == 0
+
+
+def test_rows_that_agree_count_once():
+    x = np.repeat(RNG.normal(size=100), 10)
+    y = x + np.repeat(RNG.normal(size=100), 10)
+    (alone,) = effects(y, {"x": x}).values()
+    (together,) = effects(y, {"x": x}, Clusters(np.repeat(np.arange(100), 10), 100)).values()
+    wide, narrow = (one.slope.high - one.slope.low for one in (together, alone))
+    assert wide == pytest.approx(10**0.5 * narrow, rel=0.1)
+
+
+def test_few_rows_and_inputs_that_repeat_have_no_effects():
+    x = RNG.normal(size=15)
+    assert effects(x, {"x": x}) == {}
+    x = RNG.normal(size=200)
+    assert effects(x, {"x": x, "same": x}) == {}
+    assert effects(np.ones(200), {"x": x}) == {}
+
+
+def test_the_probability_over_an_input_is_the_share_in_each_part():
+    x = RNG.uniform(size=1200)
+    hits = (RNG.uniform(size=1200) < x).astype(float)
+    hits[:10] = np.nan
+    curve = event_curve(hits, x)
+    assert len(curve.shares) == 12 and (curve.least, curve.most) == (0, 11)
+    for low, high, one in zip(curve.edges, curve.edges[1:], curve.shares, strict=False):
+        inside = (x >= low) & (x <= high) & np.isfinite(hits)
+        assert one.value == pytest.approx(hits[inside].mean(), abs=0.02)
+        assert one.low < (low + high) / 2 + 0.1 and one.high > (low + high) / 2 - 0.1
+    assert event_curve(hits[:40], x[:40]) is None
+    assert event_curve(hits, np.ones(1200)) is None

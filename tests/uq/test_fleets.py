@@ -1,0 +1,254 @@
+"""Fleets of units that share a world, against closed forms and brute force."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from command_line import strict_json
+from computed import computed, once, study_of, with_output
+from scipy import special, stats
+
+import uq as api
+from benchmarks.coverage import fleets as counted
+from uq.analysis.fleet import fleet_of
+from uq.analysis.overview import summary
+from uq.errors import InputError
+from uq.population.fleets import at_most, units_of
+from uq.population.worlds import ONE_UNIT, Noisy
+from uq.rows.elements import elements_of
+
+OWN, SHARED = 0.4, 0.3
+
+
+def lognormal(sigma, median, **more):
+    return {"distribution": "lognormal", "median": median, "sigma": sigma, **more}
+
+
+def fleet_study(units=1, samples=200, tables=(), design=(), **uncertain):
+    inputs = {"rate": lognormal(SHARED, 1e-9, level="shared"), "depth": lognormal(OWN, 1e-3)}
+    return study_of(
+        {
+            "study": {"name": "fleet", "model": "exponential-wear"},
+            "design": {"method": "monte-carlo", "samples": samples, "units": units, "seed": 4}
+            | dict(design),
+            "uncertain": inputs | uncertain,
+            "analysis": {"thresholds": {"life": [5e5]}},
+            **dict(tables),
+        }
+    )
+
+
+@once
+def fleet_result(**options):
+    return computed(fleet_study(**options))
+
+
+LISTED = {"distribution": "discrete-choice", "values": [5e-4, 1e-3, 2e-3]}
+"""A depth that cannot be integrated."""
+
+
+def brute_force(ended, size, allow):
+    """Return P(at most some ended), averaged over all fleets of one world."""
+    found = []
+    for chosen in combinations(ended[np.isfinite(ended)], size):
+        law = np.ones(1)
+        for p in chosen:
+            law = np.convolve(law, [1 - p, p])
+        found.append(law[: allow + 1].sum())
+    return np.mean(found) if found else np.nan
+
+
+@pytest.mark.parametrize(("size", "allow"), [(1, 0), (3, 0), (3, 1), (3, 5), (6, 2), (7, 0)])
+def test_the_mean_over_all_fleets(size, allow):
+    ended = np.random.default_rng(0).random((4, 7, 2))
+    ended[1, 2] = ended[2, :3] = np.nan
+    for numbers in (ended, np.where(np.isnan(ended), np.nan, np.round(ended))):
+        expected = [[brute_force(world[:, k], size, allow) for k in (0, 1)] for world in numbers]
+        assert at_most(numbers, size, allow) == pytest.approx(
+            np.array(expected), abs=1e-13, nan_ok=True
+        )
+
+
+def test_many_worlds_are_computed_in_blocks(monkeypatch):
+    ended = np.random.default_rng(0).random((50, 8, 1))
+    whole = at_most(ended, 5, 1)
+    monkeypatch.setattr("uq.population.fleets._MOST_NUMBERS", 100)
+    assert at_most(ended, 5, 1) == pytest.approx(whole, abs=1e-15)
+
+
+def test_the_first_of_many_by_brute_force():
+    """The first of 40,000 units, exactly, and drawn one by one in 400 other worlds."""
+    found = fleet_of(fleet_result(samples=2000), 40_000).first[0.5]
+    rng = np.random.default_rng(1)
+    depths = np.array([rng.standard_normal(40_000).min() for _ in range(400)])
+    lives = 1e6 * np.exp(OWN * depths - SHARED * rng.standard_normal(400))
+    low, high = np.sort(lives)[stats.binom(400, 0.5).ppf([0.001, 0.999]).astype(int)]
+    assert low < found.estimate.value < high
+    reached = -np.expm1(np.log(0.5) / 40_000)
+    for share, end in ((0.05, found.low), (0.95, found.high)):
+        truth = 1e6 * np.exp(OWN * special.ndtri(reached) + SHARED * stats.norm.ppf(share))
+        assert end.low < truth < end.high
+
+
+def test_units_and_the_exact_law_agree():
+    """Fleets counted from units, and exactly from the same samples."""
+    exact = fleet_of(fleet_result(units=20), 5, [5e5], allow=1)
+    ds = fleet_result(units=20)
+    element = next(elements_of(ds, ["life"]))
+    units = units_of(ds, element)
+    assert (units.integrated, units.varying) == (("depth",), ())
+    p = element.below(5e5).reshape(200, 20, 1)
+    counted_kept = at_most(p, 5, 1).mean()
+    assert exact.by[5e5][1].estimate.value == pytest.approx(counted_kept, abs=0.02)
+    assert exact.by[5e5][0].estimate.value == pytest.approx(5 * p.mean(), abs=0.1)
+
+
+def test_no_power_of_the_mean():
+    """Units of a sample agree: the mean of powers is not the power of the mean."""
+    found = fleet_of(fleet_result(), 50, [5e5]).by[5e5]
+    p = found[0].estimate.value / 50
+    assert found[1].estimate.value > 2 * (1 - p) ** 50
+
+
+def test_repeats_are_chance_within_a_unit():
+    """The number of a unit is the mean of its repeats."""
+    laws = {"depth": LISTED, "threshold": lognormal(1.0, 1e-10, level="chance")}
+    ds = fleet_result(units=3, samples=40, design={"repeats": 4}.items(), **laws)
+    element = next(elements_of(ds, ["life"]))
+    ended = units_of(ds, element).ended(5e5)
+    assert ended.shape == (40, 3, 1)
+    assert ended[..., 0] == pytest.approx(element.below(5e5).reshape(40, 3, 4).mean(axis=2))
+    found = fleet_of(ds, 2, [5e5]).by[5e5][1].estimate
+    pairs = [brute_force(world, 2, 0) for world in ended[..., 0]]
+    assert found.value == pytest.approx(np.mean(pairs))
+
+
+def test_what_is_shared_is_integrated_outside_the_product():
+    """With all scatter integrated the probability is exact, in each world the same."""
+    model = {"study": {"name": "fleet", "model": "scaled"}, "analysis": {"outputs": ["life"]}}
+    tables = model | {"uncertain": {}}
+    study = study_of(
+        tables
+        | {
+            "design": {"method": "monte-carlo", "samples": 30, "seed": 3},
+            "uncertain": {"a": lognormal(OWN, 1.0), "b": lognormal(SHARED, 1.0, level="shared")},
+        },
+        "sample_models:SCALED",
+    )
+    ds = computed(study)
+    element = next(elements_of(ds, ["life"]))
+    exponents = element.declared.scales
+    units = units_of(ds, element)
+    assert units.integrated == ("a", "b")
+    own, shared = abs(exponents["a"]) * OWN, abs(exponents["b"]) * SHARED
+    drawn = sum(exponents[name] * np.log(ds[name].values) for name in ("a", "b"))
+    typical = float(np.exp(np.log(ds["life"].values) - drawn)[0])
+    time = typical * np.exp(-1.0)
+    z = np.linspace(-8, 8, 4001)
+    p = special.ndtr((-1.0 - shared * z) / own)
+    truth = np.average(special.bdtr(2, 100, p), weights=np.exp(-(z**2) / 2))
+    kept = fleet_of(ds, 100, [time], allow=2).by[time][1]
+    assert kept.estimate.value == pytest.approx(truth, abs=1e-6)
+    assert "exact" in kept.estimate.reason
+    best = special.bdtr(2, 100, special.ndtr((-1.0 - shared * stats.norm.ppf(0.95)) / own))
+    assert kept.high.value == pytest.approx(best, abs=1e-3)
+
+
+def test_a_fleet_of_one_is_a_unit():
+    ds = fleet_result()
+    found = fleet_of(ds, 1, [5e5])
+    table = summary(ds).loc["life"]
+    assert found.first[0.5].estimate.value == pytest.approx(table["q0.5"], rel=1e-9)
+
+
+def test_more_units_than_there_are_is_refused():
+    ds = fleet_result(units=3, samples=30, depth=LISTED)
+    with pytest.raises(InputError, match="set units = 4 in .* depth is not") as refused:
+        fleet_of(ds, 4)
+    assert str(refused.value).count("\n") == 0
+    assert fleet_of(ds, 3).samples == 30
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"size": 0}, "at least 1"),
+        ({"size": 1, "allow": -1}, "at least 0"),
+        ({"size": 1, "by": [-1.0]}, "not a time"),
+        ({"size": 1, "output": "rate"}, "no such output"),
+    ],
+)
+def test_mistakes_are_sentences(options, words):
+    with pytest.raises(InputError, match=words):
+        fleet_of(fleet_result(), **options)
+
+
+def test_a_horizon_before_the_time_is_refused():
+    ds = fleet_result(units=3, samples=30, depth=LISTED)
+    life = ds["life"].values
+    cut = with_output(ds, "life", np.minimum(life, 1e6), "lifetime", life > 1e6)
+    with pytest.raises(InputError, match="censored before 2000000.0 s"):
+        fleet_of(cut, 2, [2e6])
+    found = fleet_of(cut, 3, [9e5])
+    assert found.by[9e5][1].estimate.value == fleet_of(ds, 3, [9e5]).by[9e5][1].estimate.value
+
+
+def test_failed_rows_are_taken_at_best_and_at_worst():
+    ds = fleet_result(units=4, samples=100, depth=LISTED)
+    status, life = ds["status"].values.copy(), ds["life"].values.copy()
+    status[::40], life[::40] = 1, np.nan
+    lost = ds.assign(status=ds["status"].copy(data=status), life=ds["life"].copy(data=life))
+    found = fleet_of(lost, 4, [5e5])
+    assert found.samples == 90
+    assert any("10 of 400 rows failed" in note for note in found.notes)
+    failed, kept = found.by[5e5]
+    whole = fleet_of(ds, 4, [5e5]).by[5e5]
+    for one, truth in zip((failed, kept), whole, strict=True):
+        assert one.failed.low < one.estimate.low < one.estimate.high < one.failed.high
+        assert one.failed.low < truth.estimate.value < one.failed.high
+    first = found.first[0.5]
+    assert first.failed.low <= first.estimate.low < first.estimate.high <= first.failed.high
+
+
+def test_nothing_shared_has_no_band():
+    ds = fleet_result(rate=lognormal(SHARED, 1e-9))
+    assert fleet_of(ds, 1, [5e5]).by[5e5][0].low.reason == "samples share nothing that varies"
+
+
+def test_the_noise_of_units_is_no_spread():
+    """Samples that differ by the luck of their units alone have no band."""
+    rng = np.random.default_rng(3)
+    ended = (rng.random((100, 10, 1)) < 0.3).astype(float)
+    spread = Noisy(ended, np.ones(1), None)
+    if not spread.refusal:
+        assert spread(0.45).value < 0.05 and spread(0.15).value > 0.95
+    single = Noisy(ended[:, :1], np.ones(1), None)
+    assert single.refusal == ONE_UNIT
+
+
+def test_python_terminal_json_and_report_agree(uq, tmp_path):
+    path, result = tmp_path / "fleet.toml", tmp_path / "fleet.nc"
+    path.write_text(fleet_study(units=2, samples=40).text)
+    assert uq("run", path, "-o", result, "--workers", "0").code == 0
+    table = api.fleet(api.open_result(result), 100, by=4e5, allow=2)
+    found = strict_json(
+        uq("fleet", result, "--size", "100", "--by", "4e5", "--allow", "2", "--json").out
+    )
+    assert (found["size"], found["allow"]) == (100, 2)
+    entry = found["by"]["400000.0"]["at_most_allowed"]
+    line = table.loc["at_most_allowed"]
+    for name in ("value", "low", "high", "band_low", "band_high"):
+        assert entry[name] == pytest.approx(line[name])
+    assert found["first"]["quantiles"]["0.5"]["value"] > 0
+    assert found["by"]["400000.0"]["failed"]["value"] == pytest.approx(table.loc["failed"]["value"])
+    shown = uq("fleet", result, "--size", "100", "--by", "4e5", "--allow", "2").out
+    assert "P(at most 2 have ended)" in shown and "depth integrated exactly" in shown
+    assert max(map(len, shown.splitlines())) <= 80
+    assert uq("report", result, "-o", tmp_path / "page.html").code == 0
+    assert "Fleets of 2 units" in (tmp_path / "page.html").read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", list(counted.CASES))
+def test_intervals_of_fleets_hold_the_truth(name):
+    assert [line for line in counted.fleets(name, 200) if line.unexplained] == []

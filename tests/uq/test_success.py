@@ -1,0 +1,43 @@
+"""A lifetime whose end is a success is not spoken of as a life."""
+
+import numpy as np
+import pytest
+from computed import asking, linear, summarised, with_output
+from drawn import words
+
+from models import vibrator
+from uq import plots
+from uq.analysis.summary import summarise
+from uq.conclusions.answer import answer
+from uq.rows.variables import outputs_of
+
+
+@pytest.fixture
+def locking():
+    """Return a result with times of synchronisation."""
+    ds = with_output(linear(samples=200), "locking", np.linspace(1.0, 3.0, 200), "lifetime")
+    ds["locking"].attrs["success"] = "the motors have locked"
+    study = {"thresholds": {"locking": 2.0}, "outputs": ["locking"]}
+    return asking(ds, **study, tolerance={"coverage": 0.9, "confidence": 0.9})
+
+
+def test_the_axes_say_what_has_happened(locking):
+    figure = plots.lifetime(locking, "locking")
+    assert "Probability that the motors have locked" in words(figure)
+    (other,) = figure.axes[0].child_axes
+    assert other.get_ylabel() == "Probability of not yet"
+
+
+def test_the_latest_time_is_promised(locking):
+    parts = summarise(locking).outputs["locking"].parts
+    labels = [one.label for one in parts["b_lives"]]
+    assert "10 % by" in labels and "B10" not in labels
+    assert "B10" in summarised(locking)["outputs"]["locking"]["b_lives"]  # a key is kept
+    found = answer(locking).lead
+    assert np.isnan(found.promise.lower) and np.isfinite(found.promise.upper)
+    assert any("succeed within 2 s" in str(event) for event in found.events)
+
+
+def test_the_vibrator_declares_its_success(locking):
+    assert outputs_of(locking)["locking"].success == "the motors have locked"
+    assert vibrator.MODEL.outputs["synchronisation_time"].success

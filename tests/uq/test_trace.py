@@ -1,0 +1,183 @@
+"""Every number has a key, which leads to its estimator, its rows, and the same number again."""
+
+import html
+import json
+import re
+
+import numpy as np
+import pytest
+from command_line import strict_json
+from computed import computed, kinds, linear, with_output
+from nested_studies import nested
+
+import uq as api
+from uq.analysis.tracing.keys import key_of, paths_of_numbers, value_at
+from uq.analysis.tracing.tracing import trace_json, traced
+from uq.analysis.tracing.verbs import VERBS
+from uq.errors import InputError
+from uq.report import page
+
+FAILING = {"fail_above": 0.9, "fail_how": "raise"}
+ASKED = {
+    "outputs": ["life", "angle"],
+    "quantiles": [0.05, 0.5, 0.999],
+    "thresholds": {"life": [0.9, 1.2], "angle": 0.5},
+    "tolerance": {"coverage": 0.8, "confidence": 0.8},
+}
+COUNTS = ("counts", "status_counts", "independent_rows", "b_lives", "nesting_of", "switching")
+COMPARED = (*COUNTS, "enough")
+"""Functions that estimate nothing, or compare estimates: they cite nobody."""
+
+
+def crossed():
+    return linear("saltelli", 16, 4, settings=FAILING, analysis={"thresholds": {"y": 5.0}})
+
+
+def every_kind():
+    return kinds(samples=64, analysis=ASKED)
+
+
+def check(ds, verb, options=None, every=1):
+    """Trace the numbers of a verb, all of them or one of so many."""
+    options = options or {}
+    whole = VERBS[verb].says(ds, options, ())
+    paths = list(paths_of_numbers(whole))[::every]
+    assert paths
+    for path in paths:
+        key = key_of(*path, verb=verb, options=options)
+        found = traced(ds, key)
+        entry = value_at(whole, path)
+        wanted = entry if isinstance(entry, dict) else {"value": entry}
+        assert found.equal and found.key == key
+        assert found.numbers.items() <= wanted.items()
+        assert all(one.does for one in found.estimators)
+        if entry is not None and not all(one.code.endswith(COMPARED) for one in found.estimators):
+            assert any(one.sources for one in found.estimators), key
+
+
+@pytest.mark.parametrize(
+    ("make", "verb"),
+    [
+        (crossed, "summary"),
+        (crossed, "sensitivity"),
+        (lambda: computed(nested()), "summary"),
+        (lambda: computed(nested()), "sensitivity"),
+        (lambda: computed(nested()), "levels"),
+    ],
+)
+def test_numbers_are_traced_and_equal(make, verb):
+    check(make(), verb, every=3 if verb == "summary" else 1)
+
+
+@pytest.mark.parametrize(
+    ("verb", "every"), [("summary", 31), ("sensitivity", 31), ("levels", 31), ("convergence", 300)]
+)
+def test_numbers_of_lives_and_angles_are_traced_and_equal(verb, every):
+    check(every_kind(), verb, every=every)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("verb", ["summary", "sensitivity", "levels", "convergence"])
+def test_every_number_of_every_kind_is_traced_and_equal(verb):
+    check(every_kind(), verb)
+    check(crossed(), verb)
+
+
+def test_options_are_part_of_a_key():
+    ds = every_kind()
+    check(ds, "summary", {"regime": "fast"}, every=17)
+    check(ds, "sensitivity", {"method": "pawn"}, every=31)
+    check(ds, "fleet", {"size": "1", "by": "0.7", "output": "life[side=left,depth=0.5]"}, every=3)
+    check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
+
+
+def test_every_number_of_a_report_leads_to_itself(no_other_figures):
+    ds = crossed()
+    text = page(ds, "out.nc")
+    keys = [html.unescape(key) for key in re.findall(r'data-trace="(.*?)"', text)]
+    assert len(keys) == len(set(keys)) > 15
+    for key in keys:
+        assert traced(ds, key).equal, key
+    assert "outputs/y/thresholds/5.0/above" in keys
+    assert "sensitivity[method=sobol]/outputs/y/S1/x1" in keys
+    assert {"status/ok", "outputs/y/mean", "outputs/y/failed"} <= set(keys)
+
+
+def test_the_rows_are_those_that_the_number_rests_on():
+    ds = crossed()
+    found = traced(ds, "outputs/y/quantiles/0.5")
+    independent = np.isin(ds["block"].values, [0, 5])
+    assert (found.rows_used, found.rows) == (independent.sum(), len(independent)) == (128, 384)
+    assert found.which == "blocks A, B: 0 to 378 by 6, 5 to 383 by 6"
+    numbers = [n for run in found.runs for n in range(run.first, run.last + 1, run.step)]
+    assert sorted(numbers) == np.flatnonzero(independent).tolist()
+    lost = int(ds["status"].values[independent].astype(bool).sum())
+    assert found.states == {"with a value": 128 - lost, "failed": lost}
+    whole = (ds["status"].values.reshape(-1, 6) == 0).all(axis=1).sum()
+    states = traced(ds, "sensitivity/outputs/y/S1/x1").states
+    assert states["in groups with a value in each row"] == 6 * whole
+    last = traced(ds, "convergence/outputs/y/estimates/mean/0/value")
+    assert last.rows_used == 128 and last.equal
+
+
+def test_a_trace_says_who_estimates_and_who_made_the_rows(uq, write_study):
+    uq("run", write_study("exponential-wear", uncertain=("rate",), law=LAW), "-o", "out.nc")
+    summary = strict_json(uq("summary", "out.nc", "--json").out)
+    entry = summary["outputs"]["life"]["quantiles"]["0.5"]
+    found = strict_json(uq("trace", "out.nc", "outputs/life/quantiles/0.5", "--json").out)
+    ds = api.open_result("out.nc")
+    assert entry.items() <= found.items() and found["equal"] is True
+    assert found["again"] == entry
+    assert "Hyndman" in found["estimators"][0]["sources"][0]
+    assert found["rows"]["used"] == 64
+    assert (found["seed"], found["code"]) == (5, ds.attrs["code"])
+    assert found["versions"]["numpy"] == np.__version__ and found["versions_here"] == {}
+    shown = uq("trace", "out.nc", "outputs/life/quantiles/0.5").out
+    assert repr(entry["value"]) in shown and "Computed again from these rows: equal" in shown
+    assert max(map(len, shown.splitlines())) <= 80
+    series = api.trace("out.nc", "outputs/life/quantiles/0.5/low")
+    assert series["value"] == entry["low"] and series["equal"] is True
+
+
+LAW = 'distribution = "uniform", lower = 1e-10, upper = 9e-10'
+
+
+def test_names_with_a_slash_have_keys_of_their_own():
+    ds = with_output(linear(), "a/b", linear()["y"].values)
+    ds = with_output(ds, "a", linear()["x1"].values)
+    found = traced(ds, "outputs/a~1b/mean")
+    assert found.equal and found.numbers["value"] == linear()["y"].values.mean()
+    with pytest.raises(InputError, match="no such key 'outputs/a/b/mean'; did you mean"):
+        traced(ds, "outputs/a/b/mean")
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("outputs/y/quantile/0.5", "did you mean 'outputs/y/quantiles/0.5'?"),
+        ("output/y/mean", "did you mean 'outputs/y/mean'?"),
+        ("outputs/z/mean", "did you mean 'outputs/y/mean'?"),
+        ("outputs/y/units", "no such key 'outputs/y/units'"),
+        ("outputs/y", "several numbers; add to it, as in 'outputs/y/mean'"),
+        ("sensitivity/outputs/y/S1/x9", "did you mean 'sensitivity/outputs/y/S1/x"),
+        ("sensitivty/outputs/y/S1/x1", "did you mean 'sensitivity'?"),
+        ("sensitivity[mehod=sobol]/rows_used", "no such option of sensitivity: mehod=sobol"),
+        ("sensitivity[method=sobl]/rows_used", "no such method 'sobl'; did you mean 'sobol'?"),
+        ("summary[regime=slow]/samples", "this result has no regimes"),
+        ("twin/outputs/y/mean", "the study names no twin"),
+        ("", "no such key ''"),
+    ],
+)
+def test_a_mistyped_key_is_one_line_with_the_nearest(key, words):
+    with pytest.raises(InputError) as refusal:
+        traced(crossed(), key)
+    assert words in str(refusal.value) and "\n" not in str(refusal.value)
+
+
+def test_a_result_without_a_sound_row_is_traced_too():
+    ds = linear(settings={"fail_above": 0.0, "fail_how": "raise"})
+    found = trace_json(traced(ds, "outputs/y/mean"))
+    assert found["value"] is None and found["equal"]
+    assert found["rows"]["states"] == {"with a value": 0, "failed": 64}
+    assert traced(ds, "status/raised").numbers == {"value": 64}
+    json.dumps(found, allow_nan=False)

@@ -1,0 +1,34 @@
+"""Numbers of fleets as the command line prints them with ``--json``."""
+
+from typing import Any
+
+from uq import json_form
+from uq.analysis.fleet import Fleet
+from uq.analysis.fleet_numbers import Banded
+
+
+def fleet_json(found: Fleet) -> dict[str, Any]:
+    """Return numbers of fleets in plain data."""
+    return {
+        "output": found.output,
+        "size": found.size,
+        "allow": found.allow,
+        "samples": found.samples,
+        "integrated": list(found.integrated),
+        "first": {"quantiles": {repr(p): _plain(one) for p, one in found.first.items()}},
+        "by": {
+            repr(time): {"failed": _plain(failed), "at_most_allowed": _plain(at_most)}
+            for time, (failed, at_most) in found.by.items()
+        },
+        "notes": found.notes,
+    }
+
+
+def _plain(one: Banded) -> dict[str, Any]:
+    entry = json_form.whole(one.estimate) | json_form.failed(one.failed)
+    for name, end in (("band_low", one.low), ("band_high", one.high)):
+        entry[name] = json_form.number(end.value)
+        entry |= {f"{name}_{key}": value for key, value in json_form.ends(end).items()}
+        if end.reason:
+            entry[f"{name}_reason"] = end.reason
+    return entry

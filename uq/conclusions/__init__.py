@@ -1,0 +1,17 @@
+"""The answer of a study: what can be promised, what decides it, and what to do.
+
+Reading order; a module imports only those above it:
+
+    sources         how well a number is known
+    words           inputs and elements by their names, numbers in a person's units
+    promises        what can be promised of an output, and its likely range
+    contributions   what inputs contribute, with direction and size
+    parts           what the answer consists of; each part writes its sentence from its numbers
+    rankings        which inputs contribute most, with direction and size
+    quantities      what can be promised of an output, its range and its probabilities
+    settling        what is not settled, and how many rows would settle it
+    tightening      what a tighter tolerance would change, from the rows that exist
+    advice          what to do, by rules
+    answer          all of it, of a result
+    page            the same as HTML
+"""

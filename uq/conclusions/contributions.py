@@ -1,0 +1,161 @@
+"""What inputs contribute: shares, directions and sizes, and the sentences from them."""
+
+from dataclasses import dataclass, field
+
+from uq.conclusions.words import Unit, called_together, sentence
+from uq.estimate import NOTHING, Estimate
+
+SMALL = 0.05
+"""A smaller share of the variance does not lead."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """How a target changes with one input, on average.
+
+    Attributes
+    ----------
+    direction : int
+        1 if it rises with the input, -1 if it falls, 0 where that is not clear.
+    step : str
+        The change of the input: ``10 %``; "" where only the direction is known.
+    by : Estimate
+        The change of the target.
+    unit : Unit
+        Of `by`: ``%`` for relative changes, ``percentage points`` for probabilities.
+    verbs : tuple of str
+        What a fall and a rise of the target is called.
+    """
+
+    direction: int = 0
+    step: str = ""
+    by: Estimate = NOTHING
+    unit: Unit = field(default_factory=Unit)
+    verbs: tuple[str, str] = ("lowers it", "raises it")
+
+    def sentence(self, name: str = "") -> str:
+        """Return direction and size in words, of an input with this name."""
+        if self.direction == 0:
+            return f"{name} has no clear direction" if name else "no clear direction"
+        verb, of = self.verbs[self.direction > 0], f" {name}" if name else ""
+        if not self.step or not self.by.has_interval:
+            return f"more{of} {verb}"
+        low, high = sorted(map(abs, (self.by.low, self.by.high)))
+        by = self.unit.text(abs(self.by.value))
+        return f"{self.step} more{of} {verb} by {by} ({self.unit.bare_between(low, high)})"
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """Inputs that contribute alike to the scatter of a target, or to an event.
+
+    Attributes
+    ----------
+    inputs : tuple of str
+        One; or several whose indices do not distinguish them, or twins.
+    indices : tuple of Estimate
+        Of each.
+    share_of_variance : bool
+        Whether an index is one.
+    changes : tuple of Change
+        Of each; empty where they are not known.
+    """
+
+    inputs: tuple[str, ...]
+    indices: tuple[Estimate, ...]
+    share_of_variance: bool
+    changes: tuple[Change, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """The inputs by their names."""
+        return called_together(self.inputs)
+
+    @property
+    def value(self) -> float:
+        """The largest index."""
+        return max(one.value for one in self.indices)
+
+    @property
+    def size(self) -> str:
+        """The indices with their intervals; shares in per cent, not beyond 0 and 100."""
+        texts = [self._size(one) for one in self.indices]
+        return " and ".join(texts) if len(texts) < 3 else f"at most {texts[0]} each"
+
+    def _size(self, one: Estimate) -> str:
+        if self.share_of_variance:
+            value, low, high = (min(max(end, 0.0), 1.0) for end in one.numbers)
+            text = f"{100 * value:.0f} %"
+            ends = f"{100 * low:.0f} to {100 * high:.0f} %"
+        else:
+            text, ends = f"{one.value:.2f}", f"{one.low:.2f} to {one.high:.2f}"
+        return text + (f" ({ends})" if one.has_interval else "")
+
+    @property
+    def effect(self) -> str:
+        """Direction and size in words."""
+        if not self.changes:
+            return ""
+        if len(self.changes) == 1:
+            return self.changes[0].sentence()
+        names = (called_together([name]) for name in self.inputs)
+        each = zip(self.changes, names, strict=True)
+        return "; ".join(one.sentence(name) for one, name in each)
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Which inputs contribute to a target.
+
+    Attributes
+    ----------
+    target, method : str
+    kind : str
+        Key of the index that ranks.
+    what : str
+        What the index is, such as a share of the variance.
+    contributions : tuple of Contribution
+        The largest first; only those that exceed inputs without effect.
+    reason : str
+        Why there is no ranking: no index, or nothing settled; "" where there is one.
+    rows_factor : float
+        How many times the rows would settle it; NaN where that does not apply.
+    """
+
+    target: str
+    method: str
+    kind: str = ""
+    what: str = ""
+    contributions: tuple[Contribution, ...] = ()
+    reason: str = ""
+    rows_factor: float = float("nan")
+
+    @property
+    def leader(self) -> Contribution | None:
+        """What contributes most, where that is settled."""
+        return self.contributions[0] if self.contributions and not self.reason else None
+
+    @property
+    def leads(self) -> bool:
+        """Whether what contributes most contributes much."""
+        one = self.leader
+        return one is not None and not (one.share_of_variance and one.value < SMALL)
+
+    @property
+    def sentence(self) -> str:
+        """What contributes most, or why that is not known."""
+        if self.reason:
+            return sentence(self.reason)
+        leader = self.leader
+        if leader is None:
+            return ""
+        if not self.leads:
+            return f"No single input explains much: {leader.words} {leader.size}."
+        verb = "contribute" if len(leader.inputs) > 1 else "contributes"
+        return f"{leader.words[:1].upper()}{leader.words[1:]} {verb} most: {leader.size}."
+
+    @property
+    def with_effect(self) -> str:
+        """What contributes most, with direction and size."""
+        effect = self.leader.effect if self.leader is not None and self.leads else ""
+        return " ".join(filter(None, (self.sentence, effect and sentence(effect))))

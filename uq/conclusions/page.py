@@ -1,0 +1,175 @@
+"""The answer as HTML, for a notebook and for the head of a report."""
+
+from collections.abc import Iterator
+from math import isfinite
+
+from markupsafe import Markup
+
+from uq.conclusions.contributions import Contribution, Ranking
+from uq.conclusions.parts import Answer, Quantity
+from uq.conclusions.words import sentence
+from uq.literals import plain
+
+STYLE = Markup("""
+.answer { display: grid; gap: .3rem 2rem; grid-template-columns: minmax(0, 1fr); }
+@media (min-width: 60rem) {
+  .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr);
+    grid-template-rows: auto auto 1fr; align-items: start; }
+  .answer-verdict { grid-area: 1 / 1; }
+  .answer > figure { grid-area: 1 / 2 / 3 / 3; }
+  .answer-ranking { grid-area: 2 / 1 / 4 / 2; }
+  .answer-todo { grid-area: 3 / 2; }
+}
+.answer p, .answer ul { margin: .25rem 0; }
+.answer ul { padding-left: 1.2rem; }
+.answer h3 { margin: .5rem 0 .1rem; font-size: 1rem; }
+.answer .answer-promise { font-size: 1.35rem; line-height: 1.3; font-weight: 600; }
+.answer-why { opacity: .75; font-size: .875rem; }
+.answer-bar { display: grid; grid-template-columns: 11rem minmax(0, 1fr) auto; gap: 0 .7rem;
+  align-items: center; margin: .3rem 0; }
+.answer-track { position: relative; height: .9rem; background: rgba(127, 127, 127, .15); }
+.answer-track > * { position: absolute; top: 0; bottom: 0; }
+.answer-fill { left: 0; background: #0072b2; }
+.answer-ends { border: solid currentColor; border-width: 0 1px; }
+.answer-ends::before { content: ""; position: absolute; left: 0; right: 0;
+  top: calc(50% - .5px); border-top: 1px solid currentColor; }
+.answer-bar .answer-why { grid-column: 1 / -1; }
+.answer-size { font-size: .875rem; min-width: 8rem; }
+@media (max-width: 40rem) {
+  .answer-bar { grid-template-columns: 8.5rem minmax(0, 1fr) auto; }
+  .answer-size { font-size: .8rem; min-width: 6.5rem; }
+}
+@media print { .answer { break-inside: avoid; } }
+""")
+
+_MOST_BARS = 6
+
+
+def fragment(answer: Answer, picture: str = "") -> Markup:
+    """Return the answer as one element of a page.
+
+    Parameters
+    ----------
+    answer : Answer
+    picture : str, optional
+        HTML: of the quantity that the study is about.
+    """
+    blocks = [_verdict(answer), Markup(picture), _ranking(answer), _to_do(answer)]
+    return Markup('<div class="answer">{}</div>').format(Markup("").join(filter(None, blocks)))
+
+
+def notebook(answer: Answer) -> str:
+    """Return the answer with its style, as a notebook shows it."""
+    return str(Markup("<style>{}</style>{}").format(STYLE, fragment(answer)))
+
+
+def others(answer: Answer) -> Markup:
+    """Return what is known of the quantities that the head leaves out."""
+    found = []
+    for one in answer.quantities[1:]:
+        lines = [line for line in one.head if line != sentence(one.words)]
+        lines += [event.with_cause for event in one.events if event.sentence]
+        lines += [one.ranking.with_effect] if one.ranking is not None else []
+        items = Markup("").join(Markup("<li>{}</li>").format(plain(line)) for line in lines if line)
+        title = f"{one.words[:1].upper()}{one.words[1:]}"
+        found.append(Markup("<h3>{}</h3><ul>{}</ul>").format(plain(title), items))
+    return Markup("").join(found)
+
+
+def regimes(answer: Answer) -> Markup:
+    """Return the shares of the regimes, and what decides them."""
+    items = (Markup("<li>{}</li>").format(plain(one.with_cause)) for one in answer.regimes)
+    return Markup("<ul>{}</ul>").format(Markup("").join(items)) if answer.regimes else Markup()
+
+
+def _verdict(answer: Answer) -> Markup:
+    lead = answer.lead
+    parts = [] if lead is None else list(_of_lead(lead, answer))
+    if answer.regimes_sentence:
+        parts.append(_line(answer.regimes_sentence))
+    if answer.failed or lead is None:
+        parts.insert(0, _line(answer.rows_sentence))
+    return _block("verdict", parts)
+
+
+def _of_lead(lead: Quantity, answer: Answer) -> Iterator[Markup]:
+    promise = lead.promise
+    if promise is not None and promise.sentence:
+        yield Markup('<p class="answer-promise">{}</p>').format(plain(promise.sentence))
+    yield Markup('<p class="answer-why">{}</p>').format(
+        plain(f"{lead.words[:1].upper()}{lead.words[1:]}.")
+    )
+    if promise is not None and promise.why:
+        yield _small(promise.why)
+    if lead.range is not None and lead.range.sentence:
+        yield _line(lead.range.sentence)
+    yield from (_line(one.with_cause) for one in lead.events if one.sentence)
+    for other in answer.quantities[1:]:
+        if other.output == lead.output and other.promise and other.promise.sentence:
+            yield _small(f"{other.place}: {other.promise.sentence}")
+
+
+def _ranking(answer: Answer) -> Markup:
+    if answer.lead is None:
+        return Markup()
+    ranking = answer.lead.ranking
+    if ranking is None:
+        return Markup()
+    title = Markup("<h3>What it depends on</h3>")
+    if ranking.leader is None:
+        return _block("ranking", [title, _line(ranking.sentence)])
+    note = _small(sentence(ranking.what))
+    bars = (bar(one, ranking) for one in ranking.contributions[:_MOST_BARS])
+    return _block("ranking", [title, *bars, note])
+
+
+def bar(one: Contribution, ranking: Ranking) -> Markup:
+    """Return a contribution as a bar with its interval, its effect below."""
+    most = max(1.0 if one.share_of_variance else 0.0, ranking.contributions[0].value)
+    first = one.indices[0]
+    marks = [
+        Markup('<span class="answer-fill" style="width:{:.1f}%"></span>').format(
+            _at(one.value, most)
+        )
+    ]
+    if first.has_interval:
+        low, high = _at(first.low, most), _at(first.high, most)
+        marks.append(
+            Markup('<span class="answer-ends" style="left:{:.1f}%;width:{:.1f}%"></span>').format(
+                low, high - low
+            )
+        )
+    effect = Markup('<span class="answer-why">{}</span>').format(plain(one.effect))
+    return Markup(
+        '<div class="answer-bar"><span>{}</span><span class="answer-track">{}</span>'
+        '<span class="answer-size">{}</span>{}</div>'
+    ).format(
+        plain(f"{one.words[:1].upper()}{one.words[1:]}"),
+        Markup("").join(marks),
+        plain(one.size),
+        effect if one.effect else "",
+    )
+
+
+def _at(value: float, most: float) -> float:
+    return 100 * min(max(value / most, 0.0), 1.0) if isfinite(value) and most > 0 else 0.0
+
+
+def _to_do(answer: Answer) -> Markup:
+    if not answer.advice:
+        return Markup()
+    items = (Markup("<li>{}</li>").format(plain(one.text)) for one in answer.advice)
+    title = Markup("<h3>What to do</h3>")
+    return _block("todo", [title, Markup("<ul>{}</ul>").format(Markup("").join(items))])
+
+
+def _block(name: str, parts: list[Markup]) -> Markup:
+    return Markup('<div class="answer-{}">{}</div>').format(name, Markup("").join(parts))
+
+
+def _line(text: str) -> Markup:
+    return Markup("<p>{}</p>").format(plain(text))
+
+
+def _small(text: str) -> Markup:
+    return Markup('<p class="answer-why">{}</p>').format(plain(text))

@@ -1,0 +1,278 @@
+"""What the answer consists of: numbers, and the sentence that each part writes from its own."""
+
+from dataclasses import dataclass, field
+from math import isnan
+
+from uq.analysis.event_curve import EventCurve
+from uq.conclusions.contributions import Ranking
+from uq.conclusions.promises import Promise, Range
+from uq.conclusions.words import Unit, called_together, sentence, share_text
+from uq.estimate import NOTHING, Estimate
+from uq.wording import percent, percent_interval
+
+RARE = 0.01
+MOST_REGIMES = 3
+"""Rarer regimes, and more of them, are left to the table."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """The probability of an event that the study asks about.
+
+    Attributes
+    ----------
+    name : str
+        The target, such as ``P(life<86400.0)``.
+    said : str
+        What happens: ``end within 24 hours``, ``exceed 12 degrees in magnitude``.
+    share : Estimate
+    failed : Estimate or None
+        Bounds with the failed rows at best and at worst, where rows failed.
+    ranking : Ranking or None
+        What decides it.
+    over : str
+        The input that decides most; "" if that is not settled.
+    curve : EventCurve or None
+        The probability over that input.
+    range_unit : Unit
+        Of that input.
+    """
+
+    name: str
+    said: str
+    share: Estimate
+    failed: Estimate | None = None
+    ranking: Ranking | None = None
+    over: str = ""
+    curve: EventCurve | None = None
+    over_unit: Unit = field(default_factory=Unit)
+
+    @property
+    def sentence(self) -> str:
+        """Its probability, and what decides it; "" where that is not known."""
+        if isnan(self.share.value):
+            return sentence(self.share.reason) if self.share.reason else ""
+        text = f"{share_text(self.share)} {self.said}"
+        if self.failed is not None and self.failed.has_interval:
+            ends = percent_interval(self.failed.low, self.failed.high)
+            text += f"; with failed rows {ends}"
+        return f"{text}."
+
+    @property
+    def with_cause(self) -> str:
+        """Its probability, and what decides it."""
+        return " ".join(filter(None, (self.sentence, self.decided_by)))
+
+    @property
+    def decided_by(self) -> str:
+        """What decides it, with the probability at either end of the leading input."""
+        if self.ranking is None:
+            return ""
+        leader = self.ranking.leader
+        if leader is None:
+            return self.ranking.sentence if self.ranking.reason else ""
+        text = f"decided most by {leader.words}"
+        if self.curve is not None:
+            places = [self.curve.least, self.curve.most]
+            first, last = (
+                f"{percent(self.curve.shares[i].value)} where it is {self._part(i)}" for i in places
+            )
+            over = f" over {called_together([self.over])}" if len(leader.inputs) > 1 else ""
+            text += f":{over} from {first} to {last}"
+        return sentence(text)
+
+    def _part(self, i: int) -> str:
+        """Return a part of the input in words."""
+        assert self.curve is not None
+        low, high = (float(end) for end in self.curve.edges[i : i + 2])
+        if i == 0:
+            return f"below {self.over_unit.text(high)}"
+        if i == len(self.curve.shares) - 1:
+            return f"above {self.over_unit.text(low)}"
+        return f"between {self.over_unit.between(low, high, ' and ')}"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """The answer for one element of an output.
+
+    Attributes
+    ----------
+    name, words, meaning : str
+        Of the element; in words, with and without its place within the output.
+    promise : Promise or None
+    range : Range or None
+    events : tuple of Event
+    ranking : Ranking or None
+    """
+
+    name: str
+    words: str
+    meaning: str
+    promise: Promise | None = None
+    range: Range | None = None
+    events: tuple[Event, ...] = ()
+    ranking: Ranking | None = None
+
+    @property
+    def output(self) -> str:
+        """The output that it is an element of."""
+        return self.name.partition("[")[0]
+
+    @property
+    def place(self) -> str:
+        """What distinguishes it from other elements of the output."""
+        return self.words.removeprefix(self.meaning).removeprefix(", ")
+
+    @property
+    def head(self) -> list[str]:
+        """What can be promised, of what, and its likely range, as far as they are known."""
+        found = [] if self.promise is None else [self.promise.sentence]
+        found.append(sentence(self.words))
+        found += [] if self.promise is None else [self.promise.why]
+        found += [] if self.range is None else [self.range.sentence]
+        return [*filter(None, found)]
+
+
+@dataclass(frozen=True)
+class Tightened:
+    """What half the scatter of an input would change.
+
+    Attributes
+    ----------
+    inputs : tuple of str
+    what : str
+        The number that changes: ``the 5 % quantile``.
+    before, after : Estimate
+    is_share : bool
+    unit : Unit
+    reason : str
+        Why the rows cannot show it, or "".
+    effective_rows : float
+    """
+
+    inputs: tuple[str, ...]
+    what: str
+    before: Estimate = NOTHING
+    after: Estimate = NOTHING
+    is_share: bool = False
+    unit: Unit = field(default_factory=Unit)
+    reason: str = ""
+    effective_rows: float = float("nan")
+
+    @property
+    def lengthens(self) -> bool:
+        """Whether lives are longer: fewer have ended, or a quantile is later."""
+        return (self.after.value < self.before.value) == self.is_share
+
+    @property
+    def sentence(self) -> str:
+        """What would change, or why the rows cannot show it."""
+        words = called_together(self.inputs)
+        if self.reason:
+            return f"Tightening {words}: {self.reason}."
+        text = percent if self.is_share else self.unit.text
+        first, then = text(self.before.value), text(self.after.value)
+        ends = ""
+        if self.after.has_interval:
+            low, high = self.after.low, self.after.high
+            both = percent_interval(low, high) if self.is_share else self.unit.between(low, high)
+            ends = f" ({both})"
+        return f"Half the scatter of {words} would move {self.what} from {first} to {then}{ends}."
+
+
+@dataclass(frozen=True)
+class Advice:
+    """One thing to do.
+
+    Attributes
+    ----------
+    rule : {"rows", "measure", "tighten", "nothing", "failed"}
+    text : str
+        The sentence.
+    inputs : tuple of str
+    rows : int or None
+        To be added to, or reached, where more rows help.
+    tightened : Tightened or None
+    """
+
+    rule: str
+    text: str
+    inputs: tuple[str, ...] = ()
+    rows: int | None = None
+    tightened: Tightened | None = None
+
+
+@dataclass(frozen=True, repr=False)
+class Answer:
+    """The answer of a study.
+
+    Attributes
+    ----------
+    title : str
+    rows, failed : int
+    quantities : tuple of Quantity
+        The one that the study is about first.
+    regimes : tuple of Event
+        Shares of the regimes, the most frequent first.
+    advice : tuple of Advice
+    notes : tuple of str
+        What could not be said, and why.
+    """
+
+    title: str
+    rows: int
+    failed: int
+    quantities: tuple[Quantity, ...]
+    regimes: tuple[Event, ...]
+    advice: tuple[Advice, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def rows_sentence(self) -> str:
+        """How many rows were computed."""
+        if self.failed:
+            return f"{self.failed} of {self.rows} rows failed."
+        return f"All {self.rows} rows were computed." if self.rows else "There are no rows."
+
+    @property
+    def main_regimes(self) -> tuple[Event, ...]:
+        """The regimes that are not rare."""
+        return tuple(one for one in self.regimes if one.share.value >= RARE)[:MOST_REGIMES]
+
+    @property
+    def events(self) -> list[Event]:
+        """All events, those of the regimes last."""
+        return [one for own in self.quantities for one in own.events] + [*self.regimes]
+
+    @property
+    def regimes_sentence(self) -> str:
+        """The shares of the main regimes; "" where there is one at most."""
+        shares = [f"{share_text(one.share)} {one.said}" for one in self.main_regimes]
+        return f"{', '.join(shares)}." if shares else ""
+
+    @property
+    def lines(self) -> list[str]:
+        """The answer in a few sentences."""
+        lead = self.lead
+        found = [] if not self.failed and lead else [self.rows_sentence]
+        found += [] if lead is None else lead.head
+        events = (() if lead is None else lead.events) + self.main_regimes
+        found += [one.with_cause for one in events]
+        found += [lead.ranking.with_effect] if lead is not None and lead.ranking else []
+        return [*filter(None, found), *(one.text for one in self.advice)]
+
+    def __repr__(self) -> str:
+        """Return the answer in sentences, one a line."""
+        return "\n".join([self.title, *self.lines])
+
+    def _repr_html_(self) -> str:
+        """Return the answer as a notebook shows it."""
+        from uq.conclusions.page import notebook
+
+        return notebook(self)
+
+    @property
+    def lead(self) -> Quantity | None:
+        """The quantity that the study is about."""
+        return self.quantities[0] if self.quantities else None

@@ -1,0 +1,110 @@
+"""What can be promised of an output, and its likely range."""
+
+from dataclasses import dataclass
+from math import inf, isfinite
+
+from uq.conclusions.words import Unit, sentence
+from uq.estimate import NOTHING, Estimate
+
+
+@dataclass(frozen=True)
+class Promise:
+    """A value that can be promised.
+
+    Attributes
+    ----------
+    coverage, confidence : float
+        At least this share of all lies on the right side of the bound, with this confidence.
+    lower, upper : float
+        Bounds; NaN where there is none, or it is not asked for.
+    quantiles : tuple of Estimate
+        Where there is no tolerance bound: quantiles of one less the coverage and of the coverage,
+        those that are asked for (else without numbers).
+    reason : str
+        Why there is no tolerance bound, or "".
+    unit : Unit
+    is_life, of_magnitude : bool
+        Whether it is a life that ends; whether it is the magnitude of an angle.
+    """
+
+    coverage: float
+    confidence: float
+    lower: float
+    upper: float
+    unit: Unit
+    quantiles: tuple[Estimate, Estimate] = (NOTHING, NOTHING)
+    reason: str = ""
+    is_life: bool = False
+    of_magnitude: bool = False
+
+    @property
+    def sentence(self) -> str:
+        """What can be promised; "" where nothing can."""
+        share = f"{100 * self.coverage:g} %"
+        bounds = [
+            f"{self._side(i)} {self.unit.text(bound, (-inf, inf)[i])}"
+            for i, bound in enumerate((self.lower, self.upper))
+            if isfinite(bound)
+        ]
+        if bounds:
+            sure = f"With {100 * self.confidence:g} % confidence"
+            each = ", each" if len(bounds) > 1 else ""
+            return f"{sure}{each}, at least {share} {f', and at least {share} '.join(bounds)}."
+        cautious = []
+        for i, one in enumerate(self.quantiles):
+            end = (one.low, one.high)[i]
+            if not isfinite(one.value):
+                continue
+            text = f"{share} {self._side(i)} {self.unit.text(one.value)}"
+            if isfinite(end):
+                text += f", cautiously {self.unit.text(end, (-inf, inf)[i])}"
+            cautious.append(text)
+        return f"{'; '.join(cautious)}." if cautious else ""
+
+    @property
+    def why(self) -> str:
+        """Why there is no tolerance bound; "" where there is one."""
+        if not self.reason:
+            return ""
+        end = " Cautiously: the end of the 95 % interval." if self._is_cautious else ""
+        return f"No tolerance bound: {self.reason}.{end}"
+
+    @property
+    def _is_cautious(self) -> bool:
+        ends = (self.quantiles[0].low, self.quantiles[1].high)
+        return any(isfinite(end) for end in ends)
+
+    def _side(self, upper: int) -> str:
+        if self.of_magnitude:
+            return "stay within"
+        if self.is_life:
+            return "end within" if upper else "last longer than"
+        return "stay below" if upper else "stay above"
+
+
+@dataclass(frozen=True)
+class Range:
+    """The likely range: quantiles of 5, 50 and 95 %."""
+
+    low: Estimate
+    median: Estimate
+    high: Estimate
+    unit: Unit
+    of_magnitude: bool = False
+
+    @property
+    def sentence(self) -> str:
+        """Range and median, as far as they are known."""
+        parts = []
+        what = "of the magnitudes " if self.of_magnitude else ""
+        if isfinite(self.low.value) and isfinite(self.high.value):
+            ends = self.unit.between(self.low.value, self.high.value, " and ")
+            parts.append(f"90 % {what}lie between {ends}")
+        elif isfinite(self.low.value) and self.high.value == inf:
+            most = "never end" if "value" not in self.high.beyond else "exceed the horizon"
+            parts.append(f"5 % end within {self.unit.text(self.low.value)}; more than 5 % {most}")
+        if isfinite(self.median.value):
+            parts.append(f"median {self.unit.text(self.median.value)}")
+        elif self.median.value == inf and "value" not in self.median.beyond:
+            parts.append("at least half never end")
+        return sentence("; ".join(parts)) if parts else ""

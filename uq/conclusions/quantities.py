@@ -1,0 +1,253 @@
+"""What can be promised of an output, its likely range, and the probabilities asked for."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import isfinite, isnan, nan
+
+import numpy as np
+import xarray as xr
+
+from uq.analysis.event_curve import EventCurve, event_curve
+from uq.analysis.findings import Findings
+from uq.analysis.statistics.quantiles import quantiles
+from uq.analysis.statistics.statistic import Context, Statistic
+from uq.analysis.statistics.tolerance import tolerance
+from uq.analysis.summary import Described, Summary, summarise
+from uq.conclusions.contributions import Ranking
+from uq.conclusions.parts import Event, Quantity
+from uq.conclusions.promises import Promise, Range
+from uq.conclusions.rankings import method_for, ranking_of
+from uq.conclusions.words import Unit, element_called, unit_for
+from uq.errors import InputError
+from uq.estimate import NOTHING, Estimate
+from uq.indices.chosen import chosen
+from uq.indices.independent_inputs import independent_inputs
+from uq.indices.targets import lightened, number_of, split_name
+from uq.methods.registry import METHODS
+from uq.rows.elements import (
+    Element,
+    analysis_of,
+    are_independent,
+    elements_of,
+    replicates_of,
+    shown_outputs,
+)
+from uq.rows.nesting import is_nested
+from uq.study.file import AnalysisTable
+
+COVERAGE = 0.95
+CONFIDENCE = 0.95
+"""Of a bound where the study does not ask for others."""
+
+LOW, MIDDLE, HIGH = 0.05, 0.5, 0.95
+"""Probabilities of the likely range."""
+
+
+def quantities(findings: Findings) -> list[Quantity]:
+    """Return the answer for each element that the study asks for, the one it is about first.
+
+    Parameters
+    ----------
+    findings : Findings
+
+    Returns
+    -------
+    list of Quantity
+    """
+    ds = findings.ds
+    asked = analysis_of(ds)
+    wanted = _with_bounds(asked, findings)
+    summary = findings.summary if wanted == asked else summarise(ds, wanted)
+    names = shown_outputs(ds, asked)
+    elements = [one for one in elements_of(findings.rows, names) if one.present.any()]
+    elements.sort(key=lambda one: _places(one, asked))
+    context = Context(findings.rows, wanted, replicates_of(findings.rows))
+    return [_quantity(findings, summary, context, one) for one in elements]
+
+
+def _places(element: Element, asked: AnalysisTable) -> tuple[bool, bool]:
+    """Return a key that sorts what the study is about first."""
+    return element.output not in asked.thresholds, not element.is_lifetime
+
+
+def _with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
+    """Return what a study asks for, with the bounds and quantiles that the answer needs."""
+    coverage = asked.tolerance.coverage if asked.tolerance else COVERAGE
+    needed = {LOW, MIDDLE, HIGH, coverage, round(1 - coverage, 12)}
+    missing = tuple(sorted(needed - set(asked.quantiles)))
+    changes: dict[str, object] = {}
+    if missing:
+        changes["quantiles"] = (*asked.quantiles, *missing)
+    if asked.tolerance is None and are_independent(findings.rows):
+        tolerances = type(asked).model_validate(
+            {"tolerance": {"coverage": COVERAGE, "confidence": CONFIDENCE}}
+        )
+        changes["tolerance"] = tolerances.tolerance
+    return asked.model_copy(update=changes) if changes else asked
+
+
+def _quantity(findings: Findings, summary: Summary, context: Context, element: Element) -> Quantity:
+    described = summary.outputs[element.name]
+    if element.is_angle:  # its sign is only a direction
+        folded = replace(element, values=element.for_thresholds)
+        described = Described(
+            described.units,
+            {
+                **described.parts,
+                "quantiles": tuple(quantiles(folded, context)),
+                "tolerance": tuple(tolerance(folded, context)),
+            },
+        )
+    middle = _quantile(described, MIDDLE)
+    others = (_quantile(described, p).value for p in (LOW, HIGH))
+    typical = next(filter(isfinite, (middle.value, *others)), nan)
+    unit = unit_for(element.units, abs(typical))
+    return Quantity(
+        element.name,
+        element_called(findings.ds, element),
+        element.meaning,
+        _promise(findings.ds, described, element, context.analysis, unit),
+        Range(
+            _quantile(described, LOW), middle, _quantile(described, HIGH), unit, element.is_angle
+        ),
+        tuple(_events(findings, described, element, unit)),
+        _ranking(findings, element, unit),
+    )
+
+
+def _quantile(described: Described, p: float) -> Estimate:
+    found = described.find("quantiles", repr(p))
+    return found.best.estimate if found else NOTHING
+
+
+def _promise(
+    ds: xr.Dataset, described: Described, element: Element, analysis: AnalysisTable, unit: Unit
+) -> Promise:
+    asked = analysis.tolerance
+    coverage, confidence = asked or (COVERAGE, CONFIDENCE)
+    lower, upper = _sides(element, described, analysis.thresholds.get(element.output, ()))
+    both = [described.find("tolerance", name) for name in ("lower", "upper")]
+    bounds = [
+        one.estimate.value if wanted and one else nan
+        for one, wanted in zip(both, (lower, upper), strict=True)
+    ]
+    ends = [
+        _quantile(described, p) if wanted else NOTHING
+        for p, wanted in ((round(1 - coverage, 12), lower), (coverage, upper))
+    ]
+    reason = ""
+    if not any(map(isfinite, bounds)):
+        reason = _why_no_bound(ds, both, bounds)
+    return Promise(
+        coverage,
+        confidence,
+        bounds[0],
+        bounds[1],
+        unit,
+        (ends[0], ends[1]),
+        reason,
+        element.is_lifetime,
+        element.is_angle,
+    )
+
+
+def _sides(
+    element: Element, described: Described, thresholds: tuple[float, ...]
+) -> tuple[bool, bool]:
+    """Return whether a lower and an upper bound are what matters."""
+    if element.is_lifetime:
+        early = bool(element.declared.success)  # the latest time of a success is what matters
+        return not early, early
+    if element.is_angle:
+        return False, True
+    middle = _quantile(described, MIDDLE).value
+    if thresholds and isfinite(middle):
+        return any(t < middle for t in thresholds), any(t >= middle for t in thresholds)
+    return True, True
+
+
+def _why_no_bound(ds: xr.Dataset, both: list[Statistic | None], bounds: list[float]) -> str:
+    needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
+    if needed:
+        return f"it needs {needed} rows"
+    if any(not isnan(one) for one in bounds):
+        return "too few lives end"
+    if is_nested(ds):
+        return "the rows of one sample are not independent"
+    return f"the rows of a '{ds.attrs['design']}' design are not independent"
+
+
+def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None:
+    method = method_for(findings.ds, event=False)
+    if method is None:
+        return None
+    target = number_of(element)
+    name = (target if METHODS[method].scale_free else lightened(target)).name
+    verb = ("shortens it", "lengthens it") if element.is_lifetime else ("lowers it", "raises it")
+    try:
+        found = ranking_of(findings, name, method, verb)
+    except InputError as refused:
+        return Ranking(name, method, reason=f"no ranking of the inputs: {refused}")
+    if split_name(name)[0]:
+        return found
+    # Changes of the output itself are in its unit.
+    own = tuple(
+        replace(one, changes=tuple(replace(change, unit=unit) for change in one.changes))
+        for one in found.contributions
+    )
+    return replace(found, contributions=own)
+
+
+def _events(
+    findings: Findings, described: Described, element: Element, unit: Unit
+) -> Iterator[Event]:
+    side, sign = ("below", "<") if element.is_lifetime else ("above", ">")
+    for one in described.parts["thresholds"]:
+        if one.key[-1] != side or one.at is None:
+            continue
+        own = unit_for(element.units, one.at)
+        at = own.text(one.at)
+        verb = "succeed" if element.declared.success else "end"
+        said = f"{verb} within {at}" if element.is_lifetime else f"exceed {at}"
+        said += " in magnitude" * element.is_angle
+        target = f"P({element.name}{sign}{one.at!r})"
+        yield event(findings, target, said, one)
+
+
+def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
+    """Return what is known of an event: its probability, what decides it, and where.
+
+    Parameters
+    ----------
+    findings : Findings
+    target : str
+        Its name as that of a target of indices.
+    said : str
+        What happens, in words.
+    one : Statistic
+        Its probability.
+    """
+    found = Event(target, said, one.best.estimate, one.failed)
+    method = method_for(findings.ds, event=True)
+    if method is None or one.best.estimate.value in (0.0, 1.0):
+        return found
+    verb = ("lowers the probability", "raises the probability")
+    try:
+        ranking = ranking_of(findings, target, method, verb)
+    except InputError as refused:
+        return replace(found, ranking=Ranking(target, method, reason=str(refused)))
+    found = replace(found, ranking=ranking)
+    if ranking.leader is None:
+        return found
+    over = ranking.leader.inputs[0]
+    curve = curve_over(findings, target, method, over)
+    attrs = findings.ds[over].attrs
+    middle = float(np.median(findings.rows[over].values))
+    return replace(found, over=over, curve=curve, over_unit=unit_for(attrs["units"], abs(middle)))
+
+
+def curve_over(findings: Findings, target: str, method: str, over: str) -> EventCurve | None:
+    """Return the probability of an event over an input."""
+    rows = findings.rows
+    hits = next(chosen(rows, method, [target])).values
+    return event_curve(hits, independent_inputs(rows)[over], replicates_of(rows))

@@ -1,0 +1,89 @@
+"""What is not settled, and how many rows would settle it: intervals narrow as one over root n."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import ceil, floor, isfinite, log10
+
+from uq.conclusions.parts import Event, Quantity
+from uq.conclusions.promises import Promise
+from uq.wording import percent
+
+SHARE = 0.2
+"""A probability is settled if half its interval is at most this part of the rarer side ..."""
+
+POINT = 0.01
+"""... or at most a percentage point."""
+
+BOUND = 0.1
+"""A promise is settled if it is within this part of the quantile that it bounds (of a life), or of
+the likely range."""
+
+MOST = 100.0
+"""Beyond so many times the rows, the root of n is no forecast."""
+
+
+@dataclass(frozen=True)
+class Unsettled:
+    """Something that the rows do not settle.
+
+    Attributes
+    ----------
+    what : str
+        A clause.
+    factor : float
+        How many times the rows would settle it.
+    """
+
+    what: str
+    factor: float
+
+
+def unsettled(quantity: Quantity) -> Iterator[Unsettled]:
+    """Yield what is not settled about a quantity."""
+    for event in quantity.events:
+        yield from _of_share(event)
+    if quantity.promise is not None:
+        yield from _of_promise(quantity.promise, quantity)
+    rankings = [quantity.ranking, *(event.ranking for event in quantity.events)]
+    for ranking in rankings:
+        if ranking is not None and isfinite(ranking.rows_factor):
+            yield Unsettled(ranking.reason, ranking.rows_factor)
+
+
+def _of_share(event: Event) -> Iterator[Unsettled]:
+    one = event.share
+    if not one.has_interval:
+        return
+    half = (one.high - one.low) / 2
+    goal = max(SHARE * min(one.value, 1 - one.value), POINT)
+    if half > goal:
+        what = f"how many {event.said} is known to {percent(half).removesuffix(' %')} points"
+        yield Unsettled(what, (half / goal) ** 2)
+
+
+def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
+    likely = quantity.range
+    if likely is None:
+        return
+    for bound, estimate, end in (
+        (promise.lower, likely.low, promise.quantiles[0].low),
+        (promise.upper, likely.high, promise.quantiles[1].high),
+    ):
+        reached = bound if isfinite(bound) else end
+        if not (isfinite(reached) and isfinite(estimate.value)):
+            continue
+        scale = abs(estimate.value)
+        if not promise.is_life:
+            scale = abs(likely.high.value - likely.low.value)
+        away = abs(estimate.value - reached)
+        # Beyond, the quantile is where values jump, and nearly any number of rows bounds it badly.
+        if isfinite(scale) and BOUND * scale < away < BOUND * scale * MOST**0.5:
+            text, best = promise.unit.text(reached), promise.unit.text(estimate.value)
+            what = f"{text} is promised where {best} is likely ({quantity.words})"
+            yield Unsettled(what, (away / (BOUND * scale)) ** 2)
+
+
+def rows_in_words(rows: float) -> str:
+    """Return a number of rows, rounded up to two digits."""
+    digit = 10 ** max(floor(log10(rows)) - 1, 0)
+    return f"{ceil(rows / digit) * digit:,}".replace(",", " ")

@@ -1,0 +1,107 @@
+"""What half the scatter of an input would change, from the rows that exist: they are weighted."""
+
+from collections.abc import Iterator, Sequence
+from math import isfinite, sqrt
+
+import xarray as xr
+
+from uq.analysis.what_if import answer as weighted
+from uq.conclusions.parts import Quantity, Tightened
+from uq.conclusions.words import Unit
+from uq.errors import InputError, RunError
+from uq.estimate import Estimate
+from uq.indices.targets import split_name
+from uq.inputs.distributions import LogUniform
+from uq.inputs.law import Law
+from uq.rows.elements import study_file_of
+from uq.study.file import Tied
+
+_WIDTHS = ("sd", "cv", "sigma")
+
+
+def halved(law: Law) -> dict[str, float]:
+    """Return the arguments that give a law half its scatter about its middle; none if unknown.
+
+    Parameters
+    ----------
+    law : Law
+    """
+    for name in _WIDTHS:
+        if (width := getattr(law, name, None)) is not None:
+            return {name: width / 2}
+    lower, upper = getattr(law, "lower", None), getattr(law, "upper", None)
+    if lower is None or upper is None:
+        return {}
+    if isinstance(law, LogUniform):
+        centre, ratio = sqrt(lower * upper), (upper / lower) ** 0.25
+        return {"lower": centre / ratio, "upper": centre * ratio}
+    mode: float | None = getattr(law, "mode", None)
+    middle = (lower + upper) / 2 if mode is None else mode
+    return {"lower": (lower + middle) / 2, "upper": (upper + middle) / 2}
+
+
+def changes_of(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> dict[str, float]:
+    """Return the entries of the study file that give inputs half their scatter.
+
+    None where nothing is promised of the quantity, or a law has no middle.
+    """
+    laws = study_file_of(ds).uncertain
+    changes: dict[str, float] = {}
+    for name in inputs:
+        law = laws[name]
+        changed = {} if isinstance(law, Tied) else halved(law)
+        if not changed:
+            return {}
+        changes |= {f"uncertain.{name}.{key}": value for key, value in changed.items()}
+    return changes if any(_promised(quantity)) else {}
+
+
+def tightened(ds: xr.Dataset, quantity: Quantity, inputs: Sequence[str]) -> Iterator[Tightened]:
+    """Yield what half the scatter of some inputs would change about a quantity.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    quantity : Quantity
+    inputs : sequence of str
+        All of them at once.
+    """
+    changes = changes_of(ds, quantity, inputs)
+    if not changes:
+        return
+    names = tuple(inputs)
+    try:
+        found = weighted(ds, changes)
+    except (InputError, RunError) as refused:
+        yield Tightened(names, "", reason=f"the rows cannot show what it would change ({refused})")
+        return
+    described = found.summary.outputs.get(quantity.name)
+    for key, what, before, unit in _promised(quantity):
+        one = described.find(*key) if described is not None else None
+        if one is None:
+            yield Tightened(names, what, reason="the rows cannot show what it would change")
+        elif not isfinite(one.best.estimate.value):
+            why = one.best.estimate.reason
+            yield Tightened(
+                names, what, reason=f"the rows cannot show what it would change ({why})"
+            )
+        else:
+            is_share = key[0] == "thresholds"
+            after, rows = one.best.estimate, found.effective_rows
+            yield Tightened(names, what, before, after, is_share, unit, "", rows)
+
+
+def _promised(quantity: Quantity) -> Iterator[tuple[tuple[str, ...], str, Estimate, Unit]]:
+    """Yield the numbers that matter: key, words, the number as it is, and its unit."""
+    for event in quantity.events:
+        side = "below" if "<" in event.name else "above"
+        key = ("thresholds", split_name(event.name)[2], side)
+        yield key, f"the share of rows that {event.said}", event.share, Unit()
+    promise = quantity.promise
+    if promise is None or promise.of_magnitude:  # the quantiles of the rows have a sign
+        return
+    ends = (round(1 - promise.coverage, 12), promise.coverage)
+    for p, before in zip(ends, promise.quantiles, strict=True):
+        if isfinite(before.value):
+            yield ("quantiles", repr(p)), f"the {100 * p:g} % quantile", before, promise.unit

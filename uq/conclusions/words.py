@@ -1,0 +1,133 @@
+"""Inputs and elements by their names, and numbers in the units that a person would use."""
+
+import re
+from collections.abc import Sequence
+from math import ceil, floor, isfinite, log10
+from typing import NamedTuple
+
+import xarray as xr
+
+from uq.estimate import Estimate
+from uq.rows.element import Element
+from uq.units import beside, powers, unit_of
+from uq.wording import percent, percent_interval
+
+_TWIN = re.compile(r"(.+)_(\d+)")
+
+
+class Unit(NamedTuple):
+    """A unit in which numbers are shown.
+
+    Attributes
+    ----------
+    name : str
+        "" for a pure number.
+    per : float
+        What numbers are divided by.
+    """
+
+    name: str = ""
+    per: float = 1.0
+
+    def number(self, value: float, towards: float = 0.0) -> str:
+        """Return a number in this unit to three digits; `towards` -inf or inf rounds that way."""
+        return rounded(value / self.per, towards)
+
+    def text(self, value: float, towards: float = 0.0) -> str:
+        """Return a number with its unit."""
+        if not isfinite(value):
+            return "never" if value > 0 else "-"
+        return beside(self.number(value, towards), self.name)
+
+    def between(self, low: float, high: float, joined: str = " to ") -> str:
+        """Return two numbers with their unit once."""
+        if not (isfinite(low) and isfinite(high)):
+            return f"{self.text(low)}{joined}{self.text(high)}"
+        return beside(f"{self.number(low)}{joined}{self.number(high)}", self.name)
+
+    def bare_between(self, low: float, high: float) -> str:
+        """Return the ends of an interval beside a number that has the unit."""
+        return f"{self.number(low)} to {self.number(high)}"
+
+
+def rounded(value: float, towards: float = 0.0) -> str:
+    """Return a number to three digits; `towards` -inf or inf rounds down or up."""
+    if value == 0 or not isfinite(value):
+        return f"{value:.3g}"
+    digit = 10.0 ** (floor(log10(abs(value))) - 2)
+    places = value / digit
+    if towards and abs(places - round(places)) > 1e-9:
+        places = ceil(places) if towards > 0 else floor(places)
+    return f"{places * digit:.3g}"
+
+
+def unit_for(units: str, typical: float) -> Unit:
+    """Return the unit for numbers of a typical size.
+
+    Parameters
+    ----------
+    units : str
+        CF unit string.
+    typical : float
+        NaN if unknown.
+    """
+    found = unit_of(units, typical)
+    return Unit() if found.name == "1" else Unit(powers(found.name), found.size)
+
+
+def called(name: str) -> str:
+    """Return an input or output in words: ``contact stiffness``."""
+    return name.replace("_", " ")
+
+
+def called_together(names: Sequence[str]) -> str:
+    """Return several inputs in words: ``both bearing constants``, ``stiffness x and stiffness y``.
+
+    Parameters
+    ----------
+    names : sequence of str
+    """
+    stems = {found[1] for name in names if (found := _TWIN.fullmatch(name))}
+    if len(names) > 1 and len(stems) == 1 and all(map(_TWIN.fullmatch, names)):
+        (stem,) = stems
+        count = "both" if len(names) == 2 else f"all {len(names)}"
+        return f"{count} {_plural(called(stem))}"
+    words = [called(name) for name in names]
+    return " and ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+def twin_of(name: str) -> str:
+    """Return what the name of an input is without its number: ``unbalance`` of ``unbalance_2``."""
+    found = _TWIN.fullmatch(name)
+    return found[1] if found else name
+
+
+def _plural(words: str) -> str:
+    if words.endswith("y") and words[-2:-1] not in "aeiou":
+        return f"{words[:-1]}ies"
+    return words + ("es" if words.endswith(("s", "x")) else "s")
+
+
+def element_called(ds: xr.Dataset, element: Element) -> str:
+    """Return an element in words: ``time to wear depth, left, 250 µm``."""
+    words = [element.meaning]
+    for dim, value in element.place.items():
+        attrs = ds[element.output][dim].attrs if dim in ds[element.output].coords else {}
+        if isinstance(value, str):
+            words.append(value)
+        elif attrs.get("units") in ("m", "s", "Hz"):
+            words.append(unit_for(attrs["units"], float(value)).text(float(value)))
+        else:
+            words.append(f"{dim} {value:g}")
+    return ", ".join(words)
+
+
+def sentence(text: str) -> str:
+    """Return text as a sentence."""
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def share_text(one: Estimate) -> str:
+    """Return a share in per cent, with its interval."""
+    interval = f" ({percent_interval(one.low, one.high)})" if one.has_interval else ""
+    return percent(one.value) + interval

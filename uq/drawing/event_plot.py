@@ -1,0 +1,63 @@
+"""The figure of the probability of an event over the input that decides it."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from uq.conclusions.answer import answer
+from uq.conclusions.parts import Event
+from uq.drawing.panel import column, finish, title
+from uq.drawing.style import INK, styled
+from uq.drawing.words import as_label, labelled
+from uq.errors import InputError
+
+
+@styled
+def event_probability(
+    ds: xr.Dataset, output: str, *, event: Event | None = None, axes: Axes | None = None
+) -> Figure:
+    """Draw the probability of an event in parts of the input that decides it, with 95 % intervals.
+
+    The dashed line is the probability over all rows.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A result.
+    output : str
+        The event, such as ``P(life<86400.0)`` or ``P(regime=periodic)``.
+    event : Event, optional
+        What is known of it, if already computed.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default a new figure.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InputError
+        When the study asks for no such event, or no input is known to decide it.
+    """
+    event = event or next((one for one in answer(ds).events if one.name == output), None)
+    if event is None or event.curve is None:
+        raise InputError(f"'{output}': no input is known to decide it, or the study does not ask")
+    curve, colour = event.curve, INK
+    edges = curve.edges / event.over_unit.per
+    value, low, high = np.array([one.numbers for one in curve.shares]).T
+    (panel,) = column(axes, 2.1)
+    band = (_ended(low), _ended(high))
+    panel.fill_between(edges, *band, step="post", color=colour, alpha=0.25, lw=0)
+    panel.stairs(value, edges, baseline=None, color=colour, lw=1.4)
+    panel.axhline(event.share.value, color="0.4", ls="--", lw=0.9)
+    panel.set(ylim=(-0.02, 1.02), ylabel="Share of rows")
+    title(panel, as_label(f"share: {event.said}", width=46))
+    panel.set_xlabel(labelled(ds[event.over], event.over_unit.name))
+    return finish(panel)
+
+
+def _ended(values: np.ndarray) -> np.ndarray:
+    """Return one number for each edge of the steps."""
+    return np.append(values, values[-1])

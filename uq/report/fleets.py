@@ -1,0 +1,46 @@
+"""What a report says of fleets: as many units as a sample has."""
+
+from collections.abc import Iterator
+from math import isfinite
+
+from uq.analysis.findings import Findings
+from uq.analysis.fleet import Fleet
+from uq.analysis.fleet_numbers import Banded
+from uq.estimate import Estimate
+from uq.report.cells import Cell, Table
+from uq.units import TimeUnit, time_unit
+from uq.wording import interval, known, number
+
+HEADER = ("life", "quantity", "all samples", "5 % of samples", "95 % of samples")
+
+
+def fleet_table(findings: Findings) -> Table | None:
+    """Return the lives of fleets of a result; None where a sample has a single unit."""
+    found = findings.fleets
+    if not found:
+        return None
+    rows = [row for one in found for row in _rows(one)]
+    return Table(f"Fleets of {found[0].size} units, with 95 % intervals", HEADER, rows)
+
+
+def _rows(one: Fleet) -> Iterator[tuple[Cell, ...]]:
+    for p, banded in one.first.items():
+        value = banded.estimate.value
+        unit = time_unit(value if isfinite(value) else 0.0)
+        yield _row(one.output, f"{100 * p:g} % quantile of the first [{unit.name}]", banded, unit)
+    for time, (failed, at_most) in one.by.items():
+        unit = time_unit(time)
+        by = f"by {number(time / unit.seconds)} {unit.name}"
+        yield _row(one.output, f"number ended {by}", failed)
+        yield _row(one.output, f"P(none ended {by})", at_most)
+
+
+def _row(name: str, quantity: str, one: Banded, unit: TimeUnit | None = None) -> tuple[Cell, ...]:
+    per = unit.seconds if unit else 1.0
+    cells = (_cell(end, per) for end in (one.estimate, one.low, one.high))
+    return Cell(name), Cell(quantity), *cells
+
+
+def _cell(one: Estimate, per: float) -> Cell:
+    key = one.value if isfinite(one.value) else None
+    return Cell(known(one, per=per), interval(one, per) or one.reason, key)

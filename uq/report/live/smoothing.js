@@ -1,0 +1,124 @@
+// Weights of rows, smoothed, and whether they can be trusted: as uq/population/smoothing.py.
+// A. Vehtari et al., "Pareto smoothed importance sampling", J. Mach. Learn. Res. 25, 72 (2024).
+
+const FEWEST = 5, HOPELESS = 0.7, NEGLIGIBLE = 1e-3, ROUNDING = 64 * Number.EPSILON;
+
+function total(numbers) {
+  let sum = 0;
+  for (const one of numbers) sum += one;
+  return sum;
+}
+
+// The number of rows of equal weight that are worth as much (L. Kish).
+function effectiveRows(numbers) {
+  let sum = 0, squares = 0;
+  for (const one of numbers) { sum += one; squares += one * one; }
+  return squares > 0 ? sum * sum / squares : 0;
+}
+
+// The sum of each sample of several rows, else the numbers themselves.
+function perSample(numbers, sample) {
+  if (!sample) return numbers;
+  const sums = new Map();
+  numbers.forEach((one, row) => sums.set(sample[row], (sums.get(sample[row]) ?? 0) + one));
+  return Float64Array.from(sums.values());
+}
+
+// Shape and scale of a generalised Pareto law of ascending numbers (J. Zhang, M. A. Stephens,
+// Technometrics 51, 316 (2009)).
+function generalisedPareto(excess) {
+  const n = excess.length, points = 30 + Math.floor(Math.sqrt(n));
+  const quartile = excess[Math.floor(n / 4 + 0.5) - 1];
+  const shapeOf = theta => {
+    let sum = 0;
+    for (const one of excess) sum += Math.log1p(-theta * one);
+    return sum / n;
+  };
+  const found = [];
+  for (let i = 0; i < points; i++) {
+    const theta = 1 / excess[n - 1] + (1 - Math.sqrt(points / (i + 0.5))) / (3 * quartile);
+    if (theta === 0) continue;
+    const shape = shapeOf(theta);
+    found.push([theta, n * (Math.log(-theta / shape) - shape - 1)]);
+  }
+  const most = Math.max(...found.map(([, likelihood]) => likelihood));
+  let sum = 0, weights = 0;
+  for (const [theta, likelihood] of found) {
+    const weight = Math.exp(likelihood - most);
+    sum += theta * weight;
+    weights += weight;
+  }
+  const theta = sum / weights, shape = shapeOf(theta);
+  return [shape, -shape / theta];
+}
+
+function shrunk(shape, size) {
+  return (size * shape + 5) / (size + 10);
+}
+
+function tailSize(rows) {
+  return Math.ceil(Math.min(rows / 5, 3 * Math.sqrt(rows)));
+}
+
+// The largest of some numbers, ascending.
+function largest(numbers, count) {
+  let kept = [], least = -Infinity;
+  const top = () => Float64Array.from(kept).sort().slice(-count);
+  for (let i = 0; i < numbers.length; i++) {
+    if (!(numbers[i] > least)) continue;
+    kept.push(numbers[i]);
+    if (kept.length < 8 * count) continue;
+    kept = [...top()];
+    least = kept[0];
+  }
+  return top();
+}
+
+// The shape of the law of the largest; -Infinity where all are equal, Infinity where they are few.
+function tailShape(numbers) {
+  const n = numbers.length, count = tailSize(n), top = largest(numbers, count + 1), most = top.at(-1);
+  const counted = numbers.filter(one => one > NEGLIGIBLE * most), m = counted.length;
+  if (m === 0 || (m === n && most - numbers.reduce((a, b) => Math.min(a, b)) <= ROUNDING * most)) return -Infinity;
+  if (m < FEWEST) return Infinity;
+  const excess = m > count && top[1] > top[0] ? top.slice(1).map(one => one - top[0]) : counted.sort();
+  if (excess.at(-1) === excess[0]) return -Infinity;
+  return shrunk(generalisedPareto(excess)[0], excess.length);
+}
+
+function withSmoothTail(raw) {
+  const count = tailSize(raw.length), top = largest(raw, count + 1), cut = top[0], most = top.at(-1);
+  if (!(top[1] > cut)) return raw;
+  const tail = [];
+  raw.forEach((one, row) => { if (one > cut) tail.push(row); });
+  tail.sort((a, b) => raw[a] - raw[b] || a - b);
+  const [shape, scale] = generalisedPareto(tail.map(row => raw[row] - cut)), k = shrunk(shape, count);
+  const weights = Float64Array.from(raw);
+  tail.forEach((row, i) => {
+    const p = (i + 0.5) / count;
+    weights[row] = Math.min(cut + scale * Math.expm1(-k * Math.log1p(-p)) / k, most);
+  });
+  return weights;
+}
+
+function smoothed(logWeights, sample) {
+  const most = logWeights.reduce((a, b) => Math.max(a, b));
+  const raw = logWeights.map(one => Math.exp(one - most));
+  const ofSamples = perSample(raw, sample), k = tailShape(ofSamples);
+  const weights = isFinite(k) ? withSmoothTail(raw) : raw, mean = total(weights) / weights.length;
+  return {
+    weights: weights.map(one => one / mean), k, rows: ofSamples.length,
+    effective: effectiveRows(perSample(weights, sample)), refusal: refusal(k, ofSamples.length),
+  };
+}
+
+// Why weights cannot be trusted, or "".
+function refusal(k, rows) {
+  const most = rows > 10 ? Math.min(HOPELESS, 1 - 1 / Math.log10(rows)) : -Infinity;
+  if (k <= most || k === -Infinity) return "";
+  if (k === Infinity) return `fewer than ${FEWEST} samples have weight there`;
+  if (k < HOPELESS) {
+    const more = Math.max(Math.ceil(10 ** (1 / (1 - Math.max(k, 0)))) - rows, 1);
+    return `Pareto k = ${k.toFixed(2)} is above ${most.toFixed(2)}: add ${more} samples`;
+  }
+  return `Pareto k = ${k.toFixed(2)}: the rows hardly visit what these laws would; run them as a study`;
+}

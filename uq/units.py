@@ -1,0 +1,95 @@
+"""The unit in which a quantity is read: prefixed, an angle in degrees, a time in hours or years."""
+
+import re
+from collections.abc import Iterable
+from math import floor, inf, isfinite, log10, pi
+from typing import NamedTuple
+
+import numpy as np
+
+_PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "F", "ohm", "Pa", "rad", "Hz"}
+_PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 3: "k", 6: "M", 9: "G"}
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SMALLEST, _LARGEST = 0.1, 1e4  # numbers that are read as they are
+_SMALLEST_IN_DEGREES = 1e-3  # rad
+
+DEGREES = "°"
+
+
+class Unit(NamedTuple):
+    """A unit for readers: its name, as in CF but for prefixes, and its size in the CF unit."""
+
+    name: str
+    size: float
+
+
+def beside(number: str, unit: str) -> str:
+    """Return a number with its unit: ``250 µm``, ``12°``; of a pure number without."""
+    return f"{number}{'' if unit == DEGREES else ' '}{unit}".strip().removesuffix(" 1")
+
+
+class TimeUnit(NamedTuple):
+    """A unit of time, its length [s], and the time [s] from which it is used."""
+
+    name: str
+    seconds: float
+    used_from: float
+
+
+_DAY = 86400.0
+_YEAR = 365.25 * _DAY
+_TIME_UNITS = (
+    TimeUnit("seconds", 1.0, 0.0),
+    TimeUnit("hours", 3600.0, 3600.0),
+    TimeUnit("days", _DAY, 2 * _DAY),
+    TimeUnit("years", _YEAR, 2 * _YEAR),
+)
+
+
+def time_unit(seconds: float) -> TimeUnit:
+    """Return the usual unit of a time [s] that is not negative."""
+    return [unit for unit in _TIME_UNITS if seconds >= unit.used_from][-1]
+
+
+def unit_of(units: str, typical: float) -> Unit:
+    """Return the unit in which a quantity is read.
+
+    Parameters
+    ----------
+    units : str
+        CF unit string: ``m``, ``N m-1``.
+    typical : float
+        A typical value, in `units`; NaN or 0 if unknown. A median suits numbers in a table, the
+        largest magnitude an axis.
+
+    Returns
+    -------
+    Unit
+        250 µm for 0.00025 m; degrees for radians; hours, days or years for long times; ``10⁻¹⁵ m2
+        N-1`` for a unit that takes no prefix. The unit itself for a pure number.
+    """
+    size = abs(typical) if isfinite(typical) else 0.0
+    if units == "s" and size < inf and time_unit(size).name != "seconds":
+        return Unit(*time_unit(size)[:2])
+    if units == "rad" and (size >= _SMALLEST_IN_DEGREES or size == 0):
+        return Unit(DEGREES, pi / 180)
+    if units == "1" or size == 0 or _SMALLEST <= size < _LARGEST:
+        return Unit(units, 1.0)
+    power = 3 * floor(log10(size) / 3)
+    name = f"10{str(power).translate(_RAISED)} {units}"
+    if units.split(" ")[0] in _PREFIXED and power in _PREFIXES:
+        name = _PREFIXES[power] + units
+    return Unit(name, float(f"1e{power}"))
+
+
+def typical(values: Iterable[float]) -> float:
+    """Return the median of the magnitudes that are neither 0 nor infinite; 0 if there is none."""
+    sizes = np.abs(np.fromiter(values, float))
+    known = sizes[np.isfinite(sizes) & (sizes > 0)]
+    return float(np.partition(known, len(known) // 2)[len(known) // 2]) if len(known) else 0.0
+
+
+def powers(unit: str) -> str:
+    """Return a CF unit as it is printed: ``m2 N-1`` becomes ``m² N⁻¹``, ``ohm`` an omega."""
+    unit = re.sub(r"(?<=[A-Za-z])-?\d+", lambda found: found[0].translate(_RAISED), unit)
+    return re.sub(r"\bohm\b", "Ω", unit)
