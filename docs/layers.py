@@ -19,7 +19,7 @@ LAYERS = (
     ("rows",),
     ("indices", "population", "store"),
     ("analysis", "running"),
-    ("conclusions",),
+    ("conclusions", "learning"),
     ("drawing", "upkeep", "exploring"),
     ("report",),
     ("cli",),

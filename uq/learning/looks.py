@@ -75,7 +75,16 @@ class Look:
         """Return the logarithm of the likelihood of an inspection, given `truth`."""
         if one.kind in OUTCOMES:
             return log_outcome(one.kind, truth, np.full(truth.shape, one.time))
+        if self.declared.is_angle:
+            truth = self._angle(one, truth)
         return log_likelihood(one, truth, model_cv)
+
+    def _angle(self, one: Inspection, truth: Floats) -> Floats:
+        """Return an angle on the turn of the value measured; of a limit, its magnitude."""
+        if one.kind is not Kind.MEASURED or one.value is None:
+            return np.abs(truth)
+        turn = 2 * np.pi if self.unit == "rad" else 360.0
+        return one.value + (truth - one.value + turn / 2) % turn - turn / 2
 
     def bounded(self, one: Inspection, rows: NDArray[np.intp], longer: Floats) -> Mask:
         """Return where only a bound of the truth is known, shape (n, g)."""
@@ -84,9 +93,8 @@ class Look:
             last = np.where(np.isfinite(self.depths.lives[rows]), self.depths.lives[rows], 0.0)
             beyond = one.time / longer > last.max(axis=1, keepdims=True)
             return beyond & self._stops(rows)[:, None]
-        if one.kind in OUTCOMES:
-            return self.censored[rows, None] & (self.values[rows, None] * longer < (one.time or 0))
-        return np.broadcast_to(self.censored[rows, None], longer.shape)
+        most = (one.time or 0.0) if one.kind in OUTCOMES else reach(one)
+        return self.censored[rows, None] & (self.values[rows, None] * longer < most)
 
     def _stops(self, rows: NDArray[np.intp]) -> Mask:
         assert self.depths is not None
@@ -178,17 +186,23 @@ def _depths(ds: xr.Dataset) -> Iterator[tuple[str, Look]]:
             yield name, Look(name, shown, np.empty(0), worn, np.asarray(cut.any(axis=1)))
 
 
+def reach(one: Inspection) -> float:
+    """Return the largest value that an inspection can tell from larger ones."""
+    if one.detection_90 is not None:
+        return one.detection_90
+    assert one.value is not None
+    if one.kind is not Kind.MEASURED:
+        return one.value
+    if one.cv is not None:
+        return one.value * float(np.exp(_REACH * one.cv))
+    return one.value + _REACH * (one.sd or 0.0)
+
+
 def _check_reach(look: Look, one: Inspection) -> None:
     """Refuse a depth beyond the last one that the result knows of."""
     assert look.depths is not None
-    if one.kind is not Kind.MEASURED or one.value is None:
-        most = one.value if one.detection_90 is None else one.detection_90
-    elif one.cv is not None:
-        most = one.value * float(np.exp(_REACH * one.cv))
-    else:
-        most = one.value + _REACH * (one.sd or 0.0)
-    last = float(look.depths.depths[-1])
-    if most is not None and most > last:
+    most, last = reach(one), float(look.depths.depths[-1])
+    if most > last:
         raise InputError(
             f"value = {one.value or most:g}: with its error it reaches {most:.3g} {look.unit},"
             f" beyond the last depth of the result, {last:g} {look.unit}; add a deeper one to the"

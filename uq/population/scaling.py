@@ -18,6 +18,7 @@ from uq.population.scale_laws import ConditionalScale, IndependentScale
 from uq.population.sums import LogTerm, law_of_sum
 from uq.rows.element import Element, RowLaw
 from uq.rows.elements import elements_of, study_file_of
+from uq.rows.weights import has_weights
 from uq.study.file import DependenceTable, StudyFile, Tied
 from uq.study.input_checks import laws_of
 
@@ -129,6 +130,9 @@ def integrated(
         exponents = {name: e for name, e in exponents.items() if level[name] in levels}
     if DESIGNS[rows.attrs["design"]].imported:
         return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
+    if has_weights(rows):
+        why = "its law has changed with the inspections, and rows are drawn from it"
+        return Integrated(None, dict.fromkeys(exponents, why) | kept)
     for name in exponents:
         if problem := _problem(name, inputs):
             kept[name] = problem

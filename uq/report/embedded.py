@@ -32,6 +32,7 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.results import failed
+from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
 from uq.units import Unit
 from uq.wording import in_unit
@@ -59,8 +60,10 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        None if no row follows the laws of the inputs, or no output has numbers.
+        None if no row follows the laws of the inputs, no output has numbers, or rows have weights.
     """
+    if has_weights(findings.ds):
+        return None
     analysis = analysis_of(findings.ds)
     outputs = [one for one in shown_outputs(findings.ds, analysis) if one not in findings.absent]
     whole = findings.rows

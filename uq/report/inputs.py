@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import xarray as xr
 
-from uq.analysis.sampled_inputs import compare, laws_and_values
+from uq.analysis.sampled_inputs import compare, laws_and_values, weights_of_samples
 from uq.conclusions.sources import mark
 from uq.drawing.words import unbroken
 from uq.inputs.law import Law
@@ -57,12 +57,12 @@ def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
 
 
 def _uncertain(ds: xr.Dataset) -> Table:
-    given = laws_and_values(ds)
+    given, weights = laws_and_values(ds), weights_of_samples(ds)
     rows = []
     for name, entry in study_file_of(ds).uncertain.items():
         quantiles = [Cell("")] * 3
         if name in given:
-            found = compare(*given[name]).sampled
+            found = compare(*given[name], weights).sampled
             quantiles = [Cell(number(value), key=float(value)) for value in found]
         rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
     header = ("input", "law", "5 % of rows", "50 %", "95 %", "known", "source")
