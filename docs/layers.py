@@ -20,7 +20,7 @@ LAYERS = (
     ("indices", "population", "store"),
     ("analysis", "running"),
     ("conclusions", "learning"),
-    ("drawing", "upkeep", "exploring"),
+    ("drawing", "exploring", "upkeep"),
     ("report",),
     ("cli",),
 )
@@ -29,7 +29,7 @@ LAYERS = (
 ``ground`` are the modules of ``uq`` itself; ``plots`` is the face of ``drawing``.
 """
 
-READERS = ("indices", "population", "analysis", "conclusions", "drawing", "report")
+READERS = ("indices", "population", "analysis", "conclusions", "learning", "drawing", "report")
 """Packages that read results, and therefore import none of the `RUNNERS`."""
 
 RUNNERS = ("running", "upkeep", "exploring")

@@ -74,8 +74,9 @@ def _show(ds: xr.Dataset, found: Learnt) -> None:
         grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in found.confounded[:5]])
     for output in dict.fromkeys(one.output for one in found.lives):
         _show_lives([one for one in found.lives if one.output == output])
-    text = f"The rows are worth {found.effective_rows:.0f} of equal weight, at least"
-    note(text + (f"; Pareto k = {found.pareto_k:.2f}." if isfinite(found.pareto_k) else "."))
+    worst = found.worst
+    text = f"The rows are worth {worst.effective:.0f} of equal weight, or more"
+    note(text + (f"; Pareto k = {worst.k:.2f}." if isfinite(worst.k) else "."))
 
 
 def _inputs(shown: Sequence[InputLearnt]) -> Iterator[tuple[str, ...]]:

@@ -7,11 +7,13 @@ from typing import Any
 import xarray as xr
 
 from uq import json_form
+from uq.analysis.as_json import quality_json
 from uq.errors import InputError
 from uq.learning.inputs_learnt import Confounded, InputLearnt, Spread, confounded, inputs_learnt
 from uq.learning.inspections import Inspection
 from uq.learning.remaining import ANY, Remaining, remaining
 from uq.learning.result import inspections_of, unit_quality
+from uq.population.smoothing import Smoothed
 from uq.rows.weights import has_weights
 
 
@@ -22,16 +24,15 @@ class Learnt:
     Attributes
     ----------
     inspections : list of Inspection
-    effective_rows, pareto_k : float
-        Of the worst weights: of rows as inspected units, or as units never inspected.
+    worst : Smoothed
+        The worst weights: of rows as inspected units, or as units never inspected.
     inputs : list of InputLearnt
     confounded : list of Confounded
     lives : list of Remaining
     """
 
     inspections: list[Inspection]
-    effective_rows: float
-    pareto_k: float
+    worst: Smoothed
     inputs: list[InputLearnt]
     confounded: list[Confounded]
     lives: list[Remaining]
@@ -56,8 +57,7 @@ def learnt(ds: xr.Dataset, by: Sequence[float] = ()) -> Learnt:
     quality = unit_quality(ds)
     return Learnt(
         inspections_of(ds),
-        min(one.effective for one in quality),
-        max(one.k for one in quality),
+        min(quality, key=lambda one: one.effective),
         list(inputs_learnt(ds)),
         confounded(ds),
         list(remaining(ds, by)),
@@ -80,8 +80,7 @@ def learnt_json(found: Learnt) -> dict[str, Any]:
     for one in found.lives:
         units.setdefault(one.unit, {})[one.output] = _life(one)
     return {
-        "effective_rows": found.effective_rows,
-        "pareto_k": json_form.number(found.pareto_k),
+        **quality_json(found.worst),
         "inspections": len(found.inspections),
         "inputs": {
             one.name: {
