@@ -24,8 +24,9 @@ class Unit(NamedTuple):
 
 
 def beside(number: str, unit: str) -> str:
-    """Return a number with its unit: ``250 µm``, ``12°``; of a pure number without."""
-    return f"{number}{'' if unit == DEGREES else ' '}{unit}".strip().removesuffix(" 1")
+    """Return a number with its unit, if it has one: ``250 µm``, ``12°``, ``3·10⁻¹⁵ m2 N-1``."""
+    between = "" if unit == DEGREES else "·" if unit.startswith("10") else " "
+    return f"{number}{between}{unit}".strip().removesuffix(" 1")
 
 
 class TimeUnit(NamedTuple):

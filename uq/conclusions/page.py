@@ -25,13 +25,13 @@ _STYLE = """
 .answer h3 { margin: .5rem 0 .1rem; font-size: 1rem; }
 .answer .answer-promise { font-size: 1.35rem; line-height: 1.3; font-weight: 600; }
 .answer-why { opacity: .75; font-size: .875rem; }
-.answer-bar { display: grid; grid-template-columns: 11rem minmax(0, 1fr) auto; gap: 0 .7rem;
+.answer-bar { display: grid; grid-template-columns: 11rem minmax(0, 1fr) 8.5rem; gap: 0 .7rem;
   align-items: center; margin: .3rem 0; }
 .answer-bar .answer-why { grid-column: 1 / -1; }
-.answer-size { font-size: .875rem; min-width: 8rem; }
+.answer-size { font-size: .875rem; }
 @media (max-width: 40rem), print {
-  .answer-bar { grid-template-columns: 8.5rem minmax(0, 1fr) auto; }
-  .answer-size { font-size: .8rem; min-width: 6.5rem; }
+  .answer-bar { grid-template-columns: 8rem minmax(0, 1fr) 7rem; }
+  .answer-size { font-size: .8rem; }
 }
 @media print { .answer > * { break-inside: avoid; } }
 """
@@ -80,8 +80,7 @@ def regimes(answer: Answer) -> Markup:
 def _verdict(answer: Answer) -> Markup:
     lead = answer.lead
     parts = [] if lead is None else list(_of_lead(lead, answer))
-    if answer.regimes_sentence:
-        parts.append(_line(answer.regimes_sentence))
+    parts += [_line(line) for line in answer.regime_lines]
     if answer.failed or lead is None:
         parts.insert(0, _line(answer.rows_sentence))
     return _block("verdict", parts)

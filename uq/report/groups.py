@@ -8,8 +8,9 @@ from markupsafe import Markup
 from uq.analysis.findings import Findings
 from uq.conclusions.page import sayings
 from uq.conclusions.parts import Answer
+from uq.greek import readable
 from uq.report.cells import Table
-from uq.report.indices import Method, Subject, output_of
+from uq.report.indices import Method, Subject, of_output, output_of
 from uq.report.outcomes import Outcome, result_tables, words_used
 from uq.report.pictures import Picture
 from uq.rows.elements import analysis_of, shown_outputs
@@ -61,7 +62,6 @@ def groups(
     methods : sequence of Method
     """
     ds = findings.ds
-    subjects = [one for method in methods for one in method.subjects]
     shown = shown_outputs(ds, analysis_of(ds))
     for name in dict.fromkeys((*(one.output for one in answer.quantities), *shown)):
         if name == REGIME:  # it has its own section
@@ -69,12 +69,12 @@ def groups(
         own = [one for one in found if one.output == name]
         group = Group(
             name,
-            str(ds[name].attrs["long_name"]),
+            readable(str(ds[name].attrs["long_name"])),
             sayings([one for one in answer.quantities[1:] if one.output == name]),
             list(result_tables(own)),
             words_used(own),
             [one for one in drawn if name in (one.of.name, output_of(one.of.name))],
-            [one for one in subjects if one.output == name],
+            of_output(methods, name),
         )
         if any(group[2:]):
             yield group

@@ -13,6 +13,7 @@ from uq.analysis.tracing.keys import key_of
 from uq.drawing.index_plot import subject
 from uq.errors import InputError
 from uq.estimate import Estimate
+from uq.greek import readable
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import TargetIndices, methods
 from uq.indices.targets import split_name
@@ -21,21 +22,19 @@ from uq.report.cells import SHARE, Cell, Table
 
 
 class Subject(NamedTuple):
-    """The indices of one target by one method.
+    """The indices of one target, by one method or several.
 
     Attributes
     ----------
     name : str
     words : str
-    refused : str
-        Why there are none, or "".
     tables : tuple of Table
     notes : tuple of str
+        Among them why a method has no indices.
     """
 
     name: str
     words: str
-    refused: str = ""
     tables: tuple[Table, ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -87,10 +86,10 @@ def _method(findings: Findings, name: str) -> Method:
 
 def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
     name, indices = found.name, found.indices
-    words = subject(ds, name)
+    words = readable(subject(ds, name))
     words = words[:1].upper() + words[1:]
     if found.refused:
-        return Subject(name, words, refused=found.refused)
+        return Subject(name, words, notes=(f"no indices by {method}: {found.refused}",))
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
     listed = ((f"Indices by {method}", kinds), (f"Second order, by {method}", pairs))
     traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
@@ -98,7 +97,23 @@ def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
         tables += (Table(f"Share of noise in the variance, by {method}", ("", "share"), line),)
-    return Subject(name, words, "", tables, indices.notes)
+    return Subject(name, words, tables, indices.notes)
+
+
+def of_output(methods: Sequence[Method], output: str) -> list[Subject]:
+    """Return the indices of an output, those of a target by all methods together.
+
+    Parameters
+    ----------
+    methods : sequence of Method
+    output : str
+    """
+    found: dict[str, Subject] = {}
+    for one in (one for method in methods for one in method.subjects if one.output == output):
+        known = found.get(one.name, Subject(one.name, one.words))
+        notes = (*dict.fromkeys(known.notes + one.notes),)
+        found[one.name] = known._replace(tables=known.tables + one.tables, notes=notes)
+    return list(found.values())
 
 
 def _table(

@@ -9,6 +9,7 @@ from uq.conclusions.sources import mark
 from uq.conclusions.words import unit_for
 from uq.contract import Floats
 from uq.drawing.words import unbroken
+from uq.greek import readable, symbol
 from uq.inputs.law import Law
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of
@@ -92,7 +93,7 @@ def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
 
 def _name(ds: xr.Dataset, name: str) -> Cell:
     attrs = ds[name].attrs
-    return Cell(name, f"{attrs['symbol']}: {attrs['long_name']}")
+    return Cell(name, f"{symbol(attrs['symbol'])}: {readable(attrs['long_name'])}")
 
 
 def _source(ds: xr.Dataset, name: str) -> tuple[Cell, Cell]:

@@ -22,7 +22,7 @@ from uq.report.embedded import rows_inside
 from uq.report.fleets import fleet_table
 from uq.report.groups import REGIME, groups
 from uq.report.headlines import headline
-from uq.report.indices import output_of, sensitivity_of
+from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.inputs import fixed_inputs, input_tables
 from uq.report.levels import levels_of
 from uq.report.outcomes import outcomes, regime_table, status_table
@@ -134,9 +134,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
             *(one for one in drawn if output_of(one.of.name) == REGIME),
             *pictures(findings, "rows"),
         ],
-        "regime_indices": [
-            one for method in methods for one in method.subjects if one.output == REGIME
-        ],
+        "regime_indices": of_output(methods, REGIME),
         "convergence": convergence_of(findings, found),
         "levels": levels_of(findings),
         "fleets": fleet_table(findings),

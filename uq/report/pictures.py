@@ -17,6 +17,7 @@ from uq.analysis.findings import Findings
 from uq.drawing.catalogue import Subject, drawables
 from uq.drawing.figure import lay_out
 from uq.drawing.style import styled
+from uq.greek import readable
 from uq.literals import plain
 from uq.plots import FIGURES
 from uq.report.paths import shortened
@@ -49,7 +50,7 @@ def pictures(findings: Findings, section: str, without: Container[str] = ()) -> 
     """
     for one in drawables(FIGURES, findings, section):
         if one.subject.name not in without:
-            yield picture(one.draw(), one.caption)._replace(of=one.subject)
+            yield picture(one.draw(), readable(one.caption))._replace(of=one.subject)
 
 
 @styled
