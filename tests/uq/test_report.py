@@ -212,7 +212,12 @@ def test_all_that_is_said_of_an_output_stands_together(asked, text):
     sections = re.split("<section", text)[1:]
     first = [one for one in sections if "life[side=left,depth=0.5]</small>" in one]
     assert len(first) == 1 and first[0].startswith(' id="output-1"')
-    for expected in ("B10 is the time", "Probabilities", "Indices by pawn", "life by regime"):
+    for expected in (
+        "B10 is the time",
+        "Probabilities",
+        "Indices of P(life[side=left,depth=0.5]&lt;1.0) by pawn",
+        "life by regime",
+    ):
         assert expected in first[0], expected
     assert "an angle" not in first[0]
     order = [re.search('id="([a-z-]+)', one)[1] for one in sections]

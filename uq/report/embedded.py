@@ -15,7 +15,7 @@ from uq.drawing.quantities import scale_of
 from uq.drawing.scatter_plot import leading
 from uq.drawing.style import LIMIT, ROWS
 from uq.drawing.symbols import literal
-from uq.drawing.words import element_in_words, in_words, powers, unbroken
+from uq.drawing.words import element_in_words, in_words, unbroken
 from uq.greek import readable
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
@@ -34,8 +34,7 @@ from uq.rows.elements import (
 )
 from uq.rows.results import failed
 from uq.study.file import AnalysisTable
-from uq.units import Unit
-from uq.wording import in_unit
+from uq.wording import threshold
 
 MOST_ROWS = 20_000
 """A page holds no more rows: a brush over them takes 0.1 s."""
@@ -157,7 +156,7 @@ def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict
 
 def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
     """Return the event whose probability is asked for."""
-    at = powers(in_unit(value, Unit(column["unit"] or "1", column["per"])))
+    at = threshold(value, element.units)
     label = f"|{column['label']}|" if element.is_angle else column["label"]
     return f"P({label} {'<' if element.is_lifetime else '>'} {at})"
 

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import xarray as xr
 
 from uq.analysis.findings import Findings
-from uq.analysis.tracing.keys import key_of
 from uq.drawing.index_plot import subject
 from uq.errors import InputError
 from uq.estimate import Estimate
@@ -17,6 +16,7 @@ from uq.greek import readable
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import TargetIndices, methods
 from uq.indices.targets import split_name
+from uq.keys import key_of
 from uq.methods.indices import S1, IndexKind, Null
 from uq.report.cells import SHARE, Cell, Table
 
@@ -91,12 +91,17 @@ def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
     if found.refused:
         return Subject(name, words, notes=(f"no indices by {method}: {found.refused}",))
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
-    listed = ((f"Indices by {method}", kinds), (f"Second order, by {method}", pairs))
+    listed = (
+        (f"Indices of {name} by {method}", kinds),
+        (f"Second order, of {name} by {method}", pairs),
+    )
     traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
     tables = tuple(_table(caption, one, indices.nulls, traced) for caption, one in listed if one)
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
-        tables += (Table(f"Share of noise in the variance, by {method}", ("", "share"), line),)
+        tables += (
+            Table(f"Share of noise in the variance of {name} by {method}", ("", "share"), line),
+        )
     return Subject(name, words, tables, indices.notes)
 
 
