@@ -85,7 +85,7 @@ def test_a_report_says_all_there_is_to_say(asked, text):
     for expected in (
         "kinds, version 1",
         "monte-carlo: independent rows",
-        "x_1: first input",
+        "x₁: first input",
         "uniform(lower = 0.01, upper = 0.99) m",
         "made up",
         "out-of-budget",
@@ -212,12 +212,8 @@ def test_all_that_is_said_of_an_output_stands_together(asked, text):
     sections = re.split("<section", text)[1:]
     first = [one for one in sections if "life[side=left,depth=0.5]</small>" in one]
     assert len(first) == 1 and first[0].startswith(' id="output-1"')
-    for expected in (
-        "B10 is the time",
-        "Probabilities",
-        "Indices of P(life[side=left,depth=0.5]&lt;1.0) by pawn",
-        "life by regime",
-    ):
+    of_event = "Indices of P(life[side=left,depth=0.5]&lt;1.0) by pawn"
+    for expected in ("B10 is the time", "Probabilities", of_event, "life by regime"):
         assert expected in first[0], expected
     assert "an angle" not in first[0]
     order = [re.search('id="([a-z-]+)', one)[1] for one in sections]
