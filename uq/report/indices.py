@@ -91,17 +91,13 @@ def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
     if found.refused:
         return Subject(name, words, notes=(f"no indices by {method}: {found.refused}",))
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
-    listed = (
-        (f"Indices of {name} by {method}", kinds),
-        (f"Second order, of {name} by {method}", pairs),
-    )
+    of = f"{name} by {method}"
+    listed = ((f"Indices of {of}", kinds), (f"Second order, of {of}", pairs))
     traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
     tables = tuple(_table(caption, one, indices.nulls, traced) for caption, one in listed if one)
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
-        tables += (
-            Table(f"Share of noise in the variance of {name} by {method}", ("", "share"), line),
-        )
+        tables += (Table(f"Share of noise in the variance of {of}", ("", "share"), line),)
     return Subject(name, words, tables, indices.notes)
 
 
