@@ -11,11 +11,11 @@ from computed import computed, kinds, linear, with_output
 from nested_studies import nested
 
 import uq as api
-from uq.analysis.tracing.keys import key_of, paths_of_numbers, value_at
-from uq.analysis.tracing.tracing import trace_json, traced
-from uq.analysis.tracing.verbs import VERBS
 from uq.errors import InputError
+from uq.keys import key_of, paths_of_numbers, value_at
 from uq.report import page
+from uq.tracing.tracing import trace_json, traced
+from uq.tracing.verbs import VERBS
 
 FAILING = {"fail_above": 0.9, "fail_how": "raise"}
 ASKED = {

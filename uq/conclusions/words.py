@@ -127,6 +127,12 @@ def sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}."
 
 
+def rows_in_words(rows: float) -> str:
+    """Return a number of rows, rounded up to two digits."""
+    digit = 10 ** max(floor(log10(rows)) - 1, 0)
+    return f"{ceil(rows / digit) * digit:,}".replace(",", " ")
+
+
 def share_text(one: Estimate) -> str:
     """Return a share in per cent, with its interval."""
     interval = f" ({percent_interval(one.low, one.high)})" if one.has_interval else ""

@@ -6,7 +6,7 @@ import pandas as pd
 
 from uq.analysis.convergence import enough
 from uq.analysis.findings import Findings
-from uq.analysis.tracing.keys import key_of
+from uq.keys import key_of
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.report.outcomes import Outcome
 from uq.report.pictures import Picture, pictures

@@ -9,12 +9,12 @@ from typing import NamedTuple
 import xarray as xr
 
 from uq.analysis.findings import Findings
-from uq.analysis.tracing.keys import key_of
 from uq.drawing.index_plot import subject
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import TargetIndices, methods
+from uq.keys import key_of
 from uq.methods.indices import S1, IndexKind, Null
 from uq.report.cells import Cell, Table
 from uq.report.pictures import Picture, pictures

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 from uq.analysis.findings import Findings
 from uq.analysis.level_shares import SOURCES
-from uq.analysis.tracing.keys import key_of
 from uq.estimate import Estimate
+from uq.keys import key_of
 from uq.methods.indices import S1
 from uq.report.cells import Cell, Table
 from uq.rows.nesting import is_nested

@@ -9,14 +9,14 @@ import xarray as xr
 from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary
-from uq.analysis.tracing.keys import key_of
 from uq.contract import Output, Status
 from uq.drawing.words import element_in_words, unbroken
 from uq.estimate import Estimate
+from uq.keys import key_of
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
 from uq.units import typical, unit_of
-from uq.wording import in_unit, percent, percent_interval
+from uq.wording import percent, percent_interval, threshold
 
 
 def status_table(ds: xr.Dataset, summary: Summary) -> Table:
@@ -83,10 +83,6 @@ class Outcome:
         """The unit of the other cells; empty for a pure number."""
         return Cell("" if self.unit.name == "1" else self.unit.name)
 
-    def in_its_unit(self, value: float) -> str:
-        """Return a number of this element, and its unit."""
-        return in_unit(value, self.unit)
-
     def per(self, one: Statistic) -> float:
         """Return the length of the unit in which a statistic is shown."""
         return self.unit.size if one.unit == self.declared.unit else 1.0
@@ -146,7 +142,7 @@ def _rows(
         else:
             note = "; ".join(filter(None, (one.more for one in here.values())))
             sign = "magnitude " if outcome.declared.is_angle else ""
-            place = Cell(f"{sign}{outcome.in_its_unit(at)}", key=at)
+            place = Cell(f"{sign}{threshold(at, outcome.declared.unit)}", key=at)
             yield outcome.label, place, *cells, Cell(note)
 
 

@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -26,17 +27,21 @@ from uq.report.inputs import fixed_inputs, input_tables
 from uq.report.levels import levels_of
 from uq.report.outcomes import outcomes, regime_table, result_tables, status_table, words_used
 from uq.report.pictures import pictures
+from uq.report.references import references
 from uq.rows.elements import study_file_of
 from uq.rows.results import failed, open_result
 from uq.rows.variables import outputs_of
 from uq.store.files import check_target, whole
-from uq.study.registry import find_model
 
 _SHOWN_TEXT = 50_000
 """Characters of the study's text that a page shows: a study may contain data files."""
 
 
-def write_report(result: str | Path, path: str | Path) -> None:
+def write_report(
+    result: str | Path,
+    path: str | Path,
+    lay_out: Callable[[xr.Dataset, str], str] | None = None,
+) -> None:
     """Write the report of a result as one self-contained HTML file.
 
     Parameters
@@ -44,6 +49,8 @@ def write_report(result: str | Path, path: str | Path) -> None:
     result : path-like
     path : path-like
         Written completely or not at all.
+    lay_out : callable, optional
+        Result, name of its file -> HTML: `page`, the default, or `uq.report.dossier.dossier`.
 
     Raises
     ------
@@ -55,7 +62,7 @@ def write_report(result: str | Path, path: str | Path) -> None:
     check_target(path, 0)
     if path.exists() and path.samefile(result):
         raise InputError(f"{path}: is the result itself; give the report another name")
-    text = page(ds, result.name)
+    text = (lay_out or page)(ds, result.name)
     with whole(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
@@ -75,6 +82,12 @@ def page(ds: xr.Dataset, name: str) -> str:
     str
     """
     return templates().get_template("page.html").render(_content(ds, name), file=name)
+
+
+def study_text(ds: xr.Dataset) -> dict[str, Any]:
+    """Return the text of the study as far as a page shows it, and whether that is cut."""
+    text = ds.attrs["study"]
+    return {"text": text.expandtabs(4)[:_SHOWN_TEXT], "text_is_cut": len(text) > _SHOWN_TEXT}
 
 
 @cache
@@ -142,17 +155,8 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "fleet_notes": fleet_notes(findings),
         "methods": methods,
         "rows_inside": rows_inside(findings, file),
-        "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
-        "text_is_cut": len(ds.attrs["study"]) > _SHOWN_TEXT,
+        **study_text(ds),
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
         "rerun": int((ds["rerun"].values != 0).sum()) if "rerun" in ds else 0,
-        "references": _references(ds),
+        "references": references(ds),
     }
-
-
-def _references(ds: xr.Dataset) -> tuple[str, ...] | None:
-    """Return the references that the model asks to cite, or None if it is not installed."""
-    try:
-        return find_model(ds.attrs["model"]).references
-    except InputError:
-        return None

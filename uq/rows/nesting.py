@@ -114,6 +114,13 @@ def one_of_each_sample(ds: xr.Dataset) -> xr.Dataset:
     return ds.isel(sample=(ds["unit"].values == 0) & (ds["repeat"].values == 0))
 
 
+def first_samples(ds: xr.Dataset, samples: int) -> xr.Dataset:
+    """Return the rows of the first samples of each replicate."""
+    chosen = ds["group"].values < samples
+    count = int(chosen.sum())
+    return ds.isel(sample=slice(count) if chosen[:count].all() else chosen)
+
+
 def levels_of(ds: xr.Dataset) -> dict[str, str]:
     """Return the level of each input of a result, by name."""
     return {name: level for name, (_, level) in _placed(ds).items()}
