@@ -20,7 +20,7 @@ from uq.literals import plain
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
 from uq.report.embedded import rows_inside
-from uq.report.fleets import fleet_table
+from uq.report.fleets import fleet_notes, fleet_table
 from uq.report.headlines import headline
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import fixed_inputs, input_tables
@@ -152,6 +152,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "lives_drawn": [one for one in drawn if one.of.name in lives],
         "levels": levels_of(findings),
         "fleets": fleet_table(findings),
+        "fleet_notes": fleet_notes(findings),
         "methods": methods,
         "rows_inside": rows_inside(findings, file),
         **study_text(ds),
