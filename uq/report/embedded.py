@@ -29,6 +29,7 @@ from uq.rows.elements import (
     are_independent,
     elements_of,
     flags,
+    has_independent_samples,
     replicates_of,
     shown_outputs,
 )
@@ -75,7 +76,7 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
     design = _design(rows)
     laws = tolerances(rows, elements)
-    if laws is not None and laws["of"]:
+    if laws is not None and laws["lives"]:
         design["intervals"] += (
             " Shares here are those of lives as computed; tables above, and other tolerances below,"
             " integrate what only scales a life."
@@ -203,20 +204,20 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         "independent": are_independent(rows),
         "replicate": None,
         "sample": None,
+        "samples": None,
     }
     if part is None:
         words = (
             "95 % intervals of shares are Wilson's, or those of Clopper and Pearson where hits or"
             " misses are fewer than 20; the band is Kolmogorov's."
         )
-    elif isinstance(part, Clusters):
-        words = "No intervals: the rows of a sample are not independent."
-        found |= {"sample": encoded(part, "<i4")}
     elif (count := len(np.unique(part))) < 2:
-        words = (
-            "No intervals: formulas for independent rows do not apply to this design, which has no"
-            " replicates."
-        )
+        several = "samples" if has_independent_samples(rows) else "replicates"
+        words = f"No intervals: they rest on the scatter between {several}, of which there is one."
+    elif isinstance(part, Clusters):
+        several = "samples" if has_independent_samples(rows) else "replicates"
+        words = f"95 % intervals of shares rest on the scatter between {count} {several}."
+        found |= {"sample": encoded(part, "<i4"), "samples": part.samples}
     else:
         words = f"95 % intervals of shares rest on the scatter between {count} replicates."
         found |= {"replicate": encoded(part, "<i4")}

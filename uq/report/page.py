@@ -20,7 +20,7 @@ from uq.literals import plain
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
 from uq.report.embedded import rows_inside
-from uq.report.fleets import fleet_table
+from uq.report.fleets import fleet_notes, fleet_table
 from uq.report.groups import REGIME, groups
 from uq.report.headlines import headline
 from uq.report.indices import of_output, output_of, sensitivity_of
@@ -151,6 +151,7 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "convergence": convergence_of(findings, found),
         "levels": levels_of(findings),
         "fleets": fleet_table(findings),
+        "fleet_notes": fleet_notes(findings),
         "methods": methods,
         "rows_inside": rows_inside(findings, file),
         **study_text(ds),
