@@ -20,7 +20,7 @@ LAYERS = (
     ("indices", "population", "store"),
     ("analysis", "running"),
     ("conclusions", "learning"),
-    ("drawing", "exploring", "upkeep"),
+    ("drawing", "tracing", "exploring", "upkeep"),
     ("report",),
     ("cli",),
 )
@@ -29,7 +29,16 @@ LAYERS = (
 ``ground`` are the modules of ``uq`` itself; ``plots`` is the face of ``drawing``.
 """
 
-READERS = ("indices", "population", "analysis", "conclusions", "learning", "drawing", "report")
+READERS = (
+    "indices",
+    "population",
+    "analysis",
+    "conclusions",
+    "learning",
+    "drawing",
+    "tracing",
+    "report",
+)
 """Packages that read results, and therefore import none of the `RUNNERS`."""
 
 RUNNERS = ("running", "upkeep", "exploring")

@@ -7,11 +7,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.contract import Floats
+from uq.contract import Floats, Output
 from uq.designs.levels import OWN, SHARED
 from uq.inputs.conditioning import ppf_within
 from uq.learning.looks import Look
-from uq.population.scaling import Inputs, free_scales, inputs_of
+from uq.population.scaling import Inputs, inputs_of, scalers
 from uq.rows.nesting import levels_of
 
 
@@ -62,7 +62,7 @@ def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> Scale | None:
     scaled = [look for look in looks if look.declared.is_lifetime or look.depths is not None]
     if not scaled:
         return None
-    common = [free_scales(inputs, look.declared.scales) for look in scaled]
+    common = [free_scales(inputs, look.declared) for look in scaled]
     names = [name for name in common[0] if all(name in one for one in common)]
     names = [name for name in names if levels[name] in (SHARED, OWN)]
     if not names:
@@ -74,3 +74,12 @@ def scale_of(rows: xr.Dataset, looks: Sequence[Look]) -> Scale | None:
     best = max(names, key=lambda name: (levels[name] == SHARED, spread(name)))
     exponents = {look.name: one[best] for look, one in zip(scaled, common, strict=True)}
     return Scale(best, levels[best], exponents, inputs.values[best], inputs)
+
+
+def free_scales(inputs: Inputs, output: Output) -> dict[str, float]:
+    """Return the exponent of each input that only scales lives and is independent of all others."""
+    return {
+        name: exponent
+        for name, exponent in scalers(inputs, output).items()
+        if inputs.laws[name].times is None and name not in inputs.correlated
+    }

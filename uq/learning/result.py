@@ -11,8 +11,9 @@ import xarray as xr
 from uq.contract import Floats
 from uq.errors import InputError, choices, nearest
 from uq.learning.inspections import Inspection, read_tables
+from uq.learning.integrated import free_scales
 from uq.learning.posterior import Posterior, Weighted
-from uq.population.scaling import free_scales, inputs_of
+from uq.population.scaling import inputs_of
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.variables import error_name, outputs_of
 from uq.rows.weights import WEIGHT, has_weights
@@ -182,7 +183,7 @@ def _rescaled(rows: xr.Dataset, name: str, values: Floats) -> dict[str, xr.DataA
     found = {one: rows[one].copy(data=values) for one in members}
     ratio = values / rows[name].values
     for output, declared in known.items():
-        exponent = free_scales(inputs, declared.scales).get(name) if declared.scales else None
+        exponent = free_scales(inputs, declared).get(name)
         for one in (output, error_name(output)) if exponent else ():
             if one in known:
                 of = rows[one]
