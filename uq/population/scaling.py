@@ -133,8 +133,7 @@ def integrated(
     if DESIGNS[rows.attrs["design"]].imported:
         return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
     if has_weights(rows):
-        why = "its law has changed with the inspections, and rows are drawn from it"
-        return Integrated(None, dict.fromkeys(exponents, why) | kept)
+        return Integrated(None, dict.fromkeys(exponents, "inspections have changed its law") | kept)
     for name in exponents:
         if problem := _problem(name, inputs) or _sign_problem(name, inputs):
             kept[name] = problem
