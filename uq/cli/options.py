@@ -24,7 +24,11 @@ ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 
 Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
 ModelReference = Annotated[
     str | None,
-    typer.Option("--model", metavar="PKG.MOD:ATTR", help="Use a model that is not installed."),
+    typer.Option(
+        "--model",
+        metavar="FILE.py",
+        help="Use a model that is not installed: FILE.py[:NAME], or PKG.MOD:ATTR.",
+    ),
 ]
 Workers = Annotated[
     int | None,
