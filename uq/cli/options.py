@@ -22,6 +22,9 @@ ModelName = Annotated[
 StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
 ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.")]
 Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
+Plain = Annotated[
+    bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
+]
 ModelReference = Annotated[
     str | None,
     typer.Option(
