@@ -13,19 +13,15 @@ ROOT = Path(__file__).parents[1]
 TEXTS = {"README": "index", "CONTRIBUTING": "contributing", "CHANGELOG": "changelog"}
 """Texts of the repository's root -> the pages that they become."""
 
-_NOTEBOOK = re.compile(r"\[([^\]]+)\]\((notebooks/[\w.-]+)\)")
 _DIRECTIVE = re.compile(r"^\{\{ ([a-z_]+)(?: ([\w-]+))? \}\}$", re.MULTILINE)
 
 
 def text(name: str) -> str:
-    """Return a text of the repository's root, its links as they are within the documentation.
-
-    Notebooks are no pages: they are named.
-    """
+    """Return a text of the repository's root, its links as they are within the documentation."""
     found = (ROOT / f"{name}.md").read_text(encoding="utf-8")
     for file, page in TEXTS.items():
         found = found.replace(f"]({file}.md", f"]({page}.md")
-    return _NOTEBOOK.sub(r"\1 (`\2`)", found).replace("](docs/", "](")
+    return found.replace("](docs/", "](")
 
 
 def expanded(page: str) -> str:

@@ -27,9 +27,11 @@ from uq.study.registry import find_model, model_names
 HOUSE = Path(__file__).parents[1]
 sys.path.insert(0, str(HOUSE / "docs"))
 
+import first_answer  # noqa: E402
 import generated  # noqa: E402
 import house  # noqa: E402
 import pages  # noqa: E402
+import sketches  # noqa: E402
 
 SOURCES = {
     str(path.relative_to(HOUSE)): path.read_text(encoding="utf-8")
@@ -206,6 +208,22 @@ def functions_called(action):
 
 def test_the_picture_of_the_house_is_what_its_script_draws():
     assert house.PICTURE.read_text() == house.picture(), "run: python docs/house.py"
+
+
+@pytest.mark.parametrize("machine", generated.machines())
+def test_the_picture_of_a_machine_is_what_its_script_draws_and_shown_where_it_is_explained(machine):
+    file = f"pictures/{machine}.svg"
+    drawn = sketches.SKETCHES[machine]().svg()
+    assert (HOUSE / "docs" / file).read_text() == drawn, "run: cd docs; python -m sketches"
+    assert f"](docs/{file})" in SOURCES["README.md"]
+    assert f"](../{file})" in SOURCES[f"docs/machines/{machine}.md"]
+
+
+def test_the_answer_that_the_readme_quotes_has_the_numbers_that_are_printed():
+    numbers = [
+        re.findall(r"\d+(?:\.\d+)?", t) for t in (first_answer.quoted(), first_answer.printed())
+    ]
+    assert len(numbers[0]) > 10 and numbers[0] == numbers[1], "run: python docs/first_answer.py"
 
 
 def test_every_key_and_every_law_is_described():

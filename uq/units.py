@@ -7,13 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-_PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "F", "ohm", "Pa", "rad", "Hz"}
+PREFIXED = {"m", "s", "N", "W", "J", "A", "V", "F", "ohm", "Pa", "rad", "Hz"}
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 3: "k", 6: "M", 9: "G"}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _SMALLEST, _LARGEST = 0.1, 1e4  # numbers that are read as they are
 _SMALLEST_IN_DEGREES = 1e-3  # rad
 
 DEGREES = "°"
+_TIME_WORDS = ("minutes", "hours", "days", "years")
 
 
 class Unit(NamedTuple):
@@ -24,8 +25,11 @@ class Unit(NamedTuple):
 
 
 def beside(number: str, unit: str) -> str:
-    """Return a number with its unit: ``250 µm``, ``12°``; of a pure number without."""
-    return f"{number}{'' if unit == DEGREES else ' '}{unit}".strip().removesuffix(" 1")
+    """Return a number with its unit, if it has one: ``250 µm``, ``12°``, ``3 × 10⁻¹⁵ m² N⁻¹``."""
+    if number == "1" and unit in _TIME_WORDS:
+        unit = unit.removesuffix("s")
+    between = "" if unit == DEGREES else " × " if unit.startswith("10") else " "
+    return f"{number}{between}{powers(unit)}".strip().removesuffix(" 1")
 
 
 class TimeUnit(NamedTuple):
@@ -77,7 +81,7 @@ def unit_of(units: str, typical: float) -> Unit:
         return Unit(units, 1.0)
     power = 3 * floor(log10(size) / 3)
     name = f"10{str(power).translate(_RAISED)} {units}"
-    if units.split(" ")[0] in _PREFIXED and power in _PREFIXES:
+    if units.split(" ")[0] in PREFIXED and power in _PREFIXES:
         name = _PREFIXES[power] + units
     return Unit(name, float(f"1e{power}"))
 

@@ -1,12 +1,14 @@
 """Numbers, intervals and laws as text, for tables on a terminal and in a report."""
 
 import re
-from math import floor, inf, isfinite, log10
+from collections.abc import Iterable
+from math import floor, inf, isfinite, isnan, log10
 from typing import Any
 
 from uq.estimate import Estimate
 from uq.literals import shown
-from uq.units import Unit, beside, time_unit, unit_of
+from uq.units import Unit, beside, powers, time_unit, unit_of
+from uq.written import Written
 
 
 def number(value: float | None) -> str:
@@ -15,13 +17,20 @@ def number(value: float | None) -> str:
 
 
 def quantity(value: float, units: str) -> str:
-    """Return a value [units, as in CF] with the unit in which it is read: ``13.75 kN m-1``."""
+    """Return a value [units, as in CF] with the unit in which it is read: ``13.75 kN m⁻¹``."""
+    if isnan(value):
+        return "-"
     return in_unit(value, unit_of(units, value))
 
 
 def in_unit(value: float, unit: Unit) -> str:
     """Return a value given in the CF unit as text: ``250 µm``, ``12°``, or a pure number."""
     return beside(number(value / unit.size), unit.name)
+
+
+def in_brackets(unit: Unit) -> str:
+    """Return a unit after the name of what is in it: `` [µm]``; "" for a pure number."""
+    return "" if unit.name == "1" else f" [{powers(unit.name)}]"
 
 
 def duration(seconds: float | None) -> str:
@@ -80,17 +89,46 @@ def failed_interval(bounds: Estimate | None, per: float = 1.0) -> str:
     return f"from {low} on" if high == "-" else f"{low} to {high}"
 
 
-def estimated(label: str, per: float = 1.0, is_magnitude: bool = False) -> str:
-    """Return the label of an estimate: ``P(>86400.0)`` is ``P(> 24)`` in a table of hours.
+def threshold(value: float, units: str) -> str:
+    """Return a threshold [units, as in CF] as it was written: ``24 hours``, ``12°``.
 
-    That of an angle's magnitude is ``P(|.| > 12)``.
+    One without a unit of its own is in the unit in which it is read.
     """
-    of = "|.| " if is_magnitude else ""
-    return re.sub(
-        r"^P\(([<>])(.+?)\)",
-        lambda found: f"P({of}{found[1]} {number(float(found[2]) / per)})",
-        label,
-    )
+    if isinstance(value, Written):
+        return beside(value.number, value.unit.name)
+    return quantity(value, units)
+
+
+def compared(name: str, is_angle: bool) -> str:
+    """Return what is compared with a threshold, where it is not the output itself: ``|psi|``."""
+    return f"|{name}|" if is_angle else ""
+
+
+def estimated(label: str, units: str, of: str = "", asked: Iterable[float] = ()) -> str:
+    """Return the label of an estimate for a person: ``P(>86400.0)`` is ``P(> 24 hours)``.
+
+    Parameters
+    ----------
+    label : str
+        Also the name of an event: ``P(life<86400.0)``.
+    units : str
+        CF unit of the output.
+    of : str
+        What is compared, if not what the label names: ``|psi|``.
+    asked : iterable of float
+        The thresholds of the study, which may have units of their own.
+
+    Returns
+    -------
+    str
+    """
+    known = {repr(one): one for one in asked}
+
+    def shown_event(found: re.Match[str]) -> str:
+        at = threshold(known.get(found[3], float(found[3])), units)
+        return f"P({' '.join(filter(None, (of or found[1], found[2], at)))})"
+
+    return re.sub(r"^P\(([^<>=]*(?:\[.*\])?)([<>])([^<>]+?)\)", shown_event, label)
 
 
 def brief(estimate: Estimate, per: float = 1.0) -> tuple[str, str]:
@@ -123,6 +161,8 @@ def _rounded(value: float, decimals: int) -> str:
 
 def percent(share: float) -> str:
     """Return a share in per cent: to a tenth, or more digits close to 0 and 100 %."""
+    if share in (0.0, 1.0):
+        return f"{100 * share:.0f} %"
     if 0 < share < 0.01:
         return f"{100 * share:.2g} %"
     rest = round(1 - share, 12)

@@ -17,13 +17,13 @@ from computed import (
 )
 
 import uq
+from uq.analysis import findings
 from uq.conclusions.answer import answer
 from uq.conclusions.contributions import Change, Ranking
 from uq.conclusions.parts import Event
 from uq.conclusions.promises import Promise
-from uq.conclusions.settling import rows_in_words
 from uq.conclusions.tightening import halved
-from uq.conclusions.words import Unit, called_together, rounded
+from uq.conclusions.words import Unit, called_together, rounded, rows_in_words
 from uq.contract import Status
 from uq.estimate import Estimate
 from uq.study.reading import read_study_text
@@ -285,3 +285,12 @@ def test_a_notebook_shows_the_same_sentences():
     html = found._repr_html_()
     assert html.startswith("<style>") and found.lead.range.sentence in html
     assert found.lead.range.sentence in repr(found)
+
+
+def test_a_large_design_ranks_inputs_by_its_first_rows(monkeypatch):
+    ds = linear(samples=400)
+    monkeypatch.setattr(findings, "RANKED", 300)
+    few = answer(ds).lead.ranking
+    alone = answer(findings.first_samples(ds, 300)).lead.ranking
+    assert few.contributions == alone.contributions
+    assert few.what == f"{alone.what}, by the first 300 rows"

@@ -43,7 +43,7 @@ def test_lives_are_given_in_days_with_all_that_belongs_to_them(compared):
     a, b, apart, low, _, high, mark = line(lines, "mean")
     assert (a, b, apart, mark) == ("10", "15", "5", "*")
     assert 4 < float(low) < 5 < float(high) < 6
-    assert line(lines, "P(>", "7)")[:3] == ["0.79032", "1", "0.20968"]
+    assert line(lines, "P(>", "7", "days)")[:3] == ["0.79032", "1", "0.20968"]
     assert line(lines, "A", "a.nc") == "linear (64 rows; 2 raised)".split()
 
 

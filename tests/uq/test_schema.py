@@ -78,6 +78,8 @@ def test_the_template_of_every_model_is_valid(validator, name):
         ({"settings": {"depth": 1}}, "settings"),
         ({"analysis": {"outputs": ["z"]}}, "analysis/outputs/0"),
         ({"analysis": {"thresholds": {"z": 1.0}}}, "analysis/thresholds"),
+        ({"analysis": {"thresholds": {"y": True}}}, "analysis/thresholds/y"),
+        ({"analysis": {"thresholds": {"y": "soon"}}}, "analysis/thresholds/y"),
         ({"analysis": {"quantiles": [0.5, 2]}}, "analysis/quantiles/1"),
         (
             {
@@ -100,6 +102,8 @@ def test_the_fault_is_where_it_is(validator, changes, place):
         {"design": {"method": "saltelli", "second_order": True, "samples": 1024}},
         {"analysis": {"tolerance": {"coverage": 0.9, "confidence": 0.9}}},
         {"analysis": {"thresholds": {"y": [1, 2.5]}, "sensitivity": ["pawn"]}},
+        {"analysis": {"thresholds": {"y": "5 %"}}},
+        {"analysis": {"thresholds": {"y": [1, "5 %"]}}},
         {"uncertain": {"x3": {"distribution": "lognormal", "median": 1, "sigma": 0.1}}},
         {"settings": {}, "fixed": {}},
         {"design": {"method": "imported", "file": "rows.csv", "samples": None}},

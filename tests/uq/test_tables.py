@@ -34,8 +34,8 @@ def test_a_summary_names_units_sides_and_rows_that_failed(printed):
     lines = printed("summary", ds)
     assert cells(lines, "life [hours]") == ["meaning of life"]
     sides = summarised(ds)["outputs"]["life"]["thresholds"]["25200.0"]
-    assert cells(lines, "P(> 7)")[0] == f"{sides['above']['value']:.5g}"
-    assert cells(lines, "P(< 7)")[0] == f"{sides['below']['value']:.5g}"
+    assert cells(lines, "P(> 7 hours)")[0] == f"{sides['above']['value']:.5g}"
+    assert cells(lines, "P(< 7 hours)")[0] == f"{sides['below']['value']:.5g}"
     assert cells(lines, "failed") == ["2", "rows"] and cells(lines, "raised") == ["2"]
     assert (cells(lines, "mean")[0], cells(lines, "mean")[-1]) == ("10", "36000 s")
 
@@ -45,7 +45,7 @@ def test_an_angle_is_in_degrees_and_its_probability_of_the_magnitude(printed):
     ds["psi"].attrs["units"] = "rad"
     lines = printed("summary", asking(ds, outputs=["psi"], thresholds={"psi": np.radians(12)}))
     assert cells(lines, "psi [°]")
-    assert float(cells(lines, "P(|.| > 12)")[0]) == pytest.approx(0.4, abs=0.03)
+    assert float(cells(lines, "P(|psi| > 12°)")[0]) == pytest.approx(0.4, abs=0.03)
 
 
 def test_tolerance_bounds_that_few_rows_cannot_give_say_how_many_can(printed):

@@ -1,6 +1,5 @@
 """Numbers in sentences and tables are no more exact than they are known."""
 
-import math
 from math import inf, nan
 
 import pytest
@@ -17,7 +16,9 @@ from uq.wording import (
     known,
     law,
     percent,
+    quantity,
 )
+from uq.written import read_quantity
 
 
 @pytest.mark.parametrize(
@@ -41,12 +42,12 @@ def test_what_is_zero_has_no_sign_and_small_shares_have_digits():
     assert S1.text(-0.0002) == "0.000"
     assert MU.text(-0.0002) == "-0.0002"
     assert [percent(share) for share in (0.0, 1 / 6000, 0.769, 0.9999, 0.999962, 1.0)] == [
-        "0.0 %",
+        "0 %",
         "0.017 %",
         "76.9 %",
         "99.99 %",
         "99.996 %",
-        "100.0 %",
+        "100 %",
     ]
 
 
@@ -101,11 +102,25 @@ def test_a_law_is_written_by_its_arguments_alone():
     assert law(law_of(drawn)) == "empirical(values = [1.0, 2.0])"
 
 
-def test_what_is_estimated_has_no_idle_digits():
-    assert estimated("P(>0.20943951023931953)") == "P(> 0.20944)"
-    assert estimated("P(<86400.0)", 3600.0) == "P(< 24)"
-    assert estimated("quantile 0.5", 3600.0) == "quantile 0.5"
-    assert estimated("P(>0.20943951023931953)", math.pi / 180, True) == "P(|.| > 12)"
+def test_what_is_estimated_is_compared_in_a_unit_that_people_use():
+    assert estimated("P(>0.20943951023931953)", "rad") == "P(> 12°)"
+    assert estimated("P(<86400.0)", "s") == "P(< 24 hours)"
+    assert estimated("quantile 0.5", "s") == "quantile 0.5"
+    assert estimated("P(>0.20943951023931953)", "rad", "|psi|") == "P(|psi| > 12°)"
+    name = "P(life[depth=0.00025,site=a<b]<3e-05)"
+    assert estimated(name, "s") == "P(life[depth=0.00025,site=a<b] < 30 µs)"
+    assert estimated("P(regime=slow)", "1") == "P(regime=slow)"
+
+
+def test_a_threshold_is_shown_in_the_unit_of_the_study():
+    asked = [read_quantity("1 day"), read_quantity("1e3 mrad")]
+    assert estimated("P(<86400.0)", "s", asked=asked) == "P(< 1 day)"
+    assert estimated("P(>1.0)", "rad", asked=asked) == "P(> 1e3 mrad)"
+
+
+def test_a_power_of_ten_is_multiplied():
+    assert quantity(3.62e-15, "m2 N-1") == "3.62 × 10⁻¹⁵ m² N⁻¹"
+    assert quantity(2.5e-4, "m") == "250 µm" and quantity(3.0, "1") == "3"
 
 
 def test_a_life_that_never_ends_at_the_low_end_has_no_interval():

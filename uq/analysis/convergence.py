@@ -15,6 +15,7 @@ from uq.indices.sensitivities import sensitivities
 from uq.indices.targets import split_name
 from uq.methods.registry import METHODS, piloted_by
 from uq.rows.elements import Element, are_independent, elements_of, named_elements, output_names
+from uq.rows.nesting import first_samples
 from uq.rows.variables import error_name
 
 COLUMNS = ["output", "estimate", "samples", "value", "low", "high", "kind", "input"]
@@ -62,11 +63,6 @@ def running_estimates(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame
         if names is None or split_name(name)[1] in names
     ]
     return pd.DataFrame(lines, columns=COLUMNS)
-
-
-def first_samples(ds: xr.Dataset, samples: int) -> xr.Dataset:
-    """Return the rows of the first samples of each replicate."""
-    return ds.isel(sample=ds["group"].values < samples)
 
 
 def enough(ds: xr.Dataset, output: str | None = None) -> pd.DataFrame:

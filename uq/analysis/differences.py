@@ -11,6 +11,7 @@ from uq.analysis.estimators import Sample
 from uq.analysis.pairing import Pair
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.summary import Summary
+from uq.contract import Output
 from uq.estimate import NOTHING, Estimate
 from uq.rows.elements import Element
 
@@ -41,8 +42,13 @@ class Compared:
 class ComparedOutput:
     """An element of an output: name in the table of statistics -> what is compared of it."""
 
-    units: str
+    declared: Output
     parts: Mapping[str, tuple[Compared, ...]]
+
+    @property
+    def units(self) -> str:
+        """CF unit string."""
+        return self.declared.unit
 
     @property
     def statistics(self) -> tuple[Compared, ...]:
@@ -74,7 +80,7 @@ def compared_output(pair: Pair, elements: list[Element], found: list[Summary]) -
         )
         for name, statistics in described[0].parts.items()
     }
-    return ComparedOutput(elements[0].units, parts)
+    return ComparedOutput(elements[0].declared, parts)
 
 
 def _of_elements(pair: Pair, elements: list[Element], both: list[Statistic]) -> Compared:

@@ -10,6 +10,8 @@ import xarray as xr
 from uq.analysis.fleet import Fleet, fleet_of
 from uq.analysis.level_shares import ByLevel, by_level
 from uq.analysis.summary import Summary, summarise
+from uq.designs.layouts import PLAIN
+from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.indices.sensitivities import Sensitivities, TargetIndices, sensitivities
 from uq.rows.elements import (
@@ -20,10 +22,14 @@ from uq.rows.elements import (
     output_names,
     shown_outputs,
 )
-from uq.rows.nesting import nesting_of
+from uq.rows.nesting import first_samples, nesting_of
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+RANKED = 50_000
+"""Rows by which inputs are ranked where a design is larger: more hardly change their order."""
 
 
 class Findings:
@@ -44,6 +50,17 @@ class Findings:
     def rows(self) -> xr.Dataset:
         """The independent rows."""
         return independent_rows(self.ds)
+
+    @cached_property
+    def ranked(self) -> "Findings":
+        """What is known of the rows by which inputs are ranked: the first ones of a large design.
+
+        All of a design that compares rows, whose indices are cheap.
+        """
+        samples, rows = self.ds.attrs["samples"], self.ds.sizes["sample"]
+        if rows <= RANKED or DESIGNS[self.ds.attrs["design"]].layout is not PLAIN:
+            return self
+        return Findings(first_samples(self.ds, max(RANKED * samples // rows, 1)))
 
     @cached_property
     def absent(self) -> frozenset[str]:

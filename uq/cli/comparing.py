@@ -12,7 +12,7 @@ from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.estimate import Estimate
 from uq.rows.results import open_result
 from uq.units import Unit, typical, unit_of
-from uq.wording import estimated, interval, known, number
+from uq.wording import compared, estimated, in_brackets, interval, known, number
 
 _MOST_OUTPUTS = 6
 """Largest number of outputs with a sentence on the effect of a single changed input."""
@@ -45,9 +45,10 @@ def _show(found: Comparison, first: Path, second: Path) -> None:
         lines = [(label, *_cells(one)) for label, one in found.regimes.items()]
         grid(lines, header=_HEADER)
     for name, output in found.outputs.items():
-        unit, per = _unit(output)
-        heading(f"\n{name}{f' [{unit}]' if unit != '1' else ''}")
-        parts = (_lines(one, output.units, per) for one in output.statistics)
+        unit = _unit(output)
+        heading(f"\n{name}{in_brackets(unit)}")
+        of = compared(name, output.declared.is_angle)
+        parts = (_lines(one, output.units, unit.size, of) for one in output.statistics)
         grid(chain.from_iterable(parts), _HEADER)
     note("*: the interval excludes no difference. " + _POINTWISE)
     for text in (*bought(found), *found.notes):
@@ -77,9 +78,10 @@ def _unit(output: ComparedOutput) -> Unit:
 Line = tuple[str, ...]
 
 
-def _lines(one: Compared, units: str, per: float) -> Iterator[Line]:
+def _lines(one: Compared, units: str, per: float, of: str) -> Iterator[Line]:
     own = per if one.first.unit == units else 1.0
-    yield estimated(one.first.label, per), *_cells(one, own)
+    asked = () if one.first.at is None else (one.first.at,)
+    yield estimated(one.first.label, units, of, asked), *_cells(one, own)
     if one.ratio is not None and isfinite(one.ratio.value):
         yield f"{one.first.label}, B over A", "", "", *_apart(one.ratio, one.identical, 1.0, 1.0)
 

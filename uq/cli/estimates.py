@@ -1,24 +1,63 @@
 """What ``uq twin`` and ``uq convergence`` print."""
 
+from collections.abc import Mapping
 from math import isfinite
 from pathlib import Path
+
+import xarray as xr
 
 from uq.analysis.as_json import convergence_json, twin_json
 from uq.analysis.converging import converging
 from uq.analysis.findings import Findings
 from uq.analysis.twin import with_twin
 from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.cli.targets import Target
 from uq.conclusions.advice import verdict
 from uq.estimate import Estimate
 from uq.rows.results import open_result
-from uq.wording import estimated, failed_interval, interval, known
+from uq.units import typical, unit_of
+from uq.wording import failed_interval, in_brackets, interval, known
 
 _SHOWN = 6  # sizes of each estimate on a terminal
 
 
+class _Block:
+    """How the estimates of one target are shown: its name, and their unit."""
+
+    def __init__(self, ds: xr.Dataset, name: str, estimates: Mapping[str, Estimate]):
+        self._target = Target(ds, name)
+        own = (one.value for label, one in estimates.items() if _is_value(label))
+        self._unit = unit_of(self._target.units, typical(own))
+
+    def show_heading(self) -> None:
+        """Print the name, with its unit and meaning."""
+        heading(f"\n{self._target.name}{in_brackets(self._unit)}", self._target.meaning)
+
+    def label(self, label: str) -> str:
+        """Return the name of an estimate."""
+        return self._target.label(label)
+
+    def cells(self, label: str, one: Estimate) -> tuple[str, str]:
+        """Return value and interval of an estimate in the unit of the block."""
+        return known(one, per=self._per(label)), self.ends(label, one)
+
+    def ends(self, label: str, one: Estimate) -> str:
+        """Return the interval of an estimate in the unit of the block; "" without one."""
+        return interval(one, self._per(label)) if one.has_interval else ""
+
+    def _per(self, label: str) -> float:
+        return self._unit.size if _is_value(label) else 1.0
+
+
+def _is_value(label: str) -> bool:
+    """Return whether an estimate is in the unit of the output."""
+    return label.startswith(("mean", "quantile"))
+
+
 def twin(result: Path, model: str | None, json: bool) -> None:
     """Show means and probabilities sharpened with the study's twin."""
-    found = with_twin(open_result(result), model)
+    ds = open_result(result)
+    found = with_twin(ds, model)
     if json:
         print_json(twin_json(found))
         return
@@ -26,32 +65,31 @@ def twin(result: Path, model: str | None, json: bool) -> None:
         f"With {found.twin} as twin", f"{found.rows} rows, and {found.cheap_rows} of the twin alone"
     )
     for name, estimates in found.outputs.items():
-        heading(f"\n{name}")
+        block = _Block(ds, name, {label: one.estimate for label, one in estimates.items()})
+        block.show_heading()
         grid(
             [
-                (estimated(label), *_cells(one.estimate), _ends(one.plain), f"{one.reduction:.3g}")
+                (
+                    block.label(label),
+                    *block.cells(label, one.estimate),
+                    block.ends(label, one.plain),
+                    f"{one.reduction:.3g}",
+                )
                 for label, one in estimates.items()
             ],
             header=("", "value", "95 % interval", "without twin", "worth"),
         )
         for label, one in estimates.items():
             if one.note:
-                paragraph(f"{estimated(label)}: {one.note}", indent=2)
+                paragraph(f"{block.label(label)}: {one.note}", indent=2)
             if worst := failed_interval(one.failed):
-                paragraph(f"{estimated(label)}, with failed rows at best and worst: {worst}", 2)
+                both = "with failed rows at best and worst"
+                paragraph(f"{block.label(label)}, {both}: {worst}", indent=2)
     note(
         "worth: without twin, so many times the rows would be as accurate. The twin's own rows are"
         " not counted: it pays if one of them takes less than (worth - 1) /"
         f" {1 + found.cheap_rows / found.rows:.3g} of the time of a row"
     )
-
-
-def _cells(one: Estimate) -> tuple[str, str]:
-    return known(one), _ends(one)
-
-
-def _ends(one: Estimate) -> str:
-    return interval(one) if one.has_interval else ""
 
 
 def convergence(result: Path, output: str | None, json: bool) -> None:
@@ -61,19 +99,23 @@ def convergence(result: Path, output: str | None, json: bool) -> None:
     if json:
         print_json(convergence_json(found))
         return
-    if output is None:
-        for line in verdict(Findings(ds)):
-            paragraph(line, indent=0)
+    for line in verdict(Findings(ds), output):
+        paragraph(line, indent=0)
     for name, one in found.items():
-        heading(f"\n{name}")
+        if one.errors and one.errors["warning"]:
+            paragraph(f"{name}: {one.errors['warning']}.", indent=0)
+    for name, one in found.items():
+        block = _Block(ds, name, {label: sizes[-1][1] for label, sizes in one.estimates.items()})
+        block.show_heading()
         for label, sizes in one.estimates.items():
             grid(
-                [(str(samples), *_cells(estimate)) for samples, estimate in sizes[-_SHOWN:]],
-                header=("samples", estimated(label), "95 % interval"),
+                [
+                    (str(samples), *block.cells(label, estimate))
+                    for samples, estimate in sizes[-_SHOWN:]
+                ],
+                header=("samples", block.label(label), "95 % interval"),
             )
-        if own := one.errors:
-            if isfinite(own["own"]):
-                sampling, rows = (known(Estimate(own[kind])) for kind in ("sampling", "own"))
-                paragraph(f"sampling error {sampling}, error of the rows themselves {rows}", 2)
-            if own["warning"]:
-                paragraph(own["warning"], indent=2)
+        if one.errors and isfinite(one.errors["own"]):
+            kinds = (Estimate(one.errors[kind]) for kind in ("sampling", "own"))
+            sampling, rows = (block.cells("mean", error)[0] for error in kinds)
+            paragraph(f"sampling error {sampling}, error of the rows themselves {rows}", indent=2)

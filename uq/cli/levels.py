@@ -7,22 +7,23 @@ from pathlib import Path
 from uq.analysis.as_json import levels_json
 from uq.analysis.level_shares import SOLVER, LevelShares, by_level
 from uq.cli.printing import grid, heading, note, paragraph, print_json
+from uq.cli.targets import Target
 from uq.designs.levels import LEVELS
 from uq.methods.indices import S1
 from uq.rows.results import open_result
 
 
-def levels(result: Path, output: str | None, json: bool) -> None:
+def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
     """Show the shares of the variance by level."""
     ds = open_result(result)
-    found = by_level(ds, output)
+    found = by_level(ds, output, plain=plain)
     if json:
         print_json(levels_json(found))
         return
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.size}")
     grid([(level, ", ".join(found.inputs_on(level)) or "-") for level in LEVELS])
     for name, shares in found.outputs.items():
-        heading(f"\n{name}", "shares of the variance")
+        heading(f"\n{Target(ds, name).name}", "shares of the variance")
         grid(_lines(shares), header=("", "share", "95 % interval", ""))
         for text in shares.sentences:
             paragraph(text, indent=2)

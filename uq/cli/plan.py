@@ -4,11 +4,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from uq.analysis.widths import Widths, expected_widths
-from uq.cli.printing import grid, heading, note, number, print_json
+from uq.cli.printing import grid, heading, note, print_json
 from uq.cli.progress import say_compiling
 from uq.rows.results import failed
 from uq.running.planning import Cost, pilot
 from uq.study.definition import Study
+from uq.units import typical, unit_of
+from uq.wording import in_brackets, threshold
 
 _SURE = 1.2  # a forecast with a wider margin is shown with its band
 
@@ -72,7 +74,10 @@ def _show_widths(widths: Mapping[str, Widths]) -> None:
         (label, _short(one))
         for name, width in widths.items()
         for label, one in (
-            *((f"P({name} > {number(t)})", share) for t, share in width.thresholds.items()),
+            *(
+                (f"P({name} > {threshold(t, width.units)})", share)
+                for t, share in width.thresholds.items()
+            ),
             *((f"{kind} of {name}, the widest", index) for kind, index in width.indices.items()),
         )
     ]
@@ -88,16 +93,18 @@ def _widths(widths: Mapping[str, Widths]) -> Iterator[tuple[str, ...]]:
     before = ""
     for name, width in widths.items():
         output, _, place = name.partition("[")
-        label = output if width.units == "1" else f"{output} [{width.units}]"
+        own = (one.mean for other, one in widths.items() if other.partition("[")[0] == output)
+        unit = unit_of(width.units, typical(one for one in own if one is not None))
+        label = f"{output}{in_brackets(unit)}"
         if place and output != before:
             yield label, *[""] * (1 + len(width.quantiles))
         before = output
-        numbers = (_short(one) for one in (width.mean, *width.quantiles.values()))
+        numbers = (_short(one, unit.size) for one in (width.mean, *width.quantiles.values()))
         yield f"  {place.removesuffix(']')}" if place else label, *numbers
 
 
-def _short(width: float | None) -> str:
-    return "-" if width is None else f"{width:.3g}"
+def _short(width: float | None, per: float = 1.0) -> str:
+    return "-" if width is None else f"{width / per:.3g}"
 
 
 def _clock(seconds: float) -> str:

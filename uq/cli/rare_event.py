@@ -8,11 +8,28 @@ import numpy as np
 import xarray as xr
 
 from uq.cli.printing import grid, heading, note, number, print_json
+from uq.contract import Model
+from uq.errors import InputError
+from uq.study.definition import Study
+from uq.wording import quantity
+from uq.wording import threshold as threshold_in_words
+from uq.written import read_threshold
 
 
-def show(ds: xr.Dataset, json: bool, max_failed: float) -> int:
+def limit(study: Study, output: str, above: str | None, below: str | None) -> tuple[float, bool]:
+    """Return the threshold that one of two options gives, and whether the event lies below it."""
+    if (above is None) == (below is None):
+        raise InputError("uq: give one of --above and --below")
+    name = output.partition("[")[0]
+    units = study.model.outputs[name].unit if name in study.model.outputs else "1"
+    option, text = ("--above", above) if above is not None else ("--below", str(below))
+    return read_threshold(option, text, name, units), above is None
+
+
+def show(ds: xr.Dataset, json: bool, study: Study, threshold: float) -> int:
     """Print the probability of a rare event; return the exit code."""
-    print_json(as_json(ds)) if json else _show(ds)
+    print_json(as_json(ds)) if json else _show(ds, study.model, threshold)
+    max_failed = study.analysis.max_failed
     failed = int(ds["failed"]) / int(ds["rows"])
     if failed <= max_failed:
         return 0
@@ -61,10 +78,10 @@ def _cell(value: float) -> str:
     return number(value if isfinite(value) else None)
 
 
-def _show(ds: xr.Dataset) -> None:
-    sign = ">" if ds.attrs["side"] == "above" else "<"
-    unit = "" if ds.attrs["units"] == "1" else f" {ds.attrs['units']}"
-    event = f"P({ds.attrs['output']} {sign} {ds.attrs['threshold']:g}{unit})"
+def _show(ds: xr.Dataset, model: Model, threshold: float) -> None:
+    output, sign = ds.attrs["output"], ">" if ds.attrs["side"] == "above" else "<"
+    of = f"|{output}|" if model.outputs[output.partition("[")[0]].is_angle else output
+    event = f"P({of} {sign} {threshold_in_words(threshold, ds.attrs['units'])})"
     heading(event, f"by {ds.attrs['method']}")
     low, high, worst = (_cell(float(ds[name])) for name in ("low", "high", "failed_high"))
     grid(
@@ -79,15 +96,16 @@ def _show(ds: xr.Dataset) -> None:
     )
     if "typical" in ds:
         heading("\nMedian of each input, given the event")
-        _show_inputs(ds["typical"])
+        _show_inputs(ds["typical"], model)
     for point in _design_points(ds):
         index = f"reliability index {float(point['reliability_index']):.4g}"
         first = float(point["first_order"])
         heading("\nDesign point", f"{index}, first-order probability {first:.3g}")
-        _show_inputs(point["location"])
+        _show_inputs(point["location"], model)
     for text in ds.attrs["notes"].splitlines():
         note(text)
 
 
-def _show_inputs(values: xr.DataArray) -> None:
-    grid([(name, _cell(value)) for name, value in _by_parameter(values).items()])
+def _show_inputs(values: xr.DataArray, model: Model) -> None:
+    known = _by_parameter(values).items()
+    grid([(name, quantity(value, model.parameter(name).unit)) for name, value in known])

@@ -2,19 +2,23 @@
 
 from collections.abc import Iterator, Mapping
 
+import xarray as xr
+
 from uq.cli.printing import grid, heading, paragraph
+from uq.cli.targets import Target
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import Sensitivities
 from uq.methods.indices import S1, IndexKind, Null
 
 
-def show(found: Sensitivities) -> None:
+def show(ds: xr.Dataset, found: Sensitivities) -> None:
     """Print the indices of each target, or why there are none."""
     dropped = found.groups_dropped
     more = f"of {found.rows_used} rows" + (f", {dropped} groups dropped" if dropped else "")
     heading(f"Sensitivity by {found.method}", more)
     for name, one in found.targets.items():
-        heading(f"\n{name}")
+        target = Target(ds, name)
+        heading(f"\n{target.name}", target.meaning)
         if one.refused:
             paragraph(one.refused, indent=2)
             continue

@@ -19,7 +19,15 @@ from uq.estimate import Estimate
 from uq.indices.targets import split_name
 from uq.rows.variables import outputs_of
 from uq.units import Unit, typical, unit_of
-from uq.wording import estimated, failed_interval, interval, number
+from uq.wording import (
+    compared,
+    estimated,
+    failed_interval,
+    in_brackets,
+    interval,
+    number,
+    percent,
+)
 
 _LONG = 3600.0  # s: times in this unit and longer ones are given in seconds, too
 
@@ -47,8 +55,7 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
     for name, output in summary.outputs.items():
         meaning = ds[name.partition("[")[0]].attrs["long_name"]
         block = _block(ds, name, output)
-        unit = "" if output.units == "1" else f" [{block.unit.name}]"
-        heading(f"\n{name}{unit}", meaning)
+        heading(f"\n{name}{in_brackets(block.unit)}", meaning)
         grid(_lines(output, block), header=("", "value", "95 % interval", ""))
         for one in output.statistics:
             for text in one.notes:
@@ -85,11 +92,11 @@ Line = tuple[str, str, str, str]
 
 
 class Block(NamedTuple):
-    """How the numbers of an output are shown: their unit, the unit of the model, their sign."""
+    """How the numbers of an output are shown: their unit, that of the model, what is compared."""
 
     unit: Unit
     units: str
-    is_magnitude: bool
+    compared: str
 
     def per(self, one: Statistic) -> float:
         """Return the size of the unit of a statistic."""
@@ -99,7 +106,8 @@ class Block(NamedTuple):
 def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
     quantiles = (one.estimate.value for one in output.parts["quantiles"])
     unit = unit_of(output.units, typical(quantiles))
-    return Block(unit, output.units, outputs_of(ds)[name.partition("[")[0]].is_angle)
+    is_angle = outputs_of(ds)[name.partition("[")[0]].is_angle
+    return Block(unit, output.units, compared(name, is_angle))
 
 
 def _regime(one: Statistic) -> tuple[str, ...]:
@@ -135,7 +143,10 @@ def _line(one: Statistic, block: Block) -> Line:
         more = one.unit
     elif form := split_name(one.of)[0]:
         more = f"of its {form}"
-    label = estimated(one.label, block.unit.size, block.is_magnitude)
+    elif undefined := one.facts.get("undefined"):
+        more = f"{percent(undefined)} undefined"
+    asked = () if one.at is None else (one.at,)
+    label = estimated(one.label, block.units, block.compared, asked)
     return label, one.words(per), interval(one.estimate, per), more
 
 

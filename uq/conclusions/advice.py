@@ -6,10 +6,10 @@ from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Contribution
 from uq.conclusions.parts import Advice, Quantity
 from uq.conclusions.quantities import quantities
-from uq.conclusions.settling import MOST, Unsettled, rows_in_words, unsettled
+from uq.conclusions.settling import MOST, Unsettled, unsettled
 from uq.conclusions.sources import ASSUMED, mark
 from uq.conclusions.tightening import changes_of, tightened
-from uq.conclusions.words import called_together
+from uq.conclusions.words import called_together, rows_in_words
 from uq.rows.elements import analysis_of
 from uq.rows.results import failed
 
@@ -92,6 +92,7 @@ def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
     found = list(tightened(findings.ds, answered[0], leader.inputs))
     is_life = answered[0].promise is not None and answered[0].promise.is_life
     known = [one for one in found if not one.reason and (one.lengthens or not is_life)]
+    known = [one for one in known if one.is_seen]
     unknown = [one for one in found if one.reason]
     for one in (known or unknown)[:1]:
         yield Advice("tighten", one.sentence, leader.inputs, tightened=one)
@@ -108,12 +109,20 @@ def _ask(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advice]:
     yield Advice("tighten", text, leader.inputs)
 
 
-def verdict(findings: Findings) -> list[str]:
-    """Return whether the rows are enough, in sentences, the least settled first."""
+def verdict(findings: Findings, output: str | None = None) -> list[str]:
+    """Return whether the rows are enough, in sentences, the least settled first.
+
+    Parameters
+    ----------
+    findings : Findings
+    output : str, optional
+        Only for this output, or this element of one.
+    """
     rows = findings.ds.sizes["sample"]
-    open_ones = [one for quantity in quantities(findings) for one in unsettled(quantity)]
+    asked = [one for one in quantities(findings) if output in (None, one.name, one.output)]
+    open_ones = [one for quantity in asked for one in unsettled(quantity)]
     if not open_ones:
-        return ["Enough rows: what the study asks is settled."] if rows else []
+        return ["Enough rows: what the study asks is settled."] if rows and asked else []
     return [
         f"Not enough rows: {one.what}; {_needed(one, rows)} rows would settle it."
         for one in sorted(open_ones, key=lambda one: -one.factor)

@@ -20,6 +20,7 @@ from uq.conclusions.rankings import method_for, ranking_of
 from uq.conclusions.words import Unit, element_called, unit_for
 from uq.errors import InputError
 from uq.estimate import NOTHING, Estimate
+from uq.greek import readable
 from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.targets import lightened, number_of, split_name
@@ -33,7 +34,9 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.nesting import is_nested
+from uq.rows.variables import outputs_of
 from uq.study.file import AnalysisTable
+from uq.wording import threshold
 
 COVERAGE = 0.95
 CONFIDENCE = 0.95
@@ -43,34 +46,38 @@ LOW, MIDDLE, HIGH = 0.05, 0.5, 0.95
 """Probabilities of the likely range."""
 
 
-def quantities(findings: Findings) -> list[Quantity]:
+def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
     """Return the answer for each element that the study asks for, the one it is about first.
 
     Parameters
     ----------
     findings : Findings
+    only : str, optional
+        The name of an element: the answer for no other.
 
     Returns
     -------
     list of Quantity
     """
     ds = findings.ds
-    asked = analysis_of(ds)
-    wanted = _with_bounds(asked, findings)
-    summary = findings.summary if wanted == asked else summarise(ds, wanted)
-    names = shown_outputs(ds, asked)
-    elements = [one for one in elements_of(findings.rows, names) if one.present.any()]
-    elements.sort(key=lambda one: _places(one, asked))
+    asked = analysis_of(ds, only and only.partition("[")[0])
+    wanted = with_bounds(asked, findings)
+    summary = findings.summary if wanted == analysis_of(ds) else summarise(ds, wanted)
+    declared = outputs_of(ds)
+    # What the study is about comes first.
+    names = sorted(
+        shown_outputs(ds, asked),
+        key=lambda name: (name not in asked.thresholds, not declared[name].is_lifetime),
+    )
     context = Context(findings.rows, wanted, replicates_of(findings.rows))
-    return [_quantity(findings, summary, context, one) for one in elements]
+    return [
+        _quantity(findings, summary, context, one)
+        for one in elements_of(findings.rows, names)  # one at a time in memory
+        if one.present.any() and only in (None, one.name)
+    ]
 
 
-def _places(element: Element, asked: AnalysisTable) -> tuple[bool, bool]:
-    """Return a key that sorts what the study is about first."""
-    return element.output not in asked.thresholds, not element.is_lifetime
-
-
-def _with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
+def with_bounds(asked: AnalysisTable, findings: Findings) -> AnalysisTable:
     """Return what a study asks for, with the bounds and quantiles that the answer needs."""
     coverage = asked.tolerance.coverage if asked.tolerance else COVERAGE
     needed = {LOW, MIDDLE, HIGH, coverage, round(1 - coverage, 12)}
@@ -105,13 +112,18 @@ def _quantity(findings: Findings, summary: Summary, context: Context, element: E
     return Quantity(
         element.name,
         element_called(findings.ds, element),
-        element.meaning,
+        readable(element.meaning),
         _promise(findings.ds, described, element, context.analysis, unit),
         Range(
-            _quantile(described, LOW), middle, _quantile(described, HIGH), unit, element.is_angle
+            _quantile(described, LOW),
+            middle,
+            _quantile(described, HIGH),
+            unit,
+            element.is_angle,
+            _end_of(element),
         ),
         tuple(_events(findings, described, element, unit)),
-        _ranking(findings, element, unit),
+        _as_computed(_ranking(findings, element, unit), described),
     )
 
 
@@ -148,7 +160,13 @@ def _promise(
         reason,
         element.is_lifetime,
         element.is_angle,
+        _end_of(element),
     )
+
+
+def _end_of(element: Element) -> str:
+    """Return what a life does at its end, in words."""
+    return "succeed" if element.declared.success else "end"
 
 
 def _sides(
@@ -198,6 +216,14 @@ def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None
     return replace(found, contributions=own)
 
 
+def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | None:
+    """Return a ranking that says if it is of lives as computed, while other numbers integrate."""
+    facts = [one.facts.get("integrated") for one in described.parts["integrated"]]
+    if ranking is None or not ranking.what or not any(facts):
+        return ranking
+    return replace(ranking, what=f"{ranking.what}, from lives as computed: nothing is integrated")
+
+
 def _events(
     findings: Findings, described: Described, element: Element, unit: Unit
 ) -> Iterator[Event]:
@@ -205,10 +231,8 @@ def _events(
     for one in described.parts["thresholds"]:
         if one.key[-1] != side or one.at is None:
             continue
-        own = unit_for(element.units, one.at)
-        at = own.text(one.at)
-        verb = "succeed" if element.declared.success else "end"
-        said = f"{verb} within {at}" if element.is_lifetime else f"exceed {at}"
+        at = threshold(one.at, element.units)
+        said = f"{_end_of(element)} within {at}" if element.is_lifetime else f"exceed {at}"
         said += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{one.at!r})"
         yield event(findings, target, said, one)
@@ -239,15 +263,14 @@ def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:
     found = replace(found, ranking=ranking)
     if ranking.leader is None:
         return found
-    over = ranking.leader.inputs[0]
-    curve = curve_over(findings, target, method, over)
+    over, rows = ranking.leader.inputs[0], findings.ranked.rows
+    curve = curve_over(rows, target, method, over)
     attrs = findings.ds[over].attrs
-    middle = float(np.median(findings.rows[over].values))
+    middle = float(np.median(rows[over].values))
     return replace(found, over=over, curve=curve, over_unit=unit_for(attrs["units"], abs(middle)))
 
 
-def curve_over(findings: Findings, target: str, method: str, over: str) -> EventCurve | None:
+def curve_over(rows: xr.Dataset, target: str, method: str, over: str) -> EventCurve | None:
     """Return the probability of an event over an input."""
-    rows = findings.rows
     hits = next(chosen(rows, method, [target])).values
     return event_curve(hits, independent_inputs(rows)[over], replicates_of(rows))

@@ -10,7 +10,7 @@ import xarray as xr
 from uq.analysis.effects import Effect, effects
 from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Change, Contribution, Ranking
-from uq.conclusions.words import Unit, called, twin_of
+from uq.conclusions.words import Unit, called, rows_in_words, twin_of
 from uq.designs.layouts import PLAIN
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
@@ -78,6 +78,7 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
     Parameters
     ----------
     findings : Findings
+        Of a result; its `ranked` rows decide.
     name : str
         Of a target.
     method : str
@@ -88,6 +89,15 @@ def ranking_of(findings: Findings, name: str, method: str, verbs: tuple[str, str
     -------
     Ranking
     """
+    ranking = _ranking(findings.ranked, name, method, verbs)
+    if findings.ranked is findings:
+        return ranking
+    by = f"by the first {rows_in_words(findings.ranked.ds.sizes['sample'])} rows"
+    reason = f"{ranking.reason} ({by})" if ranking.reason else ""
+    return replace(ranking, what=f"{ranking.what}, {by}", reason=reason, rows_factor=nan)
+
+
+def _ranking(findings: Findings, name: str, method: str, verbs: tuple[str, str]) -> Ranking:
     found = findings.indices(method, name)
     if found.refused:
         return Ranking(name, method, reason=f"no ranking of the inputs: {found.refused}")

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import ceil, floor, isfinite, log10
+from math import isfinite
 
 from uq.conclusions.parts import Event, Quantity
 from uq.conclusions.promises import Promise
@@ -81,9 +81,3 @@ def _of_promise(promise: Promise, quantity: Quantity) -> Iterator[Unsettled]:
             text, best = promise.unit.text(reached), promise.unit.text(estimate.value)
             what = f"{text} is promised where {best} is likely ({quantity.words})"
             yield Unsettled(what, (away / (BOUND * scale)) ** 2)
-
-
-def rows_in_words(rows: float) -> str:
-    """Return a number of rows, rounded up to two digits."""
-    digit = 10 ** max(floor(log10(rows)) - 1, 0)
-    return f"{ceil(rows / digit) * digit:,}".replace(",", " ")

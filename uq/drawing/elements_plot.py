@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from uq.drawing.panel import is_wide
 from uq.drawing.style import COLOURS, LIMIT, LINES, SHADES
 from uq.drawing.symbols import literal
-from uq.drawing.words import labelled, powers, rows_in_words
+from uq.drawing.words import labelled, rows_in_words
 from uq.rows.elements import Element, Floats, analysis_of, flags
 from uq.units import Unit, typical, unit_of
-from uq.wording import in_unit
+from uq.wording import threshold
 
 _MOST_BINS = 60
 
@@ -67,10 +67,10 @@ def mark_thresholds(
     """
     ends, scale = (axes.get_ylim, axes.get_yscale) if vertical else (axes.get_xlim, axes.get_xscale)
     line = axes.axhline if vertical else axes.axvline
-    for threshold in analysis_of(ds).thresholds.get(element.output, ()):
-        at = threshold / unit.size
+    for asked in analysis_of(ds).thresholds.get(element.output, ()):
+        at = asked / unit.size
         sign = "±" if element.is_angle else ""
-        words = f"threshold {sign}{powers(in_unit(threshold, unit))}"
+        words = f"threshold {sign}{threshold(asked, element.units)}"
         low, high = ends()
         for place in (-at, at) if element.is_angle else (at,):
             style: Any = {"color": LIMIT, "label": words}

@@ -7,14 +7,14 @@ from matplotlib.figure import Figure
 
 from uq.drawing.panel import arrows, column, finish, heading, roomy
 from uq.drawing.style import BARS, INK, styled
-from uq.drawing.words import as_label, element_in_words, labelled, powers
+from uq.drawing.words import as_label, element_in_words, labelled
 from uq.errors import InputError
 from uq.indices.ranked import size
 from uq.indices.sensitivities import TargetIndices, sensitivities
 from uq.indices.targets import FORMS, split_name
-from uq.rows.elements import named_elements
+from uq.rows.elements import analysis_of, named_elements
 from uq.rows.variables import is_category
-from uq.wording import quantity
+from uq.wording import threshold
 
 
 @styled
@@ -109,16 +109,20 @@ def _only(ds: xr.Dataset, output: str, method: str | None) -> TargetIndices:
 
 def subject(ds: xr.Dataset, name: str) -> str:
     """Describe a target of `uq.indices.sensitivities`."""
-    form, inside, threshold = split_name(name)
+    form, inside, at = split_name(name)
     category, _, label = inside.partition("=")
     if is_category(ds, category):
         meaning = ds[category].attrs["long_name"].removeprefix("the ")
         return f"whether the {meaning} is {label}"
     (element,) = named_elements(ds, inside)
     words = element_in_words(ds, element)
-    if threshold:
-        at = powers(quantity(float(threshold), element.units))
-        words = f"whether the {words.removeprefix('the ')}{',' * bool(element.place)} is below {at}"
+    if at:
+        asked = analysis_of(ds).thresholds.get(element.output, ())
+        at = threshold(next((one for one in asked if repr(one) == at), float(at)), element.units)
+        side = "below" if "<" in name else "above"
+        words = (
+            f"whether the {words.removeprefix('the ')}{',' * bool(element.place)} is {side} {at}"
+        )
     elif form:
         words = f"{FORMS[form]} of the {words.removeprefix('the ')}"
     return words

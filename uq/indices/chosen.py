@@ -6,7 +6,14 @@ import xarray as xr
 
 from uq.errors import InputError, nearest
 from uq.indices import targets
-from uq.indices.targets import Target, category_targets, lightened, split_name, with_tail_note
+from uq.indices.targets import (
+    Target,
+    canonical,
+    category_targets,
+    lightened,
+    split_name,
+    with_tail_note,
+)
 from uq.methods.registry import METHODS
 from uq.rows.elements import analysis_of, elements_of, named_elements, shown_outputs
 from uq.rows.variables import is_category
@@ -65,6 +72,7 @@ def chosen(ds: xr.Dataset, method: str, output: str | Sequence[str] | None) -> I
 
 def _named(ds: xr.Dataset, name: str) -> list[Target]:
     """Return the targets that a user means by a name; none for an unknown name."""
+    name = canonical(name)
     form, inside, _ = split_name(name)
     found = list(_targets(ds, _output_in(inside), every=True))
     if form:

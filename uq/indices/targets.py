@@ -1,6 +1,8 @@
 """Targets of sensitivity indices: one number per row."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +11,7 @@ import xarray as xr
 from uq.indices.transforms import heaviness, logarithm, rank, rate
 from uq.rows.elements import Element, Floats, flags
 from uq.rows.results import failed
+from uq.written import read_quantity
 
 
 @dataclass(frozen=True)
@@ -112,6 +115,16 @@ def split_name(name: str) -> tuple[str, str, str]:
             inside, _, threshold = text.partition("<" if "<" in text else ">")
             return form, inside, threshold
     return "", name, ""
+
+
+def canonical(name: str) -> str:
+    """Return the name of a target, of ``P(life < 24 hours)`` that is ``P(life<86400.0)``."""
+    found = re.fullmatch(r"P\(\|?([^<>|]+?)\|?\s*([<>])\s*(.+)\)", name)
+    if found is None:
+        return name
+    with suppress(ValueError):
+        return f"P({found[1]}{found[2]}{float(read_quantity(found[3]))!r})"
+    return f"P({found[1]}{found[2]}{found[3]})"
 
 
 def _transformed(element: Element, form: str, notes: tuple[str, ...] = ()) -> Target:

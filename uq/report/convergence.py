@@ -6,7 +6,7 @@ import pandas as pd
 
 from uq.analysis.convergence import enough
 from uq.analysis.findings import Findings
-from uq.analysis.tracing.keys import key_of
+from uq.keys import key_of
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.report.outcomes import Outcome
 from uq.report.pictures import Picture, pictures
@@ -68,4 +68,4 @@ def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
         for error in [float(errors[name])]
         for traced in [key_of("outputs", one.name, f"{name}_error", verb="convergence")]
     )
-    return one.label, one.unit_cell, Cell(str(errors["estimate"])), *cells
+    return Cell(one.name, one.place), one.unit_cell, Cell(str(errors["estimate"])), *cells

@@ -15,7 +15,8 @@ from uq.drawing.quantities import scale_of
 from uq.drawing.scatter_plot import leading
 from uq.drawing.style import LIMIT, ROWS
 from uq.drawing.symbols import literal
-from uq.drawing.words import element_in_words, in_words, powers, unbroken
+from uq.drawing.words import element_in_words, in_words, unbroken
+from uq.greek import readable
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
 from uq.literals import plain
@@ -28,13 +29,13 @@ from uq.rows.elements import (
     are_independent,
     elements_of,
     flags,
+    has_independent_samples,
     replicates_of,
     shown_outputs,
 )
 from uq.rows.results import failed
 from uq.study.file import AnalysisTable
-from uq.units import Unit
-from uq.wording import in_unit
+from uq.wording import threshold
 
 MOST_ROWS = 20_000
 """A page holds no more rows: a brush over them takes 0.1 s."""
@@ -75,7 +76,7 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
     design = _design(rows)
     laws = tolerances(rows, elements)
-    if laws is not None and laws["of"]:
+    if laws is not None and laws["lives"]:
         design["intervals"] += (
             " Shares here are those of lives as computed; tables above, and other tolerances below,"
             " integrate what only scales a life."
@@ -156,7 +157,7 @@ def _output(rows: xr.Dataset, element: Element, analysis: AnalysisTable) -> dict
 
 def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
     """Return the event whose probability is asked for."""
-    at = powers(in_unit(value, Unit(column["unit"] or "1", column["per"])))
+    at = threshold(value, element.units)
     label = f"|{column['label']}|" if element.is_angle else column["label"]
     return f"P({label} {'<' if element.is_lifetime else '>'} {at})"
 
@@ -164,7 +165,7 @@ def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
 def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[str, Any]:
     return {
         "name": name,
-        "label": plain(words),
+        "label": plain(readable(words)),
         "unit": "" if unit == "1" else plain(unbroken(unit)),
         "per": per,
         "wide": is_wide(values[np.isfinite(values)]),
@@ -203,20 +204,20 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         "independent": are_independent(rows),
         "replicate": None,
         "sample": None,
+        "samples": None,
     }
     if part is None:
         words = (
             "95 % intervals of shares are Wilson's, or those of Clopper and Pearson where hits or"
             " misses are fewer than 20; the band is Kolmogorov's."
         )
-    elif isinstance(part, Clusters):
-        words = "No intervals: the rows of a sample are not independent."
-        found |= {"sample": encoded(part, "<i4")}
     elif (count := len(np.unique(part))) < 2:
-        words = (
-            "No intervals: formulas for independent rows do not apply to this design, which has no"
-            " replicates."
-        )
+        several = "samples" if has_independent_samples(rows) else "replicates"
+        words = f"No intervals: they rest on the scatter between {several}, of which there is one."
+    elif isinstance(part, Clusters):
+        several = "samples" if has_independent_samples(rows) else "replicates"
+        words = f"95 % intervals of shares rest on the scatter between {count} {several}."
+        found |= {"sample": encoded(part, "<i4"), "samples": part.samples}
     else:
         words = f"95 % intervals of shares rest on the scatter between {count} replicates."
         found |= {"replicate": encoded(part, "<i4")}

@@ -8,11 +8,11 @@ import xarray as xr
 from uq.clusters import Clusters
 from uq.contract import Floats as Floats
 from uq.contract import Mask as Mask
+from uq.contract import censored_name
 from uq.designs.layouts import CURVES, NOISE
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
-from uq.rows.columns import censored_name
 from uq.rows.element import Element as Element
 from uq.rows.element import elements_in
 from uq.rows.nesting import is_nested, nesting_of
@@ -22,9 +22,13 @@ from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 
 
-def analysis_of(ds: xr.Dataset) -> AnalysisTable:
-    """Return the [analysis] of the study in a result."""
-    return study_file_of(ds).analysis
+def analysis_of(ds: xr.Dataset, output: str | None = None) -> AnalysisTable:
+    """Return the [analysis] of the study in a result, only that of one output if it is named."""
+    found = study_file_of(ds).analysis
+    if output is None:
+        return found
+    thresholds = {name: at for name, at in found.thresholds.items() if name == output}
+    return found.model_copy(update={"outputs": (output,), "thresholds": thresholds})
 
 
 def study_file_of(ds: xr.Dataset) -> StudyFile:

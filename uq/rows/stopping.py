@@ -15,6 +15,7 @@ from uq import intervals, order_statistics
 from uq.estimate import NOTHING, Estimate
 from uq.moments import moments
 from uq.rows.elements import Element, independent_rows, named_elements, replicates_of
+from uq.rows.nesting import first_samples
 
 if TYPE_CHECKING:
     from uq.study.file import DesignTable, Until
@@ -81,7 +82,7 @@ def interim_estimate(design: "DesignTable", ds: xr.Dataset) -> InterimEstimate:
 def ended(design: "DesignTable", ds: xr.Dataset) -> bool:
     """Whether a run ends at this result although its budget is not spent."""
     size = _latest(design, ds)
-    return size > 0 and interim_estimate(design, _first(ds, size)).reached
+    return size > 0 and interim_estimate(design, first_samples(ds, size)).reached
 
 
 def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
@@ -94,16 +95,12 @@ def _latest(design: "DesignTable", ds: xr.Dataset) -> int:
     return max((size for size in interim_sizes(design) if size <= ds.attrs["samples"]), default=0)
 
 
-def _first(ds: xr.Dataset, samples: int) -> xr.Dataset:
-    return ds.isel(sample=ds["group"].values < samples)
-
-
 def sentence(design: "DesignTable", ds: xr.Dataset) -> str:
     """State why a run ended, and the estimate at that point."""
     until, samples = design.until, int(ds.attrs["samples"])
     assert until is not None
     size = _latest(design, ds)
-    seen = interim_estimate(design, _first(ds, size))
+    seen = interim_estimate(design, first_samples(ds, size))
     what = f"{until.estimate} of {until.output}"
     known = "{:.6g}, {:.6g} to {:.6g}".format(*seen.estimate.numbers)
     if np.isnan(seen.estimate.low) and np.isnan(seen.estimate.high):

@@ -11,6 +11,7 @@ from uq.errors import nearest
 from uq.inputs.faults import Fault
 from uq.inputs.values import parameter_problem, read_settings, unknown_name
 from uq.methods.registry import designs_for, fed_by
+from uq.written import misfit
 
 Tables = Mapping[str, Mapping[str, Any]]
 """The sound entries of a study file: table -> key -> value, as parsed."""
@@ -42,12 +43,18 @@ def model_faults(model: Model, data: Mapping[str, Any], tables: Tables) -> Itera
         yield from _output_faults(model, name, ("analysis", "outputs"), name)
     for name, value in analysis.get("thresholds", {}).items():
         path, no_number = ("analysis", "thresholds", name), "it has shares, not thresholds"
-        yield from _output_faults(model, name, path, value, no_number)
+        faults = list(_output_faults(model, name, path, value, no_number))
+        yield from faults
+        for one in (value if isinstance(value, list) else [value]) * (not faults):
+            yield from _unit_faults(model, name, path, one)
     yield from _twin_faults(model, analysis.get("twin", ""), given)
     if until := tables["design"].get("until"):
         name = until["output"].partition("[")[0]
         path = ("design", "until", "output")
-        yield from _output_faults(model, name, path, until["output"], "it has no numbers")
+        faults = list(_output_faults(model, name, path, until["output"], "it has no numbers"))
+        yield from faults
+        for key in ("above", "below") * (not faults):
+            yield from _unit_faults(model, name, ("design", "until", key), until.get(key))
 
 
 def _name_faults(model: Model, data: Mapping[str, Any]) -> Iterator[Fault]:
@@ -70,10 +77,18 @@ def _output_faults(
     model: Model, name: str, path: tuple[str, ...], value: Any, no_number: str = ""
 ) -> Iterator[Fault]:
     """Yield whether a model lacks an output, or has it as a category where numbers are needed."""
+    if not model.outputs:  # not known before rows have run
+        return
     if name not in model.outputs:
         yield Fault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
     elif no_number and model.outputs[name].is_category:
         yield Fault(path, f"is a category: {no_number}", value)
+
+
+def _unit_faults(model: Model, name: str, path: tuple[str, ...], value: Any) -> Iterator[Fault]:
+    """Yield whether a number is in a unit that does not fit an output."""
+    if isinstance(value, str) and (problem := misfit(value, name, model.outputs[name].unit)):
+        yield Fault(path, problem, value)
 
 
 def _twin_faults(model: Model, twin: Any, given: Mapping[str, Any]) -> Iterator[Fault]:

@@ -15,7 +15,9 @@ from pydantic import (
     Field,
     Tag,
     TypeAdapter,
+    ValidatorFunctionWrapHandler,
     WithJsonSchema,
+    WrapValidator,
     model_validator,
 )
 from pydantic_core.core_schema import CoreSchema, no_info_plain_validator_function
@@ -28,6 +30,7 @@ from uq.inputs.law import LEVEL_SCHEMA, LIST, STRICT, Law, Level
 from uq.inputs.registry import any_law, law_of
 from uq.literals import shown
 from uq.methods.registry import METHODS
+from uq.written import SHAPE, read_quantity
 
 
 def _one_of(kind: str, choices: Mapping[str, Any]) -> AfterValidator:
@@ -43,9 +46,13 @@ def _one_of(kind: str, choices: Mapping[str, Any]) -> AfterValidator:
 def _numbers(value: Any) -> Any:
     if isinstance(value, list):
         return tuple(value)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError("must be a number or a list of numbers")
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ValueError("must be a number, a number with its unit, or a list of them")
     return (value,)
+
+
+def _quantity(value: Any, number: ValidatorFunctionWrapHandler) -> Any:
+    return read_quantity(value) if isinstance(value, str) else number(value)
 
 
 def _distinct(values: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -69,6 +76,9 @@ def _name_or_settings(value: Any) -> Any:
 
 _DISTINCT = AfterValidator(_distinct)
 Share = Annotated[float, Field(gt=0, lt=1)]
+_Text = Annotated[str, Field(pattern=SHAPE)]
+Quantity = Annotated[float, WrapValidator(_quantity, json_schema_input_type=float | _Text)]
+"""A number in the unit of the output, or text with its unit."""
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
 
 
@@ -89,8 +99,8 @@ class Until(_Table):
 
     output: str = Field(description="an output, all its elements, or one element of it")
     half_width: float = Field(gt=0, description="of the interval, in the estimate's unit")
-    above: float | None = Field(None, description="of the probability of lying above this")
-    below: float | None = Field(None, description="of the probability of lying below this")
+    above: Quantity | None = Field(None, description="of the probability of lying above this")
+    below: Quantity | None = Field(None, description="of the probability of lying below this")
     quantile: Share | None = Field(None, description="of this quantile; if nothing, of the mean")
 
     @model_validator(mode="after")
@@ -260,11 +270,15 @@ class AnalysisTable(_Table):
     thresholds: dict[
         str,
         Annotated[
-            tuple[float, ...],
-            BeforeValidator(_numbers, json_schema_input_type=float | list[float]),
+            tuple[Quantity, ...],
+            BeforeValidator(_numbers, json_schema_input_type=float | _Text | list[float | _Text]),
             _DISTINCT,
         ],
-    ] = Field({}, description="output = t: probability of lying above and below t")
+    ] = Field(
+        {},
+        description="output = t: probability of lying above and below t, a number in the unit of"
+        ' the output, or text with its own: "24 hours"',
+    )
     twin: Annotated[str | dict[str, Any], BeforeValidator(_name_or_settings)] = Field(
         "",
         description="a cheap output, or settings that make rows cheap: many such rows sharpen the"

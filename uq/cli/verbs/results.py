@@ -100,9 +100,7 @@ def summary(
     fits: Annotated[
         bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
     ] = False,
-    plain: Annotated[
-        bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
-    ] = False,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show how rows ended, and statistics of each output."""
@@ -111,6 +109,8 @@ def summary(
     from uq.analysis.summary import summarise
     from uq.cli import tables
     from uq.cli.printing import print_json
+    from uq.conclusions.answer import conclude
+    from uq.conclusions.as_json import answer_json
     from uq.rows.results import open_result
 
     ds = open_result(result)
@@ -118,7 +118,13 @@ def summary(
         tables.show_findings(Findings(ds))
         return
     found = summarise(ds, regime=regime, fits=fits, plain=plain)
-    print_json(summary_json(found)) if json else tables.show_summary(ds, found)
+    if not json:
+        tables.show_summary(ds, found)
+        return
+    whole = summary_json(found)
+    if regime is None and not plain:
+        whole["answer"] = answer_json(conclude(Findings(ds), weighed=False))
+    print_json(whole)
 
 
 def sensitivity(
@@ -138,27 +144,31 @@ def sensitivity(
     from uq.indices.sensitivities import sensitivities
     from uq.rows.results import open_result
 
-    found = sensitivities(open_result(result), method, output, regime)
-    print_json(sensitivity_json(found)) if json else show(found)
+    ds = open_result(result)
+    found = sensitivities(ds, method, output, regime)
+    print_json(sensitivity_json(found)) if json else show(ds, found)
 
 
 def levels(
     result: given.ResultFile,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show how much scatter is shared, own, or due to chance."""
     from uq.cli import levels
 
-    levels.levels(result, output, json)
+    levels.levels(result, output, plain, json)
 
 
 def fleet(
     result: given.ResultFile,
     size: Annotated[int, typer.Option(min=1, metavar="N", help="Number of units.")],
     by: Annotated[
-        list[float] | None,
-        typer.Option(metavar="T", help="A time [s]; default: the study's thresholds."),
+        list[str] | None,
+        typer.Option(
+            metavar="T", help='In seconds, or "30 days"; default: the study\'s thresholds.'
+        ),
     ] = None,
     allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="The life.")] = None,
@@ -248,15 +258,19 @@ def report(
     result: given.ResultFile,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Default: OUT.html beside OUT.nc."),
+        typer.Option("-o", "--output", metavar="FILE", help="Default: OUT.html, OUT-dossier.html."),
     ] = None,
+    dossier: Annotated[
+        bool, typer.Option("--dossier", help="Order it along outlines for assessments.")
+    ] = False,
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write all that a result says to one page for a browser."""
-    from uq.report import write_report
+    from uq.report import page, write_report
+    from uq.report.dossier import dossier as in_order
 
-    path = output or result.with_suffix(".html")
-    write_report(result, path)
+    path = output or result.with_name(f"{result.stem}{'-dossier' * dossier}.html")
+    write_report(result, path, in_order if dossier else page)
     print(plain_line(str(path)))
     if show and not webbrowser.open(path.resolve().as_uri()):
         print("no browser found; open this file yourself", file=sys.stderr)

@@ -8,7 +8,6 @@ import typer
 
 from uq.cli import options as given
 from uq.cli import say_when_interrupted
-from uq.errors import InputError
 from uq.running.options import RunOptions
 
 
@@ -22,13 +21,13 @@ def models(
     """List the models, or show what one of them declares."""
     from uq.cli import catalogue
     from uq.cli.printing import print_json
-    from uq.study.registry import find_model
+    from uq.running.loading import load_model
 
     if name is None:
         listed = catalogue.list_models()
         print_json(listed) if json else catalogue.show_list(listed)
     else:
-        model = find_model(name)
+        model = load_model(name)
         print_json(catalogue.as_json(model)) if json else catalogue.show(model)
 
 
@@ -56,10 +55,10 @@ def simulate(
 
 def init(model: given.ModelName) -> None:
     """Print a commented study file to edit."""
-    from uq.study.registry import find_model
+    from uq.running.loading import load_model
     from uq.study.template import template
 
-    print(template(find_model(model)), end="")
+    print(template(load_model(model)), end="")
 
 
 def check(study: given.StudyFile, model: given.ModelReference = None) -> None:
@@ -129,10 +128,10 @@ def rare_event(
     study: given.StudyFile,
     output: Annotated[str, typer.Option(metavar="NAME", help="Output, or one of its elements.")],
     above: Annotated[
-        float | None, typer.Option(metavar="T", help="Probability of exceeding T.")
+        str | None, typer.Option(metavar="T", help="Probability of exceeding T.")
     ] = None,
     below: Annotated[
-        float | None, typer.Option(metavar="T", help="Probability of staying below T.")
+        str | None, typer.Option(metavar="T", help="Probability of staying below T.")
     ] = None,
     method: Annotated[
         str, typer.Option(metavar="M", help="subset, or importance (FORM; smooth outputs).")
@@ -145,16 +144,14 @@ def rare_event(
     json: given.Json = False,
 ) -> int:
     """Estimate the probability of a rare event."""
-    from uq.cli.rare_event import show
+    from uq.cli.rare_event import limit, show
     from uq.exploring import rare_events
-    from uq.study.definition import load_study
+    from uq.running.loading import load_study
 
     loaded = load_study(study, model)
-    limits = [(limit, side) for limit, side in ((above, False), (below, True)) if limit is not None]
-    if len(limits) != 1:
-        raise InputError("uq: give one of --above and --below")
+    threshold, is_below = limit(loaded, output, above, below)
     say_when_interrupted("interrupted; nothing was written")
     ds = rare_events.rare_event(
-        loaded, output, *limits[0], method, samples, replicates, workers, scheduler
+        loaded, output, threshold, is_below, method, samples, replicates, workers, scheduler
     )
-    return show(ds, json, loaded.analysis.max_failed)
+    return show(ds, json, loaded, threshold)

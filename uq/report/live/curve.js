@@ -2,7 +2,8 @@
 
 const WIDE = 520, HIGH = 260, MOST_STEPS = 400;
 
-// `lines` are {curve, name, half}: the share at each place, and half the width of its band or NaN.
+// `lines` are {curve, name, half, band}: the share at each place, half the width of its band, or the ends
+// of its intervals at some places.
 function curvesOf(column, lines, title) {
   const scale = new Scale(column);
   const x = value => LEFT + Math.min(Math.max(scale.place(value), 0), 1) * (WIDE - LEFT - EDGE);
@@ -18,8 +19,14 @@ function curvesOf(column, lines, title) {
   for (const value of column.angle ? times.flatMap(time => [-time, time]) : times) {
     parts.push(draw("line", {x1: x(value), x2: x(value), y1: y(0), y2: y(1), class: "threshold"}));
   }
-  for (const {curve, name, half} of lines) {
+  for (const {curve, name, half, band} of lines) {
     const steps = thinned(curve);
+    if (band) {
+      const known = band.at.map((_, i) => i).filter(i => isFinite(band.low[i]));
+      const edge = (places, ends) => places.map(i => `${x(band.at[i]).toFixed(1)},${y(ends[i]).toFixed(1)}`);
+      const around = [...edge(known, band.high), ...edge(known.reverse(), band.low)];
+      if (around.length) parts.push(draw("path", {d: `M${around.join("L")}Z`, class: `band ${name}`}));
+    }
     if (isFinite(half)) {
       const edge = shift => path(steps, x, share => y(Math.min(1, Math.max(0, share + shift))));
       const back = edge(-half).slice(1).split("L").reverse().join("L");

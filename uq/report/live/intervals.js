@@ -28,40 +28,48 @@ function binomial(share, rows) {
   return areFew(share, rows) ? exact(share, rows) : wilson(share, rows);
 }
 
-// From the scatter of the replicates that have rows; `students` are quantiles by number of them.
-function scattered(share, rows, estimates, students) {
-  const count = estimates.length;
-  if (count < 2) return NONE;
-  const mean = estimates.reduce((a, b) => a + b) / count;
-  const scatter = estimates.reduce((sum, one) => sum + (one - mean) ** 2, 0) / (count - 1) / count;
-  const known = scatter > 0 && share > 0 && share < 1;
-  const worth = known ? share * (1 - share) / scatter : NaN, wide = students[count];
-  if (areFew(share, rows)) {
-    const effective = known ? Math.min(worth * (NORMAL / wide) ** 2, rows) : rows;
-    return exact(share, effective);
-  }
-  return wilson(share, worth, wide);
+// Student's quantile, from a table or by Cornish and Fisher's expansion.
+function student(students, degrees) {
+  if (degrees + 1 < students.length) return students[degrees + 1];
+  const z = NORMAL, z3 = z ** 3, z5 = z ** 5, z7 = z ** 7, z9 = z ** 9;
+  return z + (z3 + z) / (4 * degrees) + (5 * z5 + 16 * z3 + 3 * z) / (96 * degrees ** 2)
+    + (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * degrees ** 3)
+    + (79 * z9 + 776 * z7 + 1482 * z5 - 1920 * z3 - 945 * z) / (92160 * degrees ** 4);
+}
+
+// From what independent parts estimate: replicates, or samples of several rows, then with their number.
+function scattered(share, count, estimates, students, samples) {
+  const parts = estimates.length;
+  if (parts < 2) return NONE;
+  const mean = estimates.reduce((a, b) => a + b) / parts;
+  const scatter = estimates.reduce((sum, one) => sum + (one - mean) ** 2, 0) / (parts - 1) / parts;
+  const known = estimates.some(one => one !== estimates[0]) && share > 0 && share < 1;
+  const worth = known ? share * (1 - share) / scatter : NaN, wide = student(students, parts - 1);
+  const limit = known || samples === null ? count : Math.min(count, samples);
+  const effective = known ? Math.min(worth * (NORMAL / wide) ** 2, limit) : limit;
+  return areFew(share, samples === null ? count : effective) ? exact(share, effective) : wilson(share, worth, wide);
 }
 
 // Share and interval of hits (0, 1, or NaN where a row does not take part) among chosen rows.
 function shareOf(rows, hits, mask) {
+  const part = rows.replicate ?? rows.sample, counts = new Map(), sums = new Map();
   let count = 0, sum = 0;
-  const counts = new Map(), sums = new Map();
   for (let row = 0; row < hits.length; row++) {
     if (!mask[row] || isNaN(hits[row])) continue;
     count++;
     sum += hits[row];
-    if (rows.replicate) {
-      const one = rows.replicate[row];
-      counts.set(one, (counts.get(one) ?? 0) + 1);
-      sums.set(one, (sums.get(one) ?? 0) + hits[row]);
-    }
+    if (!part) continue;
+    counts.set(part[row], (counts.get(part[row]) ?? 0) + 1);
+    sums.set(part[row], (sums.get(part[row]) ?? 0) + hits[row]);
   }
   const share = sum / count;
   let ends = NONE;
-  if (count && rows.replicate) {
-    const estimates = [...counts.keys()].sort((a, b) => a - b).map(one => sums.get(one) / counts.get(one));
-    ends = scattered(share, count, estimates, rows.students);
+  if (count && part) {
+    // Of replicates their shares; of samples, which may have unlike numbers of rows, their pulls.
+    const estimates = [...counts.keys()].sort((a, b) => a - b).map(one => rows.replicate
+      ? sums.get(one) / counts.get(one)
+      : share + counts.size * (sums.get(one) - counts.get(one) * share) / count);
+    ends = scattered(share, count, estimates, rows.students, rows.samples);
   } else if (count && rows.independent) ends = binomial(share, count);
   return {share, count, low: ends[0], high: ends[1]};
 }

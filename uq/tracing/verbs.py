@@ -5,7 +5,9 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from uq.analysis.tracing import (
+from uq.keys import SUMMARY, Json, Options, Path, value_at
+from uq.tracing import (
+    of_answer,
     of_fleet,
     of_indices,
     of_levels,
@@ -14,8 +16,7 @@ from uq.analysis.tracing import (
     of_twin,
     of_what_if,
 )
-from uq.analysis.tracing.keys import SUMMARY, Json, Options, Path, value_at
-from uq.analysis.tracing.origin import Origin
+from uq.tracing.origin import Origin
 
 
 def from_the_rows(verb: "Verb", found: Origin, options: Options, path: Path) -> Any:
@@ -46,6 +47,7 @@ class Verb(NamedTuple):
 
 VERBS: dict[str, Verb] = {
     SUMMARY: Verb(of_summary.says, of_summary.origin, ("regime",)),
+    "answer": Verb(of_answer.says, of_answer.origin),
     "sensitivity": Verb(of_indices.says, of_indices.origin, ("method", "regime")),
     "levels": Verb(of_levels.says, of_levels.origin),
     "fleet": Verb(of_fleet.says, of_fleet.origin, ("size", "by", "allow", "output")),
@@ -53,4 +55,4 @@ VERBS: dict[str, Verb] = {
     "twin": Verb(of_twin.says, of_twin.origin),
     "what-if": Verb(of_what_if.says, of_what_if.origin, ("uncertain.", "dependence.")),
 }
-"""By name."""
+"""By name; the answer is a part of the summary."""

@@ -6,13 +6,13 @@ import xarray as xr
 
 from uq.analysis.fleet import fleet, fleet_of
 from uq.analysis.fleet_json import fleet_json
-from uq.analysis.tracing.citations import cited
-from uq.analysis.tracing.keys import Json, Options, Path
-from uq.analysis.tracing.of_summary import states_of
-from uq.analysis.tracing.origin import Origin
 from uq.errors import InputError
+from uq.keys import Json, Options, Path
 from uq.population.functionals import Population
 from uq.rows.elements import independent_rows, named_elements
+from uq.tracing.citations import cited
+from uq.tracing.of_summary import states_of
+from uq.tracing.origin import Origin
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:

@@ -6,12 +6,12 @@ import xarray as xr
 
 from uq.analysis.as_json import twin_json
 from uq.analysis.control_variate import controlled_mean, controlled_share
-from uq.analysis.tracing.citations import cited
-from uq.analysis.tracing.keys import Json, Options, Path
-from uq.analysis.tracing.of_summary import states_of
-from uq.analysis.tracing.origin import Origin
 from uq.analysis.twin import with_twin
+from uq.keys import Json, Options, Path
 from uq.rows.elements import independent_rows, named_elements
+from uq.tracing.citations import cited
+from uq.tracing.of_summary import states_of
+from uq.tracing.origin import Origin
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import xarray as xr
 
-from uq.analysis.tracing.citations import Citation
+from uq.tracing.citations import Citation
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,18 @@ import xarray as xr
 
 from uq import json_form
 from uq.analysis.as_json import convergence_json, errors_json
-from uq.analysis.convergence import enough, estimates_from, first_samples, method_shown
+from uq.analysis.convergence import enough, estimates_from, method_shown
 from uq.analysis.converging import converging
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import summarise
-from uq.analysis.tracing.citations import cited
-from uq.analysis.tracing.keys import Json, Options, Path, value_at
-from uq.analysis.tracing.of_indices import estimator_of
-from uq.analysis.tracing.origin import Origin
 from uq.estimate import Estimate
 from uq.indices.targets import split_name
+from uq.keys import Json, Options, Path, value_at
 from uq.rows.elements import independent_rows
+from uq.rows.nesting import first_samples
+from uq.tracing.citations import cited
+from uq.tracing.of_indices import estimator_of
+from uq.tracing.origin import Origin
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:

@@ -10,11 +10,11 @@ from uq.analysis.life_fit import fits_of
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary, status_counts, summarise
-from uq.analysis.tracing.citations import cited
-from uq.analysis.tracing.keys import Json, Options, Path
-from uq.analysis.tracing.origin import Origin
+from uq.keys import Json, Options, Path
 from uq.rows.elements import Element, analysis_of, independent_rows, named_elements, output_names
 from uq.rows.in_regime import within_regime
+from uq.tracing.citations import cited
+from uq.tracing.origin import Origin
 
 COUNTED = ("failed", "undefined", "censored", "never")
 
@@ -59,7 +59,7 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     if path[0] == "regime":
         return Origin(tuple(map(cited, found.regimes[path[1]].by)), rows)
     states = states_of(named_elements(rows, path[1])[0])
-    by = (fits_of,) if path[2] == "fits" else _by(found.outputs[path[1]], path[2:])
+    by = (fits_of,) if path[2] == "fits" else functions_of(found.outputs[path[1]], path[2:])
     return Origin(tuple(map(cited, by)), rows, states)
 
 
@@ -71,17 +71,14 @@ def states_of(element: Element) -> dict[str, int]:
 
 
 def _found(ds: xr.Dataset, options: Options, path: Path) -> Summary:
-    analysis, output = analysis_of(ds), _output(path)
+    known, output = output_names(ds), _output(path)
     if path and path[0] != "outputs":
-        none = next(iter(output_names(ds)))  # counts and regimes need no output
-        analysis = analysis.model_copy(update={"outputs": (none,), "thresholds": {}})
-    elif output in output_names(ds):
-        thresholds = {name: at for name, at in analysis.thresholds.items() if name == output}
-        analysis = analysis.model_copy(update={"outputs": (output,), "thresholds": thresholds})
+        output = next(iter(known))  # counts and regimes need no output
+    analysis = analysis_of(ds, output if output in known else None)
     return summarise(ds, analysis, regime=options.get("regime"), fits="fits" in path)
 
 
-def _by(described: Described, path: Path) -> Functions:
+def functions_of(described: Described, path: Path) -> Functions:
     """Return the functions that compute what stands at a path of the JSON of an element."""
     for name, statistics in described.parts.items():
         for parent, members, entry in written(statistics):

@@ -6,16 +6,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq.analysis.tracing.citations import Citation, cited
-from uq.analysis.tracing.keys import Json, Options, Path
-from uq.analysis.tracing.origin import Origin
 from uq.indices.as_json import sensitivity_json
 from uq.indices.chosen import chosen
 from uq.indices.samples import sample_of
 from uq.indices.sensitivities import sensitivities
+from uq.keys import Json, Options, Path
 from uq.methods.registry import METHODS
 from uq.rows.in_regime import within_regime
 from uq.rows.nesting import one_of_each_sample
+from uq.tracing.citations import Citation, cited
+from uq.tracing.origin import Origin
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:

@@ -7,14 +7,14 @@ import xarray as xr
 from uq.analysis.as_json import levels_json
 from uq.analysis.level_shares import by_level
 from uq.analysis.switching import switching
-from uq.analysis.tracing.citations import cited
-from uq.analysis.tracing.keys import Json, Options, Path
-from uq.analysis.tracing.of_summary import states_of
-from uq.analysis.tracing.origin import Origin
 from uq.indices.targets import split_name
+from uq.keys import Json, Options, Path
 from uq.nested_variance import nested_shares
 from uq.rows.elements import independent_rows, named_elements
 from uq.rows.nesting import nesting_of
+from uq.tracing.citations import cited
+from uq.tracing.of_summary import states_of
+from uq.tracing.origin import Origin
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:

@@ -9,13 +9,13 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
-from uq.analysis.tracing.citations import Citation
-from uq.analysis.tracing.keys import key_of, no_such_key, numbers_in, taken_apart, value_at
-from uq.analysis.tracing.row_sets import Run, in_words, runs_of
-from uq.analysis.tracing.verbs import VERBS
 from uq.errors import InputError
+from uq.keys import key_of, no_such_key, numbers_in, taken_apart, value_at
 from uq.provenance import provenance
 from uq.rows.results import open_result
+from uq.tracing.citations import Citation
+from uq.tracing.row_sets import Run, in_words, runs_of
+from uq.tracing.verbs import VERBS
 
 RECORDED = ("source", "design", "samples", "replicates", "seed", "study_sha256", "study_identity")
 """Attributes of a result that say how its rows were drawn."""

@@ -4,12 +4,12 @@ from typing import Any
 
 import xarray as xr
 
-from uq.analysis.tracing import of_summary
-from uq.analysis.tracing.citations import cited
-from uq.analysis.tracing.keys import Json, Options, Path
-from uq.analysis.tracing.origin import Origin
 from uq.analysis.what_if import answer, read_changes, what_if, what_if_json
+from uq.keys import Json, Options, Path
 from uq.rows.elements import independent_rows
+from uq.tracing import of_summary
+from uq.tracing.citations import cited
+from uq.tracing.origin import Origin
 
 
 def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:

@@ -124,7 +124,7 @@ def numbers_in(entry: Any) -> dict[str, Any]:
     """
     if is_number(entry):
         return {"value": entry}
-    if not isinstance(entry, dict) or any(isinstance(one, dict | list) for one in entry.values()):
+    if not isinstance(entry, dict) or any(map(_holds_numbers, entry.values())):
         inner = entry if isinstance(entry, dict) and is_number(entry.get("value", "")) else {}
         return {name: one for name, one in inner.items() if not isinstance(one, dict | list)}
     return entry if any(map(is_number, entry.values())) else {}
@@ -133,6 +133,12 @@ def numbers_in(entry: Any) -> dict[str, Any]:
 def is_number(value: object) -> bool:
     """Whether a value of JSON is a number, or null in its place."""
     return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
+
+
+def _holds_numbers(entry: object) -> bool:
+    """Whether there is more than words in a part of JSON."""
+    words = isinstance(entry, list) and all(isinstance(one, str) for one in entry)
+    return isinstance(entry, dict | list) and not words
 
 
 def paths_of_numbers(whole: Any, path: Path = ()) -> Iterator[Path]:

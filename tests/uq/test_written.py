@@ -1,0 +1,136 @@
+"""Numbers written with their unit: in study files, on the command line, and back in tables."""
+
+import json
+import pickle
+
+import numpy as np
+import pytest
+from computed import asking, linear, study_of, summarised, with_output
+
+from uq.errors import InputError
+from uq.store.files import write_result
+from uq.written import misfit, read_quantity, read_threshold
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "shown"),
+    [
+        ("24 h", 86400.0, "hours"),
+        ("24 hours", 86400.0, "hours"),
+        ("1day", 86400.0, "days"),
+        ("0.01 years", 315576.0, "years"),
+        ("90 min", 5400.0, "minutes"),
+        ("12 degrees", 0.20943951023931953, "°"),
+        ("2°", 0.03490658503988659, "°"),
+        ("250 um", 2.5e-4, "µm"),
+        ("250 µm", 2.5e-4, "µm"),
+        ("0.3 mm", 3e-4, "mm"),
+        ("30 mm/s", 0.03, "mm s-1"),
+        ("30 mm s-1", 0.03, "mm s-1"),
+        ("30 mm s⁻¹", 0.03, "mm s-1"),
+        ("1.375e1 kN m-1", 13750.0, "kN m-1"),
+        ("5 %", 0.05, "%"),
+        ("3 furlongs", 3.0, "furlongs"),
+    ],
+)
+def test_a_quantity_is_the_number_that_one_would_write_in_the_plain_unit(text, value, shown):
+    found = read_quantity(text)
+    assert found == value and repr(found) == repr(value)
+    assert found.unit.name == shown and found / found.unit.size == pytest.approx(
+        float(found.number)
+    )
+    again = pickle.loads(pickle.dumps(found))
+    assert (again, again.unit, again.number) == (found, found.unit, found.number)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "24", "hours", "10e5", "1/2 h", "nan h", "1e999 h", "24 h ours?" * 9, "- 3 m"]
+)
+def test_what_is_no_quantity_is_refused(text):
+    with pytest.raises(ValueError, match="number"):
+        read_quantity(text)
+
+
+def test_a_unit_that_does_not_fit_names_those_that_do():
+    assert misfit("24 hours", "life", "s") == "" == misfit("3 Ω", "r", "ohm")
+    assert misfit("24 hurs", "life", "s") == (
+        "the unit 'hurs' does not fit 'life'; did you mean 'hours'?"
+        " (allowed: s, minutes, hours, days, years, ms)"
+    )
+    assert "(allowed: rad, degrees)" in misfit("12 mm", "angle", "rad")
+    assert "(allowed: m s-1, mm s-1, um s-1, km s-1)" in misfit("12 mm", "rate", "m s-1")
+
+
+def test_an_option_takes_plain_numbers_and_quantities():
+    assert read_threshold("--by", "3600", "a life", "s") == 3600.0
+    assert read_threshold("--by", "1 h", "a life", "s") == 3600.0
+    with pytest.raises(InputError, match=r"--by 3 kg: the unit 'kg' does not fit 'a life'"):
+        read_threshold("--by", "3 kg", "a life", "s")
+    with pytest.raises(InputError, match="--by soon: must be a number, or"):
+        read_threshold("--by", "soon", "a life", "s")
+
+
+def wear(thresholds):
+    tables = {
+        "study": {"name": "wear", "model": "exponential-wear"},
+        "design": {"method": "monte-carlo", "samples": 64, "seed": 1},
+        "uncertain": {"rate": {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}},
+        "analysis": {"thresholds": {"life": thresholds}},
+    }
+    return study_of(tables)
+
+
+def test_a_threshold_gives_the_same_numbers_however_it_is_written():
+    plain, written = wear(864000.0), wear("10 days")
+    assert plain.identity == written.identity
+    assert plain.analysis.thresholds == written.analysis.thresholds
+    assert wear([1.0, "1 h"]).analysis.thresholds["life"] == (1.0, 3600.0)
+    ds = linear(samples=64)
+    found = [summarised(asking(ds, thresholds={"y": one})) for one in (0.05, "5 %")]
+    assert found[0]["outputs"] == found[1]["outputs"]
+    assert "0.05" in found[0]["outputs"]["y"]["thresholds"]
+
+
+@pytest.mark.parametrize(
+    ("thresholds", "line"),
+    [
+        ("10 kg", "life = \"10 kg\": the unit 'kg' does not fit 'life'"),
+        (["1 h", "2 mm"], 'life = "2 mm": the unit'),
+        ("soon", 'must be a number, or a number with its unit, such as "24 hours"'),
+        (True, "must be a number, a number with its unit, or a list of them"),
+        (["1 h", 3600.0], "3600.0 is listed twice"),
+    ],
+)
+def test_a_threshold_that_means_nothing_is_one_line(thresholds, line):
+    with pytest.raises(InputError) as refused:
+        wear(thresholds)
+    (only,) = refused.value.lines
+    assert line in only and "[analysis] thresholds.life" in only
+
+
+def test_until_may_have_a_unit(uq, folder):
+    tables = {
+        "study": {"name": "wear", "model": "exponential-wear"},
+        "uncertain": {"rate": {"distribution": "lognormal", "median": 2.5e-10, "sigma": 0.5}},
+    }
+    until = {"output": "life", "half_width": 0.1}
+    design = {"method": "monte-carlo", "samples": 64}
+    study = study_of(tables | {"design": design | {"until": until | {"below": "10 days"}}})
+    assert study.design.until.estimate == "P(<864000.0)"
+    with pytest.raises(InputError, match=r"\[design\] until.below = \"1 m\": the unit 'm'"):
+        study_of(tables | {"design": design | {"until": until | {"below": "1 m"}}})
+
+
+def test_the_unit_of_the_study_is_that_of_tables_and_json_stays_plain(uq, folder):
+    ds = with_output(linear(samples=64), "life", 3600.0 * np.linspace(5, 15, 64), "lifetime")
+    ds = asking(ds, outputs=["life"], thresholds={"life": "600 minutes"})
+    write_result(ds, folder / "out.nc")
+    shown = uq("summary", "out.nc").out
+    assert "P(< 600 minutes)" in shown and "end within 600 minutes" in shown
+    assert list(
+        json.loads(uq("summary", "out.nc", "--json").out)["outputs"]["life"]["thresholds"]
+    ) == ["36000.0"]
+    ended = uq("sensitivity", "out.nc", "--output", "P(life < 600 minutes)", "--json")
+    assert list(json.loads(ended.out)["outputs"]) == ["P(life<36000.0)"]
+    for verb in ("sensitivity", "convergence"):
+        assert "600 minutes" in uq(verb, "out.nc").out
