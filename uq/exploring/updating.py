@@ -15,10 +15,11 @@ from uq.learning.trust import distrust
 from uq.rows.elements import independent_rows, why_no_statistics
 from uq.rows.results import open_result
 from uq.rows.sampling import rows_per_sample
+from uq.running.loading import load_study
 from uq.running.options import RunOptions
 from uq.running.runner import output_path, run_study
 from uq.store.files import check_target, write_result
-from uq.study.definition import Study, load_study
+from uq.study.definition import Study
 
 
 def update(
