@@ -68,7 +68,7 @@ FIGURES: dict[str, Entry] = {
         index_bars,
         of.targets,
         "Sensitivity indices of {name} by {method}",
-        section="sensitivities",
+        section="",
         file=("method", "name"),
     ),
     "convergence-indices": Entry(

@@ -77,7 +77,7 @@ def test_numbers_of_lives_and_angles_are_traced_and_equal(verb, every):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("verb", ["summary", "sensitivity", "levels", "convergence"])
+@pytest.mark.parametrize("verb", ["summary", "answer", "sensitivity", "levels", "convergence"])
 def test_every_number_of_every_kind_is_traced_and_equal(verb):
     check(every_kind(), verb)
     check(crossed(), verb)
@@ -181,3 +181,20 @@ def test_a_result_without_a_sound_row_is_traced_too():
     assert found["rows"]["states"] == {"with a value": 0, "failed": 64}
     assert traced(ds, "status/raised").numbers == {"value": 64}
     json.dumps(found, allow_nan=False)
+
+
+def test_numbers_of_the_answer_are_those_of_its_sentences_and_have_keys(uq, write_study):
+    ds = every_kind()
+    check(ds, "answer", every=101)
+    check(crossed(), "answer", every=17)
+    key = "answer/quantities/life[side=left,depth=0.5]/promise"
+    found, said = traced(ds, key).numbers, api.answer(ds).quantities
+    promise = next(one for one in said if one.name == "life[side=left,depth=0.5]").promise
+    assert (found["lower"], found["sentence"]) == (promise.lower, promise.sentence)
+    uq("run", write_study("exponential-wear", uncertain=("rate",), law=LAW), "-o", "out.nc")
+    whole = strict_json(uq("summary", "out.nc", "--json").out)
+    entry = whole["answer"]["quantities"]["life"]["range"]
+    again = strict_json(uq("trace", "out.nc", "answer/quantities/life/range", "--json").out)
+    assert entry.items() <= again.items() and again["equal"]
+    quantile = whole["outputs"]["life"]["quantiles"]["0.5"]["value"]
+    assert entry["median"] == quantile == again["median"]

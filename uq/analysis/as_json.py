@@ -164,7 +164,7 @@ def levels_json(found: "ByLevel") -> dict[str, Any]:
 def _shares(one: "LevelShares") -> dict[str, Any]:
     shares = {name: json_form.whole(share) for name, share in one.shares.items()}
     more = {"variance": json_form.number(one.variance), "samples_left_out": one.left_out}
-    return shares | more | {"notes": list(one.notes)}
+    return shares | more | {"integrated": list(one.integrated), "notes": list(one.notes)}
 
 
 def twin_json(found: "TwoFidelities") -> dict[str, Any]:

@@ -58,6 +58,12 @@ class Fleet:
     by: dict[float, tuple[Banded, Banded]]
     notes: list[str]
 
+    @property
+    def sentences(self) -> list[str]:
+        """What is integrated, what is missing, and what is assumed."""
+        exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
+        return [*exactly, *self.notes]
+
 
 def fleet(
     ds: xr.Dataset,

@@ -92,6 +92,7 @@ def _tighten(findings: Findings, answered: Sequence[Quantity]) -> Iterator[Advic
     found = list(tightened(findings.ds, answered[0], leader.inputs))
     is_life = answered[0].promise is not None and answered[0].promise.is_life
     known = [one for one in found if not one.reason and (one.lengthens or not is_life)]
+    known = [one for one in known if one.is_seen]
     unknown = [one for one in found if one.reason]
     for one in (known or unknown)[:1]:
         yield Advice("tighten", one.sentence, leader.inputs, tightened=one)

@@ -1,18 +1,18 @@
 """The answer as HTML, for a notebook and for the head of a report."""
 
-from collections.abc import Iterator
-from math import isfinite
+from collections.abc import Iterator, Sequence
 
 from markupsafe import Markup
 
+from uq.conclusions import bars
 from uq.conclusions.contributions import Contribution, Ranking
 from uq.conclusions.parts import Answer, Quantity
 from uq.conclusions.words import sentence
 from uq.literals import plain
 
-STYLE = Markup("""
+_STYLE = """
 .answer { display: grid; gap: .3rem 2rem; grid-template-columns: minmax(0, 1fr); }
-@media (min-width: 60rem) {
+@media (min-width: 60rem), print {
   .answer { grid-template-columns: minmax(0, 1.15fr) minmax(0, 1fr);
     grid-template-rows: auto auto 1fr; align-items: start; }
   .answer-verdict { grid-area: 1 / 1; }
@@ -25,22 +25,17 @@ STYLE = Markup("""
 .answer h3 { margin: .5rem 0 .1rem; font-size: 1rem; }
 .answer .answer-promise { font-size: 1.35rem; line-height: 1.3; font-weight: 600; }
 .answer-why { opacity: .75; font-size: .875rem; }
-.answer-bar { display: grid; grid-template-columns: 11rem minmax(0, 1fr) auto; gap: 0 .7rem;
+.answer-bar { display: grid; grid-template-columns: 11rem minmax(0, 1fr) 8.5rem; gap: 0 .7rem;
   align-items: center; margin: .3rem 0; }
-.answer-track { position: relative; height: .9rem; background: rgba(127, 127, 127, .15); }
-.answer-track > * { position: absolute; top: 0; bottom: 0; }
-.answer-fill { left: 0; background: #0072b2; }
-.answer-ends { border: solid currentColor; border-width: 0 1px; }
-.answer-ends::before { content: ""; position: absolute; left: 0; right: 0;
-  top: calc(50% - .5px); border-top: 1px solid currentColor; }
 .answer-bar .answer-why { grid-column: 1 / -1; }
-.answer-size { font-size: .875rem; min-width: 8rem; }
-@media (max-width: 40rem) {
-  .answer-bar { grid-template-columns: 8.5rem minmax(0, 1fr) auto; }
-  .answer-size { font-size: .8rem; min-width: 6.5rem; }
+.answer-size { font-size: .875rem; }
+@media (max-width: 40rem), print {
+  .answer-bar { grid-template-columns: 8rem minmax(0, 1fr) 7rem; }
+  .answer-size { font-size: .8rem; }
 }
-@media print { .answer { break-inside: avoid; } }
-""")
+@media print { .answer > * { break-inside: avoid; } }
+"""
+STYLE = Markup(_STYLE) + bars.STYLE
 
 _MOST_BARS = 6
 
@@ -63,10 +58,10 @@ def notebook(answer: Answer) -> str:
     return str(Markup("<style>{}</style>{}").format(STYLE, fragment(answer)))
 
 
-def others(answer: Answer) -> Markup:
-    """Return what is known of the quantities that the head leaves out."""
+def sayings(quantities: Sequence[Quantity]) -> Markup:
+    """Return what is known of some quantities, in sentences."""
     found = []
-    for one in answer.quantities[1:]:
+    for one in quantities:
         lines = [line for line in one.head if line != sentence(one.words)]
         lines += [event.with_cause for event in one.events if event.sentence]
         lines += [one.ranking.with_effect] if one.ranking is not None else []
@@ -85,8 +80,7 @@ def regimes(answer: Answer) -> Markup:
 def _verdict(answer: Answer) -> Markup:
     lead = answer.lead
     parts = [] if lead is None else list(_of_lead(lead, answer))
-    if answer.regimes_sentence:
-        parts.append(_line(answer.regimes_sentence))
+    parts += [_line(line) for line in answer.regime_lines]
     if answer.failed or lead is None:
         parts.insert(0, _line(answer.rows_sentence))
     return _block("verdict", parts)
@@ -127,32 +121,16 @@ def bar(one: Contribution, ranking: Ranking) -> Markup:
     """Return a contribution as a bar with its interval, its effect below."""
     most = max(1.0 if one.share_of_variance else 0.0, ranking.contributions[0].value)
     first = one.indices[0]
-    marks = [
-        Markup('<span class="answer-fill" style="width:{:.1f}%"></span>').format(
-            _at(one.value, most)
-        )
-    ]
-    if first.has_interval:
-        low, high = _at(first.low, most), _at(first.high, most)
-        marks.append(
-            Markup('<span class="answer-ends" style="left:{:.1f}%;width:{:.1f}%"></span>').format(
-                low, high - low
-            )
-        )
+    track = bars.bar(one.value, first.low, first.high, (0.0, most))
     effect = Markup('<span class="answer-why">{}</span>').format(plain(one.effect))
     return Markup(
-        '<div class="answer-bar"><span>{}</span><span class="answer-track">{}</span>'
-        '<span class="answer-size">{}</span>{}</div>'
+        '<div class="answer-bar"><span>{}</span>{}<span class="answer-size">{}</span>{}</div>'
     ).format(
         plain(f"{one.words[:1].upper()}{one.words[1:]}"),
-        Markup("").join(marks),
+        track,
         plain(one.size),
         effect if one.effect else "",
     )
-
-
-def _at(value: float, most: float) -> float:
-    return 100 * min(max(value / most, 0.0), 1.0) if isfinite(value) and most > 0 else 0.0
 
 
 def _to_do(answer: Answer) -> Markup:

@@ -161,6 +161,12 @@ class Tightened:
     effective_rows: float = float("nan")
 
     @property
+    def is_seen(self) -> bool:
+        """Whether the number differs to the digits shown."""
+        text = percent if self.is_share else self.unit.text
+        return text(self.before.value) != text(self.after.value)
+
+    @property
     def lengthens(self) -> bool:
         """Whether lives are longer: fewer have ended, or a quantile is later."""
         return (self.after.value < self.before.value) == self.is_share
@@ -250,6 +256,15 @@ class Answer:
         """The shares of the main regimes; "" where there is one at most."""
         shares = [f"{share_text(one.share)} {one.said}" for one in self.main_regimes]
         return f"{', '.join(shares)}." if shares else ""
+
+    @property
+    def regime_lines(self) -> list[str]:
+        """The shares of the main regimes, and what decides them; that of the first is the rest."""
+        found = []
+        for place, one in enumerate(self.main_regimes):
+            known = one.ranking is not None and one.ranking.leader is not None
+            found.append(one.with_cause if known and place else one.sentence)
+        return found
 
     @property
     def lines(self) -> list[str]:

@@ -68,4 +68,4 @@ def _row(one: Outcome, errors: pd.Series) -> tuple[Cell, ...]:
         for error in [float(errors[name])]
         for traced in [key_of("outputs", one.name, f"{name}_error", verb="convergence")]
     )
-    return one.label, one.unit_cell, Cell(str(errors["estimate"])), *cells
+    return Cell(one.name, one.place), one.unit_cell, Cell(str(errors["estimate"])), *cells

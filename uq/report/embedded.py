@@ -16,6 +16,7 @@ from uq.drawing.scatter_plot import leading
 from uq.drawing.style import LIMIT, ROWS
 from uq.drawing.symbols import literal
 from uq.drawing.words import element_in_words, in_words, unbroken
+from uq.greek import readable
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
 from uq.literals import plain
@@ -164,7 +165,7 @@ def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
 def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[str, Any]:
     return {
         "name": name,
-        "label": plain(words),
+        "label": plain(readable(words)),
         "unit": "" if unit == "1" else plain(unbroken(unit)),
         "per": per,
         "wide": is_wide(values[np.isfinite(values)]),

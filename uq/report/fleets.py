@@ -23,6 +23,12 @@ def fleet_table(findings: Findings) -> Table | None:
     return Table(f"Fleets of {found[0].size} units, with 95 % intervals", HEADER, rows)
 
 
+def fleet_notes(findings: Findings) -> list[str]:
+    """Return what is integrated in these numbers, what they lack, and what they assume."""
+    found = dict.fromkeys(note for one in findings.fleets for note in one.sentences)
+    return list(found)
+
+
 def _rows(one: Fleet) -> Iterator[tuple[Cell, ...]]:
     for p, banded in one.first.items():
         value = banded.estimate.value

@@ -100,9 +100,7 @@ def summary(
     fits: Annotated[
         bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
     ] = False,
-    plain: Annotated[
-        bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
-    ] = False,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show how rows ended, and statistics of each output."""
@@ -154,12 +152,13 @@ def sensitivity(
 def levels(
     result: given.ResultFile,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show how much scatter is shared, own, or due to chance."""
     from uq.cli import levels
 
-    levels.levels(result, output, json)
+    levels.levels(result, output, plain, json)
 
 
 def fleet(
