@@ -14,7 +14,7 @@ LAYERS = (
     ("contract",),
     ("ground",),
     ("designs",),
-    ("inputs", "methods"),
+    ("inputs", "methods", "outside"),
     ("study",),
     ("rows",),
     ("indices", "population", "store"),

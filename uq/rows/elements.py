@@ -8,11 +8,11 @@ import xarray as xr
 from uq.clusters import Clusters
 from uq.contract import Floats as Floats
 from uq.contract import Mask as Mask
+from uq.contract import censored_name
 from uq.designs.layouts import CURVES, NOISE
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
-from uq.rows.columns import censored_name
 from uq.rows.element import Element as Element
 from uq.rows.element import elements_in
 from uq.rows.nesting import is_nested, nesting_of

@@ -18,9 +18,10 @@ from uq.rows.sampling import rows
 from uq.rows.workload import Workload, workload_of
 from uq.running.dispatch import Dispatcher
 from uq.running.executor import Executor
+from uq.running.loading import load_study
 from uq.running.options import Progress, Report, RunOptions, Say, ignore
 from uq.study.changes import refusal_to_extend, what_changed
-from uq.study.definition import Study, load_study
+from uq.study.definition import Study
 from uq.study.reading import read_study_text
 from uq.study.registry import is_other_code
 
