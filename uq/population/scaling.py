@@ -14,10 +14,11 @@ from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import cdf_within, factor_of, support
 from uq.inputs.dependence import normal_correlations
 from uq.inputs.law import Law
-from uq.population.scale_laws import ConditionalScale, IndependentScale
+from uq.population.scale_laws import ConditionalScale, IndependentScale, Scale
 from uq.population.sums import LogTerm, law_of_sum
-from uq.rows.element import Element, RowLaw
+from uq.rows.element import Element
 from uq.rows.elements import elements_of, study_file_of
+from uq.rows.weights import has_weights
 from uq.study.file import DependenceTable, StudyFile, Tied
 from uq.study.input_checks import laws_of
 
@@ -94,12 +95,12 @@ class Integrated:
 
     Attributes
     ----------
-    law : RowLaw or None
+    law : Scale or None
     kept : dict of str to str
         Input that scales the lives -> why it is not integrated.
     """
 
-    law: RowLaw | None
+    law: Scale | None
     kept: Mapping[str, str]
 
 
@@ -128,8 +129,11 @@ def integrated(
     if levels is not None:
         level = {name: law.level for name, law in inputs.laws.items()}
         exponents = {name: e for name, e in exponents.items() if level[name] in levels}
+        kept = {name: why for name, why in kept.items() if level[name] in levels}
     if DESIGNS[rows.attrs["design"]].imported:
         return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
+    if has_weights(rows):
+        return Integrated(None, dict.fromkeys(exponents, "inspections have changed its law") | kept)
     for name in exponents:
         if problem := _problem(name, inputs) or _sign_problem(name, inputs):
             kept[name] = problem
@@ -290,5 +294,9 @@ def why_not_integrated(rows: xr.Dataset, element: Element) -> str:
         names = ", ".join(exponents)
         count = int(element.censored.sum())
         return f"{names} not integrated: {count} lives are censored, which gives bounds only"
-    kept = integrated(rows, element.declared, inputs).kept
+    return not_integrated(integrated(rows, element.declared, inputs).kept)
+
+
+def not_integrated(kept: Mapping[str, str]) -> str:
+    """Return a sentence on inputs that are not integrated, or ""."""
     return "; ".join(f"{name} not integrated: {why}" for name, why in kept.items())

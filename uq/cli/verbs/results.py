@@ -100,9 +100,7 @@ def summary(
     fits: Annotated[
         bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
     ] = False,
-    plain: Annotated[
-        bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
-    ] = False,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show how rows ended, and statistics of each output."""
@@ -154,12 +152,13 @@ def sensitivity(
 def levels(
     result: given.ResultFile,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show how much scatter is shared, own, or due to chance."""
     from uq.cli import levels
 
-    levels.levels(result, output, json)
+    levels.levels(result, output, plain, json)
 
 
 def fleet(
@@ -215,6 +214,51 @@ def what_if(
     from uq.cli import what_if as question
 
     question.what_if(result, set_, json)
+
+
+def update(
+    source: Annotated[
+        Path, typer.Argument(metavar="STUDY|OUT.nc", help="A study (TOML), or a result.")
+    ],
+    inspections: Annotated[
+        Path, typer.Argument(metavar="INSPECTIONS.csv", help="What was measured.")
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="POSTERIOR.nc", help="Where to write it.")
+    ],
+    rows: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Rows of a study, not its own number.")
+    ] = None,
+    model_error: Annotated[
+        float | None,
+        typer.Option(min=0.0, metavar="CV", help="Scatter of reality about the model."),
+    ] = None,
+    by: Annotated[
+        list[float] | None,
+        typer.Option(metavar="T", help="A time [s], such as that of the next outage."),
+    ] = None,
+    workers: given.Workers = None,
+    scheduler: given.Scheduler = None,
+    model: given.ModelReference = None,
+    quiet: given.Quiet = False,
+    json: given.Json = False,
+) -> int:
+    """Learn from inspections: inputs, units, and lives to come."""
+    from uq.cli import learning
+
+    options = RunOptions(workers, scheduler)
+    return learning.update(
+        source,
+        inspections,
+        output,
+        rows,
+        model_error,
+        by or [],
+        model,
+        options,
+        quiet or json,
+        json,
+    )
 
 
 def twin(
