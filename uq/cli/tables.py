@@ -11,7 +11,7 @@ from uq.analysis.findings import Findings
 from uq.analysis.life_fit import Fit
 from uq.analysis.life_quantiles import B_LIVES
 from uq.analysis.statistics.statistic import Reader, Statistic
-from uq.analysis.summary import Described, Summary
+from uq.analysis.summary import REGIME, Described, Summary
 from uq.cli.printing import console, grid, heading, note, paragraph
 from uq.conclusions.answer import conclude
 from uq.conclusions.parts import Answer
@@ -48,10 +48,11 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
         design += f", statistics from the {some} independent ones" if some else ", none independent"
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {design}")
     grid([(label, str(count), _example(ds, label)) for label, count in summary.status.items()])
-    if summary.regimes:
-        heading("\nregime")
-        shares = [_regime(one) for one in summary.regimes.values()]
-        grid(shares, header=("", "share", "95 % interval", "rows", "with failed rows"))
+    regimes = {REGIME: summary.regimes} if summary.regimes else {}
+    for name, shares in (regimes | summary.categories).items():
+        heading(f"\n{name}", str(ds[name].attrs["long_name"]))
+        lines = [_share(one) for one in shares.values()]
+        grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
     for name, output in summary.outputs.items():
         meaning = ds[name.partition("[")[0]].attrs["long_name"]
         block = _block(ds, name, output)
@@ -110,7 +111,7 @@ def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
     return Block(unit, output.units, compared(name, is_angle))
 
 
-def _regime(one: Statistic) -> tuple[str, ...]:
+def _share(one: Statistic) -> tuple[str, ...]:
     share = (one.label, one.words(), interval(one.estimate))
     return *share, str(one.facts["count"]), failed_interval(one.failed)
 

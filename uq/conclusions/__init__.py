@@ -14,4 +14,5 @@ Reading order; a module imports only those above it:
     advice          what to do, by rules
     answer          all of it, of a result
     page            the same as HTML
+    as_json         the same as JSON
 """

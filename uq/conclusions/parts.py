@@ -34,8 +34,10 @@ class Event:
         The input that decides most; "" if that is not settled.
     curve : EventCurve or None
         The probability over that input.
-    range_unit : Unit
+    over_unit : Unit
         Of that input.
+    undefined : float
+        Share of the rows in which the output is undefined, so that neither side holds.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Event:
     over: str = ""
     curve: EventCurve | None = None
     over_unit: Unit = field(default_factory=Unit)
+    undefined: float = 0.0
 
     @property
     def sentence(self) -> str:
@@ -56,6 +59,8 @@ class Event:
         if self.failed is not None and self.failed.has_interval:
             ends = percent_interval(self.failed.low, self.failed.high)
             text += f"; with failed rows {ends}"
+        if self.undefined > 0:
+            text += f"; {percent(self.undefined)} are undefined"
         return f"{text}."
 
     @property

@@ -214,7 +214,8 @@ def _events(
         said = f"{verb} within {at}" if element.is_lifetime else f"exceed {at}"
         said += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{one.at!r})"
-        yield event(findings, target, said, one)
+        undefined = one.facts.get("undefined") or 0.0
+        yield replace(event(findings, target, said, one), undefined=undefined)
 
 
 def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:

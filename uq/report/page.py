@@ -24,7 +24,7 @@ from uq.report.headlines import headline
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import fixed_inputs, input_tables
 from uq.report.levels import levels_of
-from uq.report.outcomes import outcomes, regime_table, result_tables, status_table, words_used
+from uq.report.outcomes import category_table, outcomes, result_tables, status_table, words_used
 from uq.report.pictures import pictures
 from uq.rows.elements import study_file_of
 from uq.rows.results import failed, open_result
@@ -129,7 +129,8 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "inputs_drawn": list(pictures(findings, "inputs")),
         "status": status_table(ds, summary),
         "failed": lost,
-        "regimes": regime_table(summary) if summary.regimes else None,
+        "regimes": category_table("regime", summary.regimes) if summary.regimes else None,
+        "categories": [category_table(name, one) for name, one in summary.categories.items()],
         "rows_drawn": list(pictures(findings, "rows")),
         "convergence": convergence_of(findings, found),
         "results": list(result_tables(found)),

@@ -9,7 +9,7 @@ from uq.analysis.as_json import put, summary_json, written
 from uq.analysis.life_fit import fits_of
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
-from uq.analysis.summary import Described, Summary, status_counts, summarise
+from uq.analysis.summary import REGIME, Described, Summary, status_counts, summarise
 from uq.analysis.tracing.citations import cited
 from uq.analysis.tracing.keys import Json, Options, Path
 from uq.analysis.tracing.origin import Origin
@@ -56,8 +56,9 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     if path[0] == "rows_used":
         return Origin((cited(independent_rows),), rows)
     found = _found(ds, {}, path)
-    if path[0] == "regime":
-        return Origin(tuple(map(cited, found.regimes[path[1]].by)), rows)
+    if path[0] in ("regime", "categories"):
+        name, label = (REGIME, path[1]) if path[0] == REGIME else path[1:3]
+        return Origin(tuple(map(cited, found.shares[name][label].by)), rows)
     states = states_of(named_elements(rows, path[1])[0])
     by = (fits_of,) if path[2] == "fits" else _by(found.outputs[path[1]], path[2:])
     return Origin(tuple(map(cited, by)), rows, states)
@@ -72,7 +73,9 @@ def states_of(element: Element) -> dict[str, int]:
 
 def _found(ds: xr.Dataset, options: Options, path: Path) -> Summary:
     analysis, output = analysis_of(ds), _output(path)
-    if path and path[0] != "outputs":
+    if path[:1] == ("categories",):
+        analysis = analysis.model_copy(update={"outputs": path[1:2], "thresholds": {}})
+    elif path and path[0] != "outputs":
         none = next(iter(output_names(ds)))  # counts and regimes need no output
         analysis = analysis.model_copy(update={"outputs": (none,), "thresholds": {}})
     elif output in output_names(ds):

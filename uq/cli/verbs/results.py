@@ -111,14 +111,23 @@ def summary(
     from uq.analysis.summary import summarise
     from uq.cli import tables
     from uq.cli.printing import print_json
+    from uq.conclusions.answer import conclude
+    from uq.conclusions.as_json import answer_json
     from uq.rows.results import open_result
 
     ds = open_result(result)
-    if not (fits or json or plain) and regime is None:
-        tables.show_findings(Findings(ds))
+    findings = Findings(ds)
+    answered = regime is None and not plain  # the answer is that of all rows
+    if answered and not (fits or json):
+        tables.show_findings(findings)
         return
-    found = summarise(ds, regime=regime, fits=fits, plain=plain)
-    print_json(summary_json(found)) if json else tables.show_summary(ds, found)
+    asked = regime is not None or fits or plain
+    found = summarise(ds, regime=regime, fits=fits, plain=plain) if asked else findings.summary
+    if not json:
+        tables.show_summary(ds, found)
+        return
+    answer = {"answer": answer_json(conclude(findings, weighed=False))} if answered else {}
+    print_json(summary_json(found) | answer)
 
 
 def sensitivity(
