@@ -79,7 +79,7 @@ def show_answer(found: Answer) -> None:
             paragraph(one.with_cause, indent=0)
     if found.regimes:
         paragraph(found.regimes_sentence, indent=0)
-    if lead is not None and (ranking := lead.ranking) is not None:
+    if lead is not None and lead.ranking_sentence and (ranking := lead.ranking) is not None:
         paragraph(ranking.sentence, indent=0)
         for contribution in ranking.contributions[:_MOST_EFFECTS]:
             if contribution.effect:

@@ -120,6 +120,14 @@ class Quantity:
     ranking: Ranking | None = None
 
     @property
+    def ranking_sentence(self) -> str:
+        """What contributes most; "" where there is no ranking, and an event said why already."""
+        said = [event.decided_by for event in self.events]
+        if self.ranking is None or (self.ranking.reason and self.ranking.sentence in said):
+            return ""
+        return self.ranking.with_effect
+
+    @property
     def output(self) -> str:
         """The output that it is an element of."""
         return self.name.partition("[")[0]
@@ -264,7 +272,7 @@ class Answer:
         found += [] if lead is None else lead.head
         events = (() if lead is None else lead.events) + self.main_regimes
         found += [one.with_cause for one in events]
-        found += [lead.ranking.with_effect] if lead is not None and lead.ranking else []
+        found += [] if lead is None else [lead.ranking_sentence]
         return [*filter(None, found), *(one.text for one in self.advice)]
 
     def __repr__(self) -> str:

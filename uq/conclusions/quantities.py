@@ -142,6 +142,9 @@ def _promise(
     reason = ""
     if not any(map(isfinite, bounds)):
         reason = _why_no_bound(ds, both, bounds)
+    elif isfinite(wrong := _contradicted(bounds, ends)):
+        reason = f"that of the rows, {unit.text(wrong)}, lies beyond the quantile that it bounds"
+        bounds = [nan, nan]
     return Promise(
         coverage,
         confidence,
@@ -153,6 +156,17 @@ def _promise(
         element.is_lifetime,
         element.is_angle,
     )
+
+
+def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
+    """Return a bound on the wrong side of the quantile that it bounds; NaN where there is none.
+
+    By chance few rows give one, where the quantile is better known since lives are integrated.
+    """
+    lower, upper = bounds
+    if lower > ends[0].value:
+        return lower
+    return upper if upper < ends[1].value else nan
 
 
 def _sides(

@@ -109,6 +109,8 @@ def refusal(k: float, rows: int) -> str:
     most = largest_shape(rows)
     if k <= most or k == -inf:
         return ""
+    if most == -inf:
+        return f"weights rest on {rows} independent parts, and more than 10 are needed"
     if k < _HOPELESS:
         more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
         return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
