@@ -58,6 +58,8 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
         block = _block(ds, name, output)
         heading(f"\n{name}{in_brackets(block.unit)}", meaning)
         grid(_lines(output, block), header=("", "value", "95 % interval", ""))
+        for text in _reasons(output, block):
+            paragraph(text, indent=2)
         for one in output.statistics:
             for text in one.notes:
                 paragraph(text, indent=2)
@@ -103,6 +105,11 @@ class Block(NamedTuple):
         """Return the size of the unit of a statistic."""
         return self.unit.size if one.unit == self.units else 1.0
 
+    def label(self, one: Statistic) -> str:
+        """Return the name of a statistic."""
+        asked = () if one.at is None else (one.at,)
+        return estimated(one.label, self.units, self.compared, asked)
+
 
 def _block(ds: xr.Dataset, name: str, output: Described) -> Block:
     quantiles = (one.estimate.value for one in output.parts["quantiles"])
@@ -122,13 +129,9 @@ def _lines(output: Described, block: Block) -> Iterator[Line]:
         shown = [one for one in part if one.is_read_by(Reader.TERMINAL) and one.words()]
         for one in shown:
             yield _line(one, block)
-            if isnan(one.estimate.value) and one.rows_needed is None and not one.otherwise:
-                yield from _reason(one)
             yield from _failed(one, block)
             if one.otherwise and one.otherwise.label:
-                yield from _reason(one)
                 yield _line(one.otherwise, block)
-                yield from _reason(one.otherwise)
                 yield from _failed(one.otherwise, block)
                 yield "", one.otherwise.estimate.assumes.removeprefix("that "), "", ""
         for assumed in dict.fromkeys(one.estimate.assumes for one in shown):
@@ -146,9 +149,7 @@ def _line(one: Statistic, block: Block) -> Line:
         more = f"of its {form}"
     elif undefined := one.facts.get("undefined"):
         more = f"{percent(undefined)} undefined"
-    asked = () if one.at is None else (one.at,)
-    label = estimated(one.label, block.units, block.compared, asked)
-    return label, one.words(per), interval(one.estimate, per), more
+    return block.label(one), one.words(per), interval(one.estimate, per), more
 
 
 def _failed(one: Statistic, block: Block) -> Iterator[Line]:
@@ -156,9 +157,19 @@ def _failed(one: Statistic, block: Block) -> Iterator[Line]:
         yield "  with failed rows", "", worst, ""
 
 
-def _reason(one: Statistic) -> Iterator[Line]:
-    if one.estimate.reason:
-        yield "", one.estimate.reason, "", ""
+def _reasons(output: Described, block: Block) -> Iterator[str]:
+    """Yield why numbers are missing, each reason once, with what lacks them."""
+    lacking: dict[str, list[str]] = {}
+    for one in output.statistics:
+        if not (one.is_read_by(Reader.TERMINAL) and one.words()):
+            continue
+        both = [one, *([one.otherwise] if one.otherwise and one.otherwise.label else [])]
+        alone = isnan(one.estimate.value) and one.rows_needed is None and not one.otherwise
+        for each in both if len(both) > 1 else both * alone:
+            if each.estimate.reason:
+                lacking.setdefault(each.estimate.reason, []).append(block.label(each))
+    for reason, labels in lacking.items():
+        yield f"{', '.join(labels)}: {reason}"
 
 
 def _show_fits(fits: Mapping[str, Fit], block: Block) -> None:
