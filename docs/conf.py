@@ -1,27 +1,35 @@
 """How Sphinx builds the documentation: ``make docs``.
 
-Formulas become MathML, which browsers draw without a script; nothing is fetched from elsewhere.
+Notebooks become pages that show the outputs which they keep. Formulas become MathML, with a font
+beside the pages: nothing is fetched from elsewhere.
 """
 
-import re
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
 
 from docutils.nodes import SkipNode
-from latex2mathml.converter import convert
 
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
+import formulas  # noqa: E402
 from pages import expanded  # noqa: E402
+
+NOTEBOOKS = HERE / "notebooks"  # a copy: pages lie within this folder
+shutil.rmtree(NOTEBOOKS, ignore_errors=True)
+NOTEBOOKS.mkdir()
+for notebook in HERE.parent.glob("notebooks/*.ipynb"):
+    shutil.copy(notebook, NOTEBOOKS)
 
 project = "vibrolife"
 copyright = "2026, the vibrolife developers"
-extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc"]
 exclude_patterns = ["outputs"]
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
+nb_execution_mode = "off"
 numpydoc_show_class_members = False
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
@@ -37,29 +45,14 @@ html_show_sphinx = False
 html_copy_source = False
 html_math_renderer = "mathml"
 
-_DOTS = {"2D9": "\u0307", "0A8": "\u0308"}
-_DOTTED = re.compile("<mover><mi>([^<]*)</mi><mo>&#x00(2D9|0A8);</mo></mover>")
-_UPRIGHT = re.compile('(?:<mi mathvariant="normal">[A-Za-z]</mi>){2,}')
-_TAG = re.compile(r"\\tag\{(.*?)\}")
-
-
-def mathml(tex: str, display: str) -> str:
-    """Return a formula as MathML that needs no mathematical font.
-
-    Dots are parts of their letters, words are in one piece, and a tag stands behind its formula.
-    """
-    found = convert(_TAG.sub(r"\\qquad\\text{(\1)}", tex), display=display)
-    found = _DOTTED.sub(lambda one: f'<mi class="dotted">{one[1]}{_DOTS[one[2]]}</mi>', found)
-    return _UPRIGHT.sub(lambda word: f"<mi>{re.sub('<.*?>', '', word.group())}</mi>", found)
-
 
 def _inline(translator: Any, node: Any) -> None:
-    translator.body.append(mathml(node.astext(), "inline"))
+    translator.body.append(formulas.inline(node.astext()))
     raise SkipNode
 
 
 def _block(translator: Any, node: Any) -> None:
-    translator.body.append(f'<div class="formula">{mathml(node.astext(), "block")}</div>')
+    translator.body.append(formulas.block(node.astext()))
     raise SkipNode
 
 
@@ -67,7 +60,13 @@ def _read(_: Any, name: str, source: list[str]) -> None:
     source[0] = expanded(source[0])
 
 
+def _add_font(app: Any, exception: Exception | None) -> None:
+    if exception is None:
+        formulas.write_font(Path(app.outdir) / "_static/math.woff")
+
+
 def setup(app: Any) -> None:
     """Register what pages are put through."""
     app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
     app.connect("source-read", _read)
+    app.connect("build-finished", _add_font)

@@ -27,14 +27,17 @@ from uq.study.registry import find_model, model_names
 HOUSE = Path(__file__).parents[1]
 sys.path.insert(0, str(HOUSE / "docs"))
 
+import first_answer  # noqa: E402
 import generated  # noqa: E402
 import house  # noqa: E402
 import pages  # noqa: E402
+import sketches  # noqa: E402
 
 SOURCES = {
     str(path.relative_to(HOUSE)): path.read_text(encoding="utf-8")
     for path in (HOUSE / "README.md", HOUSE / "CONTRIBUTING.md", *(HOUSE / "docs").rglob("*.md"))
 }
+SOURCES["docs/gallery.md"] = pages.expanded(SOURCES["docs/gallery.md"])
 every_source = pytest.mark.parametrize("name", SOURCES)
 
 ROOT_OPTIONS = ("--help", "--version", "--install-completion", "--show-completion")
@@ -63,6 +66,20 @@ def test_there_are_examples():
         if any(test.examples for test in finder.find(importlib.import_module(module)))
     }
     assert len(shown) >= len(EXAMPLES) / 2
+
+
+@every_source
+def test_links_to_headings_lead_to_one(name):
+    here = (HOUSE / name).parent
+    for link, heading in re.findall(r"\]\(([\w./-]*\.md)?#([\w-]+)\)", SOURCES[name]):
+        page = str((here / link).resolve().relative_to(HOUSE)) if link else name
+        assert heading in slugs(pages.expanded(SOURCES[page])), f"{link}#{heading}"
+
+
+def slugs(text):
+    """Return the anchors of the headings of a page, as GitHub and myst-parser make them."""
+    headings = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", one.lower()).replace(" ", "-") for one in headings}
 
 
 @every_source
@@ -135,7 +152,7 @@ def test_files_modules_and_targets_named_exist(name):
         assert importlib.util.find_spec(module), module
     for path in re.findall(r"`((?:uq|models|tests|docs|studies|benchmarks)/[\w./-]*)`", text):
         assert (HOUSE / path).exists(), path
-    for link in re.findall(r"\]\(((?:docs/)?[\w./-]+\.(?:md|png|svg))[#)]", text):
+    for link in re.findall(r"\]\(((?:docs/)?[\w./-]+\.(?:md|png|svg|ipynb))[#)]", text):
         inside = (HOUSE / name).parent / link
         assert inside.is_file(), link
     targets = re.findall(r"^(\w+):", (HOUSE / "Makefile").read_text(), re.M)
@@ -206,6 +223,25 @@ def functions_called(action):
 
 def test_the_picture_of_the_house_is_what_its_script_draws():
     assert house.PICTURE.read_text() == house.picture(), "run: python docs/house.py"
+
+
+@pytest.mark.parametrize("machine", generated.machines())
+def test_the_picture_of_a_machine_is_what_its_script_draws_and_shown_where_it_is_explained(machine):
+    file = f"pictures/{machine}.svg"
+    drawn = sketches.SKETCHES[machine]().svg()
+    assert (HOUSE / "docs" / file).read_text() == drawn, "run: cd docs; python -m sketches"
+    assert f"](docs/{file})" in SOURCES["README.md"]
+    assert f"](../{file})" in SOURCES[f"docs/machines/{machine}.md"]
+
+
+def test_the_answer_that_the_readme_quotes_has_the_numbers_that_are_printed():
+    quoted, printed = map(numbers, (first_answer.quoted(), first_answer.printed()))
+    assert len(quoted) > 10
+    assert quoted == pytest.approx(printed, rel=2e-3), "run: python docs/first_answer.py"
+
+
+def numbers(text):
+    return [float(one) for one in re.findall(r"\d+(?:\.\d+)?", text)]
 
 
 def test_every_key_and_every_law_is_described():

@@ -6,7 +6,8 @@ Its packages, from the ground up; each imports only those before it:
 - `designs`, `inputs`, `methods`, `study`: what is to be computed, and what it can answer;
 - `rows`, `store`: rows drawn, evaluated, and kept;
 - `running`, `upkeep`, `exploring`: what runs models;
-- `indices`, `population`, `analysis`, `drawing`, `report`: what reads results;
+- `indices`, `population`, `analysis`, `conclusions`, `drawing`, `tracing`, `report`: what reads
+  results;
 - `cli`: the command.
 
 The picture is in docs/architecture.md. What ``__init__.pyi`` lists is imported when it is first

@@ -10,7 +10,6 @@ from .analysis.level_table import levels as levels
 from .analysis.lifetime import survival as survival
 from .analysis.overview import summary as summary
 from .analysis.regime_table import regimes as regimes
-from .analysis.tracing.tracing import trace as trace
 from .analysis.twin import two_fidelities as two_fidelities
 from .analysis.what_if import what_if as what_if
 from .conclusions.answer import answer as answer
@@ -20,9 +19,16 @@ from .exploring.basins import basins as basins
 from .exploring.rare_events import rare_event as rare_event
 from .exploring.row_again import row as row
 from .exploring.simulation import simulate as simulate
+from .exploring.updating import update as update
 from .indices.dataset import sensitivity as sensitivity
+from .learning.answer import learnt as learnt
+from .learning.result import as_unit as as_unit
+from .outside.function import machine as machine
+from .outside.returned import Returned as Returned
+from .outside.returned import censored as censored
 from .provenance import __version__ as __version__
 from .rows.elements import labels as labels
 from .rows.results import open_result as open_result
+from .running.loading import load_study as load_study
 from .running.runner import run as run
-from .study.definition import load_study as load_study
+from .tracing.tracing import trace as trace

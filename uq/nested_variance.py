@@ -63,6 +63,9 @@ class _Sums(NamedTuple):
     inner: Floats
     floor: Floats
     error: Floats
+    known_outer: Floats
+    known_middle: Floats
+    known_inner: Floats
 
 
 class _Share(NamedTuple):
@@ -77,6 +80,7 @@ def nested_shares(
     values: Floats,
     errors: Floats | None = None,
     replicate: NDArray[np.integer] | None = None,
+    known: Floats | None = None,
 ) -> NestedShares:
     """Estimate the shares of the variance of samples, units and repeats.
 
@@ -89,6 +93,9 @@ def nested_shares(
         Standard deviation of the numerical error of each value; NaN where it is not known.
     replicate : ndarray of int, shape (samples,), optional
         Of each sample, where only replicates are independent.
+    known : ndarray, shape (3, samples, units, repeats), optional
+        What each row adds to the variances of samples, units and repeats, known without scatter:
+        of independent terms that `values` have at their means.
 
     Returns
     -------
@@ -104,15 +111,16 @@ def nested_shares(
     Intervals: Student's t with the jackknife over independent samples (or replicates) [2]_ of a
     share p, on the scale log((p + e) / (1 - p + f)), where e and f are the noise that was
     subtracted from a component: what is left are ratios of mean squares, which are positive, skewed
-    as their logarithms suppose, and not pinned where a component vanishes. Measured in
-    `tests/uq/test_coverage_levels.py`.
+    as their logarithms suppose, and not pinned where a component vanishes. What is known is added
+    to the components. Measured in `tests/uq/test_coverage_levels.py`.
 
     References
     ----------
     .. [1] S. R. Searle, G. Casella, C. E. McCulloch, "Variance components", Wiley (1992), 3.
     .. [2] J. N. Arvesen, "Jackknifing U-statistics", Ann. Math. Stat. 40, 2076-2100 (1969).
     """
-    columns, whole = _columns(values, errors)
+    added = np.zeros((3, *values.shape)) if known is None else known
+    columns, whole = _columns(values, errors, added)
     independent = np.flatnonzero(whole)
     if replicate is not None:
         _, independent = np.unique(replicate[whole], return_inverse=True)
@@ -122,37 +130,43 @@ def nested_shares(
     shares, variance = _shares(total)
     left_out = int((~whole).sum())
     there = values[whole][np.isfinite(values[whole])]
-    if len(there) < 2 or is_constant(there):
+    least = ROUNDING * float(np.nan_to_num(np.sqrt(np.abs(variance))))
+    scatters = len(there) > 1 and not is_constant(there) and np.ptp(there) > least
+    if len(there) < 2 or not (scatters or variance > 0):
         nothing = Estimate(reason=ALL_SAME if whole.sum() > 1 else TOO_FEW)
         return NestedShares(nothing, nothing, nothing, nothing, 0.0, left_out)
     groups = int(independent.max(initial=-1)) + 1
     reason = FEW if replicate is None and groups < FEWEST_SAMPLES else ""
     if groups < 2:
         reason = reason or "a single replicate does not show its scatter"
-    if reason:
-        known = [Estimate(float(one.value), reason=reason) for one in shares]
+    if not scatters:
+        found = [Estimate(*3 * (float(one.value),)) for one in shares]
+    elif reason:
+        found = [Estimate(float(one.value), reason=reason) for one in shares]
     else:
         own = np.stack([np.bincount(independent, column) for column in columns])
         without, _ = _shares(_Sums(*(columns.sum(axis=1)[:, None] - own)))
         pairs = zip(shares, without, strict=True)
-        known = [_estimate(one, other.value, groups) for one, other in pairs]
+        found = [_estimate(one, other.value, groups) for one, other in pairs]
     for place in (1, 2):
-        if values.shape[place] == 1:
-            known[place] = Estimate(reason="needs two of them")
+        if values.shape[place] == 1 and not added[place].any():
+            found[place] = Estimate(reason="needs two of them")
     if errors is None or not np.isfinite(errors).any():
-        known[3] = Estimate(reason="no row states its error")
-    outer, middle, inner, error = known
+        found[3] = Estimate(reason="no row states its error")
+    outer, middle, inner, error = found
     return NestedShares(outer, middle, inner, error, float(variance), left_out)
 
 
-def _columns(values: Floats, errors: Floats | None) -> tuple[Floats, Mask]:
-    """Return the terms of `_Sums` of each sample that has them, shape (8, n), and which have."""
+def _columns(values: Floats, errors: Floats | None, added: Floats) -> tuple[Floats, Mask]:
+    """Return the terms of `_Sums` of each sample that has them, shape (11, n), and which have."""
     counts = np.isfinite(values).sum(axis=2)
     units = (counts > 0).sum(axis=1)
     repeated = (counts > 1).sum(axis=1)
     enough_units = units > min(values.shape[1] - 1, 1)
     whole = enough_units & ((repeated > 0) | (values.shape[2] == 1))
     values, counts, units, repeated = (one[whole] for one in (values, counts, units, repeated))
+    there = np.isfinite(values)
+    known_sums = np.where(there, added[:, whole], 0.0).sum(axis=(2, 3)) / there.sum(axis=(1, 2))
     least = (ROUNDING * np.nanmax(np.abs(values), initial=0.0)) ** 2
     values = values - (np.nanmean(values) if values.size else 0.0)  # squares lose no digits
     known = counts > 0
@@ -177,7 +191,7 @@ def _columns(values: Floats, errors: Floats | None) -> tuple[Floats, Mask]:
         squares = np.divide(sums, stated.sum(axis=(1, 2)), out=squares, where=stated.any((1, 2)))
     ones = np.ones(len(values))
     columns = (ones, sample_means, sample_means**2, between / units, between - floor, inner, floor)
-    return np.stack([*columns, squares]), whole
+    return np.stack([*columns, squares, *known_sums]), whole
 
 
 def _mean_and_variance(
@@ -196,10 +210,10 @@ def _shares(sums: _Sums) -> tuple[tuple[_Share, ...], Floats]:
     """Return the shares of samples, units, repeats and errors, and the variance."""
     n = sums.samples
     with np.errstate(divide="ignore", invalid="ignore"):
-        noise, middle, inner, floor, error = (
-            one / n for one in (sums.noise, sums.middle, sums.inner, sums.floor, sums.error)
-        )
-        outer = (sums.square - sums.mean**2 / n) / (n - 1) - noise
+        noise, floor, error = (one / n for one in (sums.noise, sums.floor, sums.error))
+        outer = (sums.square - sums.mean**2 / n) / (n - 1) - noise + sums.known_outer / n
+        middle = (sums.middle + sums.known_middle) / n
+        inner = (sums.inner + sums.known_inner) / n
         variance = outer + middle + inner
         noise, floor, nothing = noise / variance, floor / variance, 0.0 * variance
         shares = (

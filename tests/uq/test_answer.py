@@ -1,6 +1,5 @@
 """Every sentence of the answer against the numbers under it, on studies of different kinds."""
 
-import json
 import re
 
 import numpy as np
@@ -27,7 +26,6 @@ from uq.conclusions.tightening import halved
 from uq.conclusions.words import Unit, called_together, rounded, rows_in_words
 from uq.contract import Status
 from uq.estimate import Estimate
-from uq.store.files import write_result
 from uq.study.reading import read_study_text
 
 DAY = 86400.0
@@ -280,33 +278,6 @@ def test_numbers_of_rows_are_rounded_up():
 def test_nothing_is_said_of_an_event_without_rows():
     assert Event("P(y>1.0)", "exceed 1", Estimate()).sentence == ""
     assert Ranking("y", "sobol").sentence == ""
-
-
-def test_json_has_the_numbers_behind_each_sentence(uq, folder, lifetime):
-    ds, _ = lifetime
-    write_result(ds, folder / "out.nc")
-    whole = json.loads(uq("summary", "out.nc", "--json").out)
-    found, said = whole["answer"], whole["outputs"]["life"]
-    assert found["output"] == "life" and found["others"] == {} and found["regimes"] == []
-    assert found["range"]["low"] == {
-        key: said["quantiles"]["0.05"][key] for key in ("value", "low", "high")
-    }
-    assert "last longer than" in found["promise"]["sentence"]
-    assert found["promise"]["lower"] < said["quantiles"]["0.05"]["value"]
-    (event,) = found["events"]
-    below = said["thresholds"][repr(10 * DAY)]["below"]
-    assert (event["value"], event["name"]) == (below["value"], "P(life<864000.0)")
-    assert event["curve"]["shares"][0]["value"] < event["curve"]["shares"][-1]["value"]
-    first = found["ranking"]["contributions"][0]
-    assert first["inputs"] == ["rate"] and first["indices"]["rate"]["value"] > 0.9
-    change = first["changes"]["rate"]
-    assert (change["step"], change["unit"], change["direction"]) == ("10 %", "%", -1)
-    assert change["value"] == pytest.approx(100 / 1.1 - 100)
-    assert [one["rule"] for one in found["advice"]] == ["measure", "tighten"]
-    parts = [found["promise"], found["range"], event, found["ranking"], *found["advice"]]
-    assert all(part["sentence"] in found["sentences"] for part in parts)
-    assert "answer" in json.loads(uq("summary", "out.nc", "--fits", "--json").out)
-    assert "answer" not in json.loads(uq("summary", "out.nc", "--plain", "--json").out)
 
 
 def test_undefined_rows_are_named_beside_a_probability():

@@ -10,13 +10,13 @@ from computed import asking, compared, linear, summarised, with_status
 from scipy import stats
 
 from uq import compare, summary
-from uq.analysis.tracing.tracing import traced
 from uq.contract import Status
 from uq.errors import InputError
 from uq.report import write_report
 from uq.rows.row_choice import lowest_row
 from uq.store.files import write_result
 from uq.study.registry import find_model
+from uq.tracing.tracing import traced
 
 LABELS = ("aperiodic", "1", "2", "3")
 

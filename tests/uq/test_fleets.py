@@ -11,9 +11,11 @@ from scipy import special, stats
 import uq as api
 from benchmarks.coverage import fleets as counted
 from uq.analysis.fleet import fleet_of
+from uq.analysis.fleet_json import fleet_json
 from uq.analysis.overview import summary
 from uq.errors import InputError
-from uq.population.fleets import at_most, units_of
+from uq.population.counting import at_most
+from uq.population.fleets import units_of
 from uq.population.worlds import ONE_UNIT, Noisy
 from uq.rows.elements import elements_of
 
@@ -72,7 +74,7 @@ def test_the_mean_over_all_fleets(size, allow):
 def test_many_worlds_are_computed_in_blocks(monkeypatch):
     ended = np.random.default_rng(0).random((50, 8, 1))
     whole = at_most(ended, 5, 1)
-    monkeypatch.setattr("uq.population.fleets._MOST_NUMBERS", 100)
+    monkeypatch.setattr("uq.population.counting._MOST_NUMBERS", 100)
     assert at_most(ended, 5, 1) == pytest.approx(whole, abs=1e-15)
 
 
@@ -152,6 +154,96 @@ def test_what_is_shared_is_integrated_outside_the_product():
     assert "exact" in kept.estimate.reason
     best = special.bdtr(2, 100, special.ndtr((-1.0 - shared * stats.norm.ppf(0.95)) / own))
     assert kept.high.value == pytest.approx(best, abs=1e-3)
+
+
+def scaled_fleet(inputs, samples=12, units=4, repeats=1, **tables):
+    """Return units whose lives are a b^-2 c^(1/2) exp(z/2)."""
+    design = {"method": "monte-carlo", "samples": samples, "seed": 3}
+    study = {
+        "study": {"name": "fleet", "model": "scaled"},
+        "design": design | {"units": units, "repeats": repeats},
+        "uncertain": inputs,
+        "analysis": {"outputs": ["life"]},
+    }
+    return computed(study_of(study | tables, "sample_models:SCALED"))
+
+
+NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 0.5}
+B_SHARED = lognormal(SHARED, 1.0, level="shared")
+TIED = {"parameters": ["b", "c"], "rank_correlation": [[1.0, 0.6], [0.6, 1.0]]}
+BESIDE = {
+    "own": {"z": NORMAL},
+    "own and chance": {"z": NORMAL, "c": LISTED | {"level": "chance"}},
+    "shared": {"z": NORMAL | {"level": "shared"}},
+}
+
+
+@pytest.mark.parametrize("beside", list(BESIDE.values()), ids=list(BESIDE))
+@pytest.mark.parametrize(("size", "allow"), [(1, 0), (3, 0), (3, 1)])
+def test_what_is_shared_is_integrated_where_nothing_else_is(beside, size, allow):
+    """Against sums over all fleets of each world, at many values of the shared input."""
+    repeats = 2 if "c" in beside else 1
+    ds = scaled_fleet(beside | {"b": B_SHARED}, repeats=repeats)
+    rest = (ds["life"].values * ds["b"].values ** 2).reshape(12, 4, repeats)
+    time = float(np.median(ds["life"].values))
+    z = np.linspace(-6, 6, 1201)
+    kept = [
+        np.mean([brute_force((world * np.exp(-2 * SHARED * at) < time).mean(1), size, allow)])
+        for world in rest
+        for at in z
+    ]
+    truth = np.average(np.reshape(kept, (12, -1)).mean(axis=0), weights=np.exp(-(z**2) / 2))
+    found = fleet_of(ds, size, [time], allow)
+    assert found.integrated == ("b",)
+    assert found.by[time][1].estimate.value == pytest.approx(truth, abs=2e-3)
+    first = found.first[0.5].estimate.value
+    again = fleet_of(ds, size, [first]).by[first][1].estimate.value
+    assert again == pytest.approx(0.5, abs=1e-9)
+
+
+def test_bands_of_units_that_end_together():
+    """With nothing own, the life of all units has the law of what they share."""
+    ds = scaled_fleet({"b": B_SHARED, "z": NORMAL | {"level": "shared"}}, samples=400, units=1)
+    rest = np.exp(ds["z"].values / 2)
+    found = fleet_of(ds, 1000, [1.0]).first[0.5]
+    for one, share in ((found.low, 0.05), (found.estimate, 0.5), (found.high, 0.95)):
+        below = special.ndtr(np.log(one.value / rest) / (2 * SHARED)).mean()
+        assert below == pytest.approx(share, abs=1e-4)
+        truth = np.exp(np.hypot(2 * SHARED, 0.25) * special.ndtri(share))
+        assert one.low < truth < one.high
+
+
+def test_a_shared_input_that_depends_on_another_is_integrated():
+    """Given the other, whether the units' own inputs are integrated or counted."""
+    shared = {"b": B_SHARED, "c": B_SHARED}
+    correlation = 2 * np.sin(np.pi * 0.6 / 6)
+    wide = SHARED * np.sqrt(4 + 0.25 - 2 * correlation)
+    tables = {"dependence": TIED}
+    for own in ({"z": NORMAL}, {"a": lognormal(OWN, 1.0)}):
+        ds = scaled_fleet(own | shared, samples=300, units=3, **tables)
+        found = fleet_of(ds, 2, [1.0])
+        assert "b" in found.integrated
+        spread = OWN if "a" in own else 0.25
+        z = np.linspace(-6, 6, 2001)
+        p = special.ndtr(wide * z / spread)
+        truth = np.average((1 - p) ** 2, weights=np.exp(-(z**2) / 2))
+        kept = found.by[1.0][1].estimate
+        assert kept.low < truth < kept.high
+        assert kept.high - kept.low < 0.12
+
+
+def test_points_over_what_is_shared_state_what_they_assume():
+    """Where units are only counted; not where the probability is known in each world."""
+    counted_units = fleet_of(fleet_result(units=4, samples=100, depth=LISTED), 4, [5e5])
+    said = "the 5 and 95 % points assume probits of the units' probability are about normal"
+    assert any(note.startswith(said) for note in counted_units.notes)
+    for one in counted_units.by[5e5]:
+        assert one.low.assumes and one.high.assumes and not one.estimate.assumes
+    assert counted_units.first[0.5].high.assumes
+    entry = fleet_json(counted_units)["by"]["500000.0"]["failed"]
+    assert "about normal" in entry["band_low_assumes"] and "assumes" not in entry
+    known = fleet_of(fleet_result(), 4, [5e5])
+    assert not any("assume" in note for note in known.notes)
 
 
 def test_a_fleet_of_one_is_a_unit():

@@ -248,10 +248,55 @@ def test_each_level_is_integrated_by_itself():
     assert (own.inputs, world.inputs) == (("a",), ("b",))
     z, weight = np.polynomial.hermite_e.hermegauss(60)
     found = sum(
-        w * own.given(element.values, 0.7, s - world.drawn)
-        for w, s in zip(weight / weight.sum(), world.term.at(z), strict=True)
+        w * own.below(element.values * np.exp(longer), 0.7)
+        for w, longer in zip(weight / weight.sum(), world.longer(z), strict=True)
     )
     assert found == pytest.approx(element.below(0.7), abs=1e-10)
+
+
+EXPONENTS = {"a": 1.0, "b": -2.0, "c": 0.5}
+PLACES = {
+    "own": {"a": "own"},
+    "shared": {"b": "shared"},
+    "chance": {"c": "chance"},
+    "own and shared": {"a": "own", "b": "shared"},
+    "all": {"a": "own", "b": "shared", "c": "chance"},
+}
+
+
+@pytest.mark.parametrize("levels", list(PLACES.values()), ids=list(PLACES))
+def test_every_level_is_integrated_in_probabilities_quantiles_and_curves(levels):
+    inputs = {name: lognormal(0.3, level=level) for name, level in levels.items()}
+    design = {"units": 3, "repeats": 2}
+    ds = computed(scaled_study(inputs | {"z": NORMAL}, design, samples=60))
+    rest = np.exp(ds["z"].values / 2)
+    spread = 0.3 * np.hypot.reduce([EXPONENTS[name] for name in levels])
+
+    def below(time):
+        return special.ndtr(np.log(time / rest) / spread).mean()
+
+    found, line = summary(ds).loc["life"], survival(ds, "life")
+    assert found["P(<1.0)"] == pytest.approx(below(1.0), abs=1e-9)
+    assert below(found["B10"]) == pytest.approx(0.1, abs=1e-9)
+    assert below(found["q0.5"]) == pytest.approx(0.5, abs=1e-9)
+    assert set(line.attrs["integrated"].split()) == set(levels)
+    time = float(line["time"][40])
+    assert float(line["survival"][40]) == pytest.approx(1 - below(time), abs=1e-9)
+
+
+@pytest.mark.parametrize("case", ["one", "truncated", "multiple", "correlated", "against"])
+def test_means_and_variances_of_logarithms_are_those_of_the_law(case):
+    """By quadrature of the probability that the life of each row is shorter."""
+    inputs, tables, _ = CASES[case]
+    ds = computed(scaled_study(inputs, samples=8, **tables))
+    law = next(population(ds, ["life"])).law
+    mean, variance = law.moments
+    logs = np.log(ds["life"].values)
+    y = np.linspace(-8, 8, 16_001)
+    steps = np.diff([law.below(np.exp(logs), np.exp(one)) for one in y], axis=0)
+    middle = (y[1:] + y[:-1]) / 2
+    assert mean + logs == pytest.approx(middle @ steps, abs=1e-6)
+    assert variance == pytest.approx(middle**2 @ steps - (middle @ steps) ** 2, abs=1e-6)
 
 
 @pytest.mark.slow

@@ -3,46 +3,20 @@
 import base64
 import json
 import re
-import shlex
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from computed import computed, kinds, linear, study_of, with_output
+from computed import kinds, linear, with_output
+from explored import cells
 
 from uq.analysis.findings import Findings
-from uq.analysis.what_if import answer, read_changes, what_if_json
-from uq.errors import RunError
+from uq.analysis.life_quantiles import ended_by, life_quantiles, quantile_estimate
 from uq.intervals import share_interval
 from uq.report.embedded import MOST_ROWS, rows_inside
-from uq.report.page import templates
+from uq.rows.elements import elements_of, replicates_of
 
 ASKED = {"thresholds": {"y": 6.0}}
-CELLS = """[...document.querySelectorAll("PLACE table.found tr[data-key]")].map(line => [
-  line.dataset.key,
-  ...[...line.cells].slice(1).map(cell => [cell.querySelector("data")?.value ?? "NaN",
-  cell.dataset.low ?? "NaN", cell.dataset.high ?? "NaN"])])"""
-PAGE = """<!DOCTYPE html><html lang=en><meta charset=utf-8>
-<meta name=viewport content="width=device-width">
-<style>:root { --faint: gray; --line: silver; --accent: navy; color-scheme: light dark }</style>"""
-
-
-@pytest.fixture
-def shown(browser, tmp_path):
-    """Return a function that opens the page of a result."""
-
-    def show(ds, **how):
-        path = tmp_path / "page.html"
-        rows = rows_inside(Findings(ds), "a result.nc")
-        explorer = templates().get_template("explorer.html")
-        text = PAGE + explorer.render(rows_inside=rows)
-        path.write_text(text, encoding="utf-8")
-        browser.open(path, **how)
-        browser.painted()
-        return browser
-
-    yield show
-    assert browser.complaints() == []
-    assert all(re.match("file:|data:", address) for address in browser.requests())
 
 
 def ranges(browser):
@@ -50,13 +24,6 @@ def ranges(browser):
     ends = "one => [one.dataset.low, one.dataset.high]"
     found = browser.value(f"[...document.querySelectorAll('.range')].map({ends})")
     return [tuple(map(float, pair)) for pair in found]
-
-
-def cells(browser, place="#explorer"):
-    """Return the numbers of the table: key -> one (value, low, high) for each column."""
-    browser.painted()
-    numbers = browser.value(CELLS.replace("PLACE", place))
-    return {key: [np.array(one, dtype=float) for one in found] for key, *found in numbers}
 
 
 def drag_handle(browser, name, end, steps):
@@ -82,12 +49,20 @@ def place_of_a_point(browser):
     )
 
 
-@pytest.mark.parametrize("design", [("monte-carlo", 400, 1), ("sobol", 64, 8), ("sobol", 64, 1)])
+DESIGNS = {
+    "independent": {"samples": 400},
+    "replicates": {"method": "sobol", "samples": 64, "replicates": 8},
+    "one replicate": {"method": "sobol", "samples": 64},
+    "units": {"samples": 130, "units": 3},
+    "units and replicates": {"method": "sobol", "samples": 32, "replicates": 8, "repeats": 2},
+}
+
+
+@pytest.mark.parametrize("design", DESIGNS)
 def test_a_brush_gives_what_python_finds_for_its_rows(shown, design):
-    method, samples, replicates = design
-    ds = linear(method, samples, replicates, analysis=ASKED)
+    ds = linear(**DESIGNS[design], analysis=ASKED)
     browser = shown(ds)
-    part = ds["replicate"].values if method == "sobol" else None
+    part = replicates_of(ds)
     hits, x4 = ds["y"].values > 6.0, ds["x4"].values
     drag_handle(browser, "x4", 0, 200)
     drag_handle(browser, "x4", 1, 430)
@@ -99,7 +74,12 @@ def test_a_brush_gives_what_python_finds_for_its_rows(shown, design):
     expected = hits[chosen].mean(), *share_interval(hits[chosen], within)
     assert among == pytest.approx(expected, rel=1e-9, nan_ok=True)
     assert everywhere == pytest.approx((hits.mean(), *share_interval(hits, part)), nan_ok=True)
-    assert np.isnan(among[1]) == (replicates == 1 and method == "sobol")
+    assert np.isnan(among[1]) == (design == "one replicate")
+    element = next(elements_of(ds, ["y"]))
+    for rows, found in zip((chosen, hits | True), cells(browser)["quantile/0.1"], strict=True):
+        some = replace(element, values=element.values[rows], censored=element.censored[rows])
+        expected = quantile_estimate(some, 0.1, None if part is None else part[rows])
+        assert found == pytest.approx(expected.numbers, rel=1e-9, nan_ok=True)
     said = browser.value("document.querySelector('.said').textContent")
     assert said.startswith(f"{chosen.sum()} of {len(x4)} rows, chosen after the fact")
 
@@ -137,6 +117,19 @@ def test_lives_that_never_end_or_are_censored_lie_beyond_the_brush(shown):
     (low, high) = ranges(browser)[1]
     ended = known & ~censored & (life >= low) & (life <= high)
     assert ended.sum() == browser.value(count)
+
+
+def test_censored_lives_have_the_numbers_of_python(shown):
+    ds = kinds(samples=400, analysis={"thresholds": {"life": [1.4, 9.0]}})
+    found = cells(shown(ds))
+    first = next(elements_of(ds, ["life"]))
+    for time in (1.4, 9.0):
+        assert first.unknown_sides(time).any()
+        (here,) = found[f"{first.name}/{time:g}"]
+        assert here == pytest.approx(ended_by(first, time, None)[1].numbers, nan_ok=True)
+    for name, one in life_quantiles(first, {"0.1": 0.1, "0.5": 0.5}, None).items():
+        (here,) = found[f"quantile/{name}"]
+        assert here == pytest.approx(one.numbers, nan_ok=True)
 
 
 def test_chips_leave_out_a_regime(shown):
@@ -199,113 +192,3 @@ def test_a_page_of_many_rows_is_small_and_says_which_part_it_holds(shown):
     assert len(inside["columns"]) == 12 and inside["total"] == 100_000
     assert len(numbers) == MOST_ROWS and 45_000 < numbers.mean() < 55_000
     assert len(json.dumps(inside)) < 4e6
-
-
-NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
-LAWS = {
-    "normal": (NORMAL, "z"),
-    "truncated-normal": (
-        NORMAL | {"distribution": "truncated-normal", "lower": -1.0, "upper": 2.0},
-        "z",
-    ),
-    "truncate": (NORMAL | {"truncate": [-2.0, 1.5]}, "z"),
-    "uniform": ({"distribution": "uniform", "lower": -1.0, "upper": 2.0}, "z"),
-    "triangular": ({"distribution": "triangular", "lower": -1.0, "mode": 0.0, "upper": 2.0}, "z"),
-    "triangular scale": (
-        {"distribution": "triangular", "lower": 0.5, "mode": 1.0, "upper": 2.0},
-        "a",
-    ),
-    "cv": ({"distribution": "lognormal", "mean": 1.0, "cv": 0.4}, "a"),
-    "sigma": ({"distribution": "lognormal", "median": 1.0, "sigma": 0.4}, "a"),
-    "loguniform": ({"distribution": "loguniform", "lower": 0.3, "upper": 2.0}, "a"),
-}
-
-
-def scaled(uncertain, **design):
-    """Return a result of lives that input a only scales, beside an output of both inputs."""
-    some = {"a": LAWS["sigma"][0], "z": NORMAL} | uncertain
-    tables = {
-        "study": {"name": "scaled", "model": "scaled"},
-        "design": {"method": "monte-carlo", "samples": 1000, "seed": 3} | design,
-        "uncertain": some,
-        "analysis": {"outputs": ["life", "y"], "thresholds": {"life": [0.8], "y": [0.5]}},
-    }
-    return computed(study_of(tables, "sample_models:SCALED"))
-
-
-def move(browser, name, width, shift):
-    """Move the sliders of an input."""
-    for i, value in enumerate((width, shift)):
-        browser.value(
-            f"(() => {{ const own = document.querySelector('.tolerance[data-name={name}]');"
-            f" const slider = own.querySelectorAll('input')[{i}];"
-            f" slider.value = {value}; slider.dispatchEvent(new Event('input')) }})()"
-        )
-
-
-def asked_of_python(browser, ds):
-    """Return what the command that the page shows finds in Python."""
-    browser.painted()
-    command = browser.value("document.querySelector('#tolerances .command code').innerText")
-    words = shlex.split(command)
-    assert words[:3] == ["uq", "what-if", "a result.nc"]
-    changes = read_changes([word for word in words[3:] if word != "--set"])
-    return changes, answer(ds, changes)
-
-
-@pytest.mark.parametrize(
-    ("law", "design"),
-    [
-        *((law, {}) for law in LAWS),
-        ("sigma", {"method": "sobol", "samples": 128, "replicates": 8}),
-        ("normal", {"samples": 200, "units": 3}),
-    ],
-)
-def test_a_slider_finds_what_python_finds(shown, law, design):
-    stated, name = LAWS[law]
-    ds = scaled({name: stated}, **design)
-    browser = shown(ds)
-    move(browser, name, 0.8, 0.3)
-    changes, found = asked_of_python(browser, ds)
-    assert changes
-    outputs = what_if_json(found)["outputs"]
-    here = cells(browser, "#tolerances")
-    for output, at, side in (("life", "0.8", "below"), ("y", "0.5", "above")):
-        one = outputs[output]["thresholds"][at][side]
-        expected = [one[end] for end in ("value", "low", "high")]
-        assert here[f"{output}/{at}"][0] == pytest.approx(expected, rel=1e-7)
-        assert here[f"{output}/{at}"][0] != pytest.approx(here[f"{output}/{at}"][1])
-    worth = browser.value("document.querySelector('#tolerances .said data').value")
-    assert float(worth) == pytest.approx(found.effective_rows, rel=1e-7)
-
-
-def test_lives_that_two_inputs_scale_keep_the_law_of_their_product(shown):
-    ds = scaled({"b": {"distribution": "loguniform", "lower": 0.8, "upper": 1.2}})
-    browser = shown(ds)
-    move(browser, "z", 0.8, 0.3)
-    _, found = asked_of_python(browser, ds)
-    one = what_if_json(found)["outputs"]["life"]["thresholds"]["0.8"]["below"]
-    expected = [one[end] for end in ("value", "low", "high")]
-    assert cells(browser, "#tolerances")["life/0.8"][0] == pytest.approx(expected, rel=1e-7)
-    notes = browser.value("document.querySelector('#tolerances .note').innerText")
-    assert notes.count("it scales lives together with other inputs") == 2
-
-
-def test_too_few_rows_are_refused_as_in_python(shown):
-    ds = scaled({}, samples=60)
-    browser = shown(ds)
-    move(browser, "z", 1.5, 1.5)
-    browser.painted()
-    with pytest.raises(RunError) as refused:
-        asked_of_python(browser, ds)
-    said = browser.value("document.querySelector('#tolerances .said').innerText")
-    assert said.split(":")[0] == str(refused.value).split(":")[0] and "Pareto k" in said
-    assert np.isnan(cells(browser, "#tolerances")["life/0.8"][0][0])
-
-
-def test_inputs_without_a_slider_are_named(shown):
-    listed = {"distribution": "discrete-choice", "values": [0.5, 1.0], "weights": [1.0, 1.0]}
-    browser = shown(scaled({"a": listed}))
-    assert browser.value("document.querySelectorAll('.tolerance').length") == 1
-    notes = browser.value("document.querySelector('#tolerances .note').innerText")
-    assert "its law is discrete-choice" in notes

@@ -31,4 +31,6 @@ def _plain(one: Banded) -> dict[str, Any]:
         entry |= {f"{name}_{key}": value for key, value in json_form.ends(end).items()}
         if end.reason:
             entry[f"{name}_reason"] = end.reason
+        if end.assumes:
+            entry[f"{name}_assumes"] = end.assumes
     return entry

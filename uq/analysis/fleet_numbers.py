@@ -9,10 +9,11 @@ from scipy import special
 
 from uq.analysis.failed_rows import bounds, with_failed_at
 from uq.estimate import Estimate
-from uq.intervals import Replicates
+from uq.intervals import Replicates, replicates_of_some
 from uq.population import worlds
 from uq.population.fleets import Units
-from uq.population.functionals import first_step, root
+from uq.population.functionals import first_step
+from uq.roots import root
 
 LOW, HIGH = 0.05, 0.95
 """Of worlds, at the ends of a band."""
@@ -137,15 +138,17 @@ class FleetNumbers:
     def _exceeding(self, time: float) -> worlds.Exceeding:
         """Return the spread over worlds of P(a unit has ended before a time)."""
         if time not in self._spreads:
-            units = self._units
-            ended = units.ended(time)
-            if units.are_alike:
-                known = np.isfinite(ended[:, 0, 0])
-                part = None if self._part is None else self._part[known]
-                self._spreads[time] = worlds.known(ended[known, 0], units.nodes, part)
-            else:
-                self._spreads[time] = worlds.Noisy(ended, units.weights, self._part)
+            self._spreads[time] = self._spread(time)
         return self._spreads[time]
+
+    def _spread(self, time: float) -> worlds.Exceeding:
+        units, world = self._units, self._alone[0].element
+        if not units.are_alike:
+            return worlds.Noisy(units.ended(time), units.weights, self._part)
+        part = replicates_of_some(self._part, world.present)
+        if units.end_together:
+            return worlds.certain(world.below(time)[world.present], part)
+        return worlds.known(units.ended(time)[world.present, 0], units.nodes, part)
 
     def _unit_at(self, time: float, share: float) -> Estimate:
         """Return the point of P(a unit has ended) below which it is in a share of worlds."""
@@ -168,13 +171,13 @@ class FleetNumbers:
 
     def _time_of(self, share: float, probability: float, near: float) -> Estimate:
         """Return the time by which a share of worlds has a larger probability of a unit's end."""
-        reasons = []
+        seen = [Estimate()]
 
         def at(name: str) -> float:
             def excess(x: float) -> float:
-                one = self._exceeding(exp(x))(probability)
-                if isnan(found := float(getattr(one, name))):
-                    raise _UnknownError(one.reason)
+                seen.append(self._exceeding(exp(x))(probability))
+                if isnan(found := float(getattr(seen[-1], name))):
+                    raise _UnknownError
                 return found - share
 
             try:
@@ -182,11 +185,15 @@ class FleetNumbers:
                 side = 1.0 if excess(start) < 0 else -1.0
                 there = first_step(start, 0.1 * side, lambda x: (excess(x) >= 0) == (side > 0))
                 return np.nan if there is None else exp(root(excess, there, _SETTLED))
-            except _UnknownError as unknown:
-                reasons.append(str(unknown))
+            except _UnknownError:
                 return np.nan
 
-        return Estimate(at("value"), at("high"), at("low"), next(iter(reasons), ""))
+        found = at("value"), at("high"), at("low")
+        reason, assumes = (
+            next(filter(None, (getattr(one, name) for one in seen)), "")
+            for name in ("reason", "assumes")
+        )
+        return Estimate(*found, reason, assumes)
 
 
 class _UnknownError(ArithmeticError):

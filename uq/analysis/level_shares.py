@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,8 @@ from uq.designs.levels import CHANCE, LEVELS, OWN, SHARED
 from uq.errors import InputError
 from uq.estimate import Estimate
 from uq.indices.targets import Target, lightened, split_name, targets
-from uq.nested_variance import NestedShares, nested_shares
+from uq.nested_variance import nested_shares
+from uq.population.by_level import Scales, scales_by_level
 from uq.rows.elements import (
     analysis_of,
     elements_of,
@@ -33,6 +35,7 @@ from uq.rows.nesting import (
     size_in_words,
 )
 from uq.rows.variables import error_name
+from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
 
 SOLVER = "solver"
@@ -70,12 +73,15 @@ class LevelShares:
         Samples with too few values.
     notes : tuple of str
         What replaces the output.
+    integrated : tuple of str
+        Inputs whose part of the variance is known exactly.
     """
 
     shares: Mapping[str, Estimate]
     variance: float = np.nan
     left_out: int = 0
     notes: tuple[str, ...] = ()
+    integrated: tuple[str, ...] = ()
 
     @property
     def sentences(self) -> list[str]:
@@ -87,7 +93,8 @@ class LevelShares:
         said = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
         if self.left_out:
             said.append(f"{self.left_out} samples have too few values and are left out")
-        return [*self.notes, *said]
+        exactly = [f"{' and '.join(self.integrated)} integrated exactly"] * bool(self.integrated)
+        return [*exactly, *self.notes, *said]
 
 
 @dataclass(frozen=True)
@@ -125,7 +132,7 @@ class ByLevel:
         return [name for name, own in self.inputs.items() if own == level]
 
 
-def by_level(ds: xr.Dataset, output: str | None = None) -> ByLevel:
+def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) -> ByLevel:
     """Estimate the shares of the variance by level.
 
     Parameters
@@ -134,6 +141,8 @@ def by_level(ds: xr.Dataset, output: str | None = None) -> ByLevel:
         A result.
     output : str, optional
         Only this output, or this element of one; by default those that the study shows.
+    plain : bool
+        Whether lives are taken as computed, and nothing that only scales them is integrated.
 
     Returns
     -------
@@ -144,6 +153,7 @@ def by_level(ds: xr.Dataset, output: str | None = None) -> ByLevel:
     InputError
         When the rows do not follow the laws of the inputs, or there is no such output.
     """
+    refuse_weights(ds, "shares of levels")
     if why := why_no_statistics(ds):
         raise InputError(f"no shares: the rows of a '{ds.attrs['design']}' design {why}")
     rows = independent_rows(ds)
@@ -155,7 +165,8 @@ def by_level(ds: xr.Dataset, output: str | None = None) -> ByLevel:
     found = {}
     for target in targets(chosen, analysis_of(rows).thresholds):
         light = target if target.event else lightened(target)
-        found[light.name] = _shares(rows, light, place, varying, replicate)
+        scales = Scales({}) if plain else _scales(rows, light)
+        found[light.name] = _shares(rows, light, place, scales, replicate)
     switches = "regime" in known and output is None
     mean, each = switching(rows, place, varying) if switches else (None, np.empty(0))
     return ByLevel(place.samples, place.units, place.repeats, levels_of(rows), found, mean, each)
@@ -165,25 +176,37 @@ def _is_error(name: str, known: Collection[str]) -> bool:
     return name in {error_name(one) for one in known}
 
 
+def _scales(rows: xr.Dataset, target: Target) -> Scales:
+    """Return what is integrated of a target: of the logarithms of lives, what only scales them."""
+    element = target.element
+    if element is None or target.event or target.refused or not element.declared.scales:
+        return Scales({})
+    found = scales_by_level(rows, element)
+    if split_name(target.name)[0] == "log" or not found.inputs:
+        return found
+    names = " and ".join(found.inputs)
+    return Scales({}, f"{names} not integrated: the lives are replaced by their ranks")
+
+
 def _shares(
-    rows: xr.Dataset,
-    target: Target,
-    place: Nesting,
-    varying: Collection[str],
-    replicate: Any,
+    rows: xr.Dataset, target: Target, place: Nesting, scales: Scales, replicate: Any
 ) -> LevelShares:
     reason = target.refused
-    if not reason and not target.event and lacks_variance(target.values):
+    values = scales.mean_logarithms(target.values)
+    if not reason and not target.event and lacks_variance(values):
         reason = "the tail is too heavy for a variance to apportion"
     if reason:
         return LevelShares({name: Estimate(reason=reason) for name in SOURCES}, notes=target.notes)
     errors, why_none = _errors(rows, target)
-    table = place.table(np.where(np.isfinite(target.values), target.values, np.nan))
+    table = place.table(np.where(np.isfinite(values), values, np.nan))
     own = None if errors is None else place.table(errors)
-    found = shares_of(table, varying, own, replicate)
+    varying = levels_that_vary(rows, scales.inputs)
+    known = {level: place.table(variance) for level, variance in scales.variances.items()}
+    found = shares_of(table, varying, own, replicate, known)
     if errors is None:
         found = replace(found, shares={**found.shares, SOLVER: Estimate(reason=why_none)})
-    return replace(found, notes=target.notes)
+    notes = (*target.notes, *filter(None, [scales.why_not_more]))
+    return replace(found, notes=notes, integrated=scales.inputs)
 
 
 def _errors(rows: xr.Dataset, target: Target) -> tuple[Floats | None, str]:
@@ -205,6 +228,7 @@ def shares_of(
     varying: Collection[str],
     errors: Floats | None = None,
     replicate: Any = None,
+    known: Mapping[str, Floats] = MappingProxyType({}),
 ) -> LevelShares:
     """Estimate the shares of the variance of one number per row.
 
@@ -213,25 +237,36 @@ def shares_of(
     table : ndarray, shape (samples, units, repeats)
         NaN where there is none.
     varying : collection of str
-        The levels on which something varies; the share of the others is known to be zero.
+        The levels on which something varies; the share of the others is what is known of them.
     errors : ndarray, shape (samples, units, repeats), optional
         Numerical error of each, as a standard deviation.
     replicate : ndarray of int, shape (samples,), optional
         Where only replicates are independent.
+    known : dict of str to ndarray of shape (samples, units, repeats), optional
+        Level -> variance that each row adds to it, of independent terms at their means in `table`.
 
     Returns
     -------
     LevelShares
     """
     names = tuple(level for level in LEVELS if level in varying)
+    places = _places(names, table.shape)
+    places += tuple((level,) for level in LEVELS if level in known and level not in names)
     if replicate is not None:
         replicate = _reduced(np.broadcast_to(replicate[:, None, None], table.shape), names)
         replicate = replicate[:, 0, 0]
     errors = None if errors is None else _reduced(errors, names)
-    found = nested_shares(_reduced(table, names), errors, replicate)
+    table = _reduced(table, names)
+    added = np.zeros((3, *table.shape))
+    for place, levels in enumerate(places):
+        for level in known.keys() & set(levels):
+            added[place] += _reduced(known[level], names)
+    found = nested_shares(table, errors, replicate, added)
     shares = {SHARED: found.outer, OWN: found.middle, CHANCE: found.inner}
     if found.variance > 0:
-        shares = dict.fromkeys(LEVELS, NONE) | _told_apart(found, names, table.shape)
+        shares = dict.fromkeys(LEVELS, NONE)
+        for levels, share in zip(places, found[:3] if len(places) > 1 else [ALL], strict=False):
+            shares |= _told(levels, share)
     return LevelShares(shares | {SOLVER: found.error}, found.variance, found.left_out)
 
 
@@ -256,31 +291,31 @@ def _reduced(table: Any, names: Collection[str]) -> Any:
     return table if units > 1 else table.reshape(samples, repeats, 1)
 
 
-def _told_apart(
-    found: NestedShares, names: tuple[str, ...], shape: tuple[int, ...]
-) -> dict[str, Estimate]:
-    """Return the shares of the levels on which something varies."""
+def _places(names: tuple[str, ...], shape: tuple[int, ...]) -> tuple[tuple[str, ...], ...]:
+    """Return which levels are told apart: those in each place of a reduced table, outermost first.
+
+    Levels in one place cannot be separated.
+    """
     _, units, repeats = shape
-    match names:
-        case (only,):
-            return {only: ALL}
-        case ("shared", "own"):
-            return _outer_and_inner(found, names) if units > 1 else dict.fromkeys(names, _ONE_UNIT)
-        case ("shared", "chance"):
-            apart = units * repeats > 1
-            return _outer_and_inner(found, names) if apart else dict.fromkeys(names, _ONE_ROW)
-        case ("own", "chance"):
-            if repeats > 1:
-                return _outer_and_inner(found, names)
-            return {OWN: replace(ALL, assumes=INCLUDES_CHANCE), CHANCE: _ONE_REPEAT}
-    if units == 1:
-        chance = found.middle if repeats > 1 else _ONE_REPEAT
-        return {SHARED: _ONE_UNIT, OWN: _ONE_UNIT, CHANCE: chance}
-    if repeats == 1:
-        own = replace(found.middle, assumes=INCLUDES_CHANCE)
-        return {SHARED: found.outer, OWN: own, CHANCE: _ONE_REPEAT}
-    return {SHARED: found.outer, OWN: found.middle, CHANCE: found.inner}
+    if names == tuple(LEVELS) and repeats == 1 < units:
+        return (SHARED,), (OWN, CHANCE)
+    if names == tuple(LEVELS) and units == 1 < repeats:
+        return (SHARED, OWN), (CHANCE,)
+    several = {
+        (SHARED, OWN): units > 1,
+        (SHARED, CHANCE): units * repeats > 1,
+        (OWN, CHANCE): repeats > 1,
+        tuple(LEVELS): units > 1,
+    }
+    return tuple((name,) for name in names) if several.get(names, True) else (names,)
 
 
-def _outer_and_inner(found: NestedShares, names: tuple[str, ...]) -> dict[str, Estimate]:
-    return dict(zip(names, (found.outer, found.middle), strict=True))
+def _told(levels: tuple[str, ...], share: Estimate) -> dict[str, Estimate]:
+    """Return the shares of levels from the share of their place."""
+    if len(levels) == 1:
+        return {levels[0]: share}
+    if levels == (OWN, CHANCE):
+        return {OWN: replace(share, assumes=INCLUDES_CHANCE), CHANCE: _ONE_REPEAT}
+    if OWN not in levels:
+        return dict.fromkeys(levels, _ONE_ROW)
+    return dict.fromkeys(levels, _ONE_UNIT) | ({CHANCE: _ONE_REPEAT} if CHANCE in levels else {})

@@ -8,7 +8,7 @@ import xarray as xr
 from uq.analysis.level_shares import SOURCES, by_level
 
 
-def levels(ds: xr.Dataset, output: str | None = None) -> xr.Dataset:
+def levels(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) -> xr.Dataset:
     """Apportion the variance to what units share, what is their own, chance, and the solver.
 
     Parameters
@@ -17,6 +17,9 @@ def levels(ds: xr.Dataset, output: str | None = None) -> xr.Dataset:
         A result.
     output : str, optional
         Only this output, or this element of one; by default those that the study shows.
+    plain : bool, optional
+        Whether to take lives as computed; by default what only scales a life is integrated: its
+        part of the variance is known exactly, and only that of everything else is estimated.
 
     Returns
     -------
@@ -24,12 +27,12 @@ def levels(ds: xr.Dataset, output: str | None = None) -> xr.Dataset:
         Over ``output`` and ``level`` (``shared``, ``own``, ``chance``, ``solver``): ``share`` of
         the variance, with its 95 % interval ``share_low`` and ``share_high``, and ``reason``, why
         one of them is NaN; ``assumes`` where a share contains another. Over ``output``:
-        ``variance`` (the sum of the three components) and ``samples_left_out``. The share of the
-        solver, from ``<output>_error``, is contained in the others. Lifetimes are replaced by their
-        logarithms, or by their ranks where rows never end or are censored; a value with a heavy
-        tail likewise. Of a model with regimes: over ``sample``, ``another_regime``, the share of
-        the other repeats of its unit that end in another regime; ``another_regime_mean``, with
-        ``_low`` and ``_high``, their mean.
+        ``variance`` (the sum of the three components), ``samples_left_out`` and ``integrated``,
+        names of inputs separated by spaces. The share of the solver, from ``<output>_error``, is
+        contained in the others. Lifetimes are replaced by their logarithms, or by their ranks where
+        rows never end or are censored; a value with a heavy tail likewise. Of a model with regimes:
+        over ``sample``, ``another_regime``, the share of the other repeats of its unit that end in
+        another regime; ``another_regime_mean``, with ``_low`` and ``_high``, their mean.
 
     Raises
     ------
@@ -42,7 +45,7 @@ def levels(ds: xr.Dataset, output: str | None = None) -> xr.Dataset:
     >>> float(uq.levels(ds)["share"].sel(level="own")[0])  # every input is a unit's own
     1.0
     """
-    found = by_level(ds, output)
+    found = by_level(ds, output, plain=plain)
     data: dict[str, Any] = {}
     for name, end in (("share", "value"), ("share_low", "low"), ("share_high", "high")):
         data[name] = _over(found.outputs.values(), end, float)
@@ -50,6 +53,8 @@ def levels(ds: xr.Dataset, output: str | None = None) -> xr.Dataset:
         data[name] = _over(found.outputs.values(), name, str)
     data["variance"] = ("output", [one.variance for one in found.outputs.values()])
     data["samples_left_out"] = ("output", [one.left_out for one in found.outputs.values()])
+    integrated = [" ".join(one.integrated) for one in found.outputs.values()]
+    data["integrated"] = ("output", np.array(integrated, dtype=str))
     if found.another_regime is not None:
         data["another_regime"] = ("sample", found.switching)
         for end, value in zip(("mean", "low", "high"), found.another_regime.numbers, strict=True):

@@ -31,9 +31,7 @@ def fleet(
         heading(f"\nby {threshold(time, 's')}")
         kept = "none has ended" if allow == 0 else f"at most {allow} have ended"
         _show([("have ended", failed), (f"P({kept})", at_most)])
-    if found.integrated:
-        note(f"{' and '.join(found.integrated)} integrated exactly")
-    for text in found.notes:
+    for text in found.sentences:
         note(text)
 
 

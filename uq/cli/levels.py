@@ -13,10 +13,10 @@ from uq.methods.indices import S1
 from uq.rows.results import open_result
 
 
-def levels(result: Path, output: str | None, json: bool) -> None:
+def levels(result: Path, output: str | None, plain: bool, json: bool) -> None:
     """Show the shares of the variance by level."""
     ds = open_result(result)
-    found = by_level(ds, output)
+    found = by_level(ds, output, plain=plain)
     if json:
         print_json(levels_json(found))
         return

@@ -22,9 +22,16 @@ ModelName = Annotated[
 StudyFile = Annotated[str, typer.Argument(metavar="STUDY", help="A study file (TOML).")]
 ResultFile = Annotated[Path, typer.Argument(metavar="OUT.nc", help="A result of 'uq run'.")]
 Json = Annotated[bool, typer.Option("--json", help="Machine-readable, full precision.")]
+Plain = Annotated[
+    bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
+]
 ModelReference = Annotated[
     str | None,
-    typer.Option("--model", metavar="PKG.MOD:ATTR", help="Use a model that is not installed."),
+    typer.Option(
+        "--model",
+        metavar="FILE.py",
+        help="Use a model that is not installed: FILE.py[:NAME], or PKG.MOD:ATTR.",
+    ),
 ]
 Workers = Annotated[
     int | None,

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from uq.analysis.tracing.tracing import Trace, trace_json, traced
 from uq.cli.printing import grid, heading, note, paragraph, print_json
 from uq.rows.results import open_result
+from uq.tracing.tracing import Trace, trace_json, traced
 
 _MOST = 40  # characters of a hash
 

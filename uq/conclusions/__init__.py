@@ -13,6 +13,6 @@ Reading order; a module imports only those above it:
     tightening      what a tighter tolerance would change, from the rows that exist
     advice          what to do, by rules
     answer          all of it, of a result
+    as_json         its numbers in plain data, sentence by sentence
     page            the same as HTML
-    as_json         the same as JSON
 """

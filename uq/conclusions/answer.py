@@ -55,7 +55,7 @@ def conclude(findings: Findings, weighed: bool = True) -> Answer:
 def _concluded(findings: Findings, weighed: bool) -> Answer:
     ds = findings.ds
     found = tuple(quantities(findings)) if findings.rows.sizes["sample"] else ()
-    regimes = tuple(_regimes(findings))
+    regimes = tuple(regimes_of(findings))
     return Answer(
         str(ds.attrs["title"]),
         ds.sizes["sample"],
@@ -67,7 +67,7 @@ def _concluded(findings: Findings, weighed: bool) -> Answer:
     )
 
 
-def _regimes(findings: Findings) -> Iterator[Event]:
+def regimes_of(findings: Findings) -> Iterator[Event]:
     """Yield the regimes that occur, the most frequent first; one alone needs no words."""
     shares = [one for one in findings.summary.regimes.values() if one.facts["count"]]
     for one in sorted(shares, key=lambda one: -one.facts["count"]) * (len(shares) > 1):

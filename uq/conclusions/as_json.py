@@ -1,122 +1,132 @@
-"""The answer as JSON: the numbers behind each sentence, in CF units, and the sentence."""
+"""The answer as the command line prints it with ``--json``: for each sentence, its numbers."""
 
+from collections.abc import Iterator
 from typing import Any
 
+from uq import json_form
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Change, Contribution, Ranking
 from uq.conclusions.parts import Advice, Answer, Event, Quantity
 from uq.conclusions.promises import Promise, Range
-from uq.json_form import failed, number, numbers
 
 
 def answer_json(found: Answer) -> dict[str, Any]:
-    """Return an answer in plain data.
-
-    Parameters
-    ----------
-    found : Answer
+    """Return the answer in plain data, in the units of the outputs.
 
     Returns
     -------
     dict
-        ``sentences``: the answer as `uq.answer` prints it. Of what the study is about: ``output``,
-        its element; ``promise``; ``range``; ``events``, what the thresholds ask; ``ranking`` of the
-        inputs. ``others``: element -> the same of the other elements. ``regimes``: as ``events``,
-        of the regimes. ``advice``: what to do, the most urgent first. Numbers are in the CF unit
-        of the output, changes of a ranking in their own ``unit``; each part has its ``sentence``.
+        ``rows``, ``failed``; ``quantities``: name of the element -> ``words``, ``promise``,
+        ``range``, ``events`` (target -> event) and ``ranking``; ``regimes``: label -> event;
+        ``advice``: rule -> ``text``, ``inputs``, ``rows``. The numbers of a sentence stand side by
+        side, with the sentence, under a key of their own. An event has its ``share``, what it is
+        ``decided_by``, its probability in ``parts`` of the range of the input ``over``. A ranking
+        has ``contributions``: ``inputs`` -> index, ``effects`` -> change with a ``step`` of the
+        input, in a ``unit`` or, where that is "", in that of the output.
     """
-    lead = {} if found.lead is None else {"output": found.lead.name} | _quantity(found.lead)
     return {
-        "sentences": found.lines,
-        **lead,
-        "others": {one.name: _quantity(one) for one in found.quantities[1:]},
-        "regimes": [_event(one) for one in found.regimes],
-        "advice": [_advice(one) for one in found.advice],
+        "rows": found.rows,
+        "failed": found.failed,
+        "quantities": {one.name: _quantity(one) for one in found.quantities},
+        "regimes": {one.said: _event(one) for one in found.regimes},
+        "advice": {one.rule: _advice(one) for one in found.advice},
     }
 
 
 def _quantity(one: Quantity) -> dict[str, Any]:
-    return {
-        "words": one.words,
-        "promise": None if one.promise is None else _promise(one.promise),
-        "range": None if one.range is None else _range(one.range),
-        "events": [_event(event) for event in one.events],
-        "ranking": None if one.ranking is None else _ranking(one.ranking),
-    }
+    found: dict[str, Any] = {"words": one.words}
+    found |= {} if one.promise is None else {"promise": _promise(one.promise)}
+    found |= {} if one.range is None else {"range": _range(one.range)}
+    found["events"] = {event.name: _event(event) for event in one.events}
+    return found | _of_ranking(one.ranking)
 
 
 def _promise(one: Promise) -> dict[str, Any]:
-    ends = (round(1 - one.coverage, 12), one.coverage)
-    return {
+    low, high = one.quantiles
+    numbers = {
         "coverage": one.coverage,
         "confidence": one.confidence,
-        "lower": number(one.lower),
-        "upper": number(one.upper),
-        "quantiles": {repr(p): numbers(q) for p, q in zip(ends, one.quantiles, strict=True)},
-        "reason": one.reason,
-        "sentence": one.sentence,
+        "lower": one.lower,
+        "upper": one.upper,
+        "lower_quantile": low.value,
+        "lower_quantile_low": low.low,
+        "upper_quantile": high.value,
+        "upper_quantile_high": high.high,
     }
+    plain = {name: json_form.number(value) for name, value in numbers.items()}
+    return {"sentence": one.sentence, "reason": one.reason} | plain
 
 
 def _range(one: Range) -> dict[str, Any]:
-    ends = {name: numbers(getattr(one, name)) for name in ("low", "median", "high")}
-    return ends | {"sentence": one.sentence}
+    found: dict[str, Any] = {"sentence": one.sentence}
+    for name in ("low", "median", "high"):
+        estimate = getattr(one, name)
+        found[name] = json_form.number(estimate.value)
+        found |= json_form.flag(f"{name}_", estimate, "value")
+    return found
 
 
 def _event(one: Event) -> dict[str, Any]:
-    return {
-        "name": one.name,
-        **numbers(one.share),
-        **failed(one.failed),
-        "undefined": number(one.undefined),
-        "sentence": one.with_cause,
-        "ranking": None if one.ranking is None else _ranking(one.ranking),
-        "over": one.over,
-        "curve": None if one.curve is None else _curve(one.curve),
-    }
+    found: dict[str, Any] = {"said": one.said}
+    found["share"] = (
+        {"sentence": one.sentence} | json_form.whole(one.share) | json_form.failed(one.failed)
+    )
+    found["share"] |= {"undefined": one.undefined}
+    found["decided_by"] = {"sentence": one.decided_by}
+    if one.curve is not None:
+        parts = [*_parts(one.curve)]
+        for name, place in (("least", one.curve.least), ("most", one.curve.most)):
+            found["decided_by"] |= {
+                name: parts[place]["value"],
+                f"{name}_above": parts[place]["above"],
+                f"{name}_below": parts[place]["below"],
+            }
+        found |= {"over": one.over, "parts": parts}
+    return found | _of_ranking(one.ranking)
 
 
-def _curve(one: EventCurve) -> dict[str, Any]:
-    return {"edges": one.edges.tolist(), "shares": [numbers(share) for share in one.shares]}
+def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
+    """Yield the parts of an input, each with the probability of the event there."""
+    edges = [float(edge) for edge in curve.edges]
+    for low, high, share in zip(edges[:-1], edges[1:], curve.shares, strict=True):
+        yield {"above": low, "below": high} | json_form.numbers(share)
 
 
-def _ranking(one: Ranking) -> dict[str, Any]:
-    return {
+def _of_ranking(one: Ranking | None) -> dict[str, Any]:
+    if one is None:
+        return {}
+    found = {
+        "sentence": one.sentence,
         "target": one.target,
         "method": one.method,
         "index": one.kind,
-        "contributions": [_contribution(each) for each in one.contributions],
         "reason": one.reason,
-        "rows_factor": number(one.rows_factor),
-        "sentence": one.with_effect,
+        "rows_factor": json_form.number(one.rows_factor),
+        "contributions": [_contribution(each) for each in one.contributions],
     }
+    return {"ranking": found}
 
 
 def _contribution(one: Contribution) -> dict[str, Any]:
-    indices = zip(one.inputs, one.indices, strict=True)
-    changes = zip(one.inputs, one.changes, strict=False)  # not known for all, or for none
+    changes = zip(one.inputs, one.changes, strict=False)
     return {
-        "inputs": list(one.inputs),
-        "indices": {name: numbers(index) for name, index in indices},
-        "changes": {name: _change(change) for name, change in changes},
-        "sentence": one.effect,
+        "inputs": {
+            name: json_form.numbers(index)
+            for name, index in zip(one.inputs, one.indices, strict=True)
+        },
+        "effects": {name: _change(change, name) for name, change in changes},
     }
 
 
-def _change(one: Change) -> dict[str, Any]:
-    relative = one.unit.name in ("%", "percentage points")
+def _change(one: Change, name: str) -> dict[str, Any]:
     return {
+        "sentence": one.sentence(name),
         "direction": one.direction,
         "step": one.step,
-        **numbers(one.by),
-        "unit": one.unit.name if relative else "output",
-    }
+        "unit": one.unit.name if one.step and one.unit.per == 1.0 else "",
+    } | json_form.numbers(one.by)
 
 
 def _advice(one: Advice) -> dict[str, Any]:
-    return {
-        "rule": one.rule,
-        "inputs": list(one.inputs),
-        "rows": one.rows,
-        "sentence": one.text,
-    }
+    rows = {} if one.rows is None else {"rows": one.rows}
+    return {"text": one.text, "inputs": list(one.inputs)} | rows

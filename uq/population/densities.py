@@ -69,11 +69,22 @@ def _log_density(inputs: Inputs, name: str) -> Floats:
 
 def _log_copula(inputs: Inputs, integrated: Collection[str]) -> Floats:
     """Return the logarithm of the Gaussian copula's density."""
-    assert inputs.dependence is not None
-    names = list(inputs.correlated)
-    kept = [i for i, name in enumerate(names) if name not in integrated]
-    matrix = normal_correlations(inputs.dependence.rank_correlation)[np.ix_(kept, kept)]
-    z = np.stack([inputs.normal(names[i]) for i in kept], axis=1)
-    excess = np.linalg.inv(matrix) - np.eye(len(kept))
+    names, matrix = correlations(inputs, integrated)
+    z = np.stack([inputs.normal(name) for name in names], axis=1)
+    excess = np.linalg.inv(matrix) - np.eye(len(names))
     _, log_determinant = np.linalg.slogdet(matrix)
     return np.asarray(-0.5 * (np.einsum("ni,ij,nj->n", z, excess, z) + log_determinant))
+
+
+def correlations(inputs: Inputs, integrated: Collection[str] = ()) -> tuple[list[str], Floats]:
+    """Return the correlated inputs that are not integrated, and how their normal variables are.
+
+    Returns
+    -------
+    names : list of str
+    matrix : ndarray, shape (k, k)
+    """
+    assert inputs.dependence is not None
+    names = [name for name in inputs.correlated if name not in integrated]
+    kept = [inputs.correlated.index(name) for name in names]
+    return names, normal_correlations(inputs.dependence.rank_correlation)[np.ix_(kept, kept)]

@@ -7,19 +7,20 @@ units of a world is integrated once per world, outside the product over its unit
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import ceil, nan
 
 import numpy as np
 import xarray as xr
-from scipy import special
 
 from uq.contract import Floats, Mask
 from uq.designs.levels import CHANCE, OWN, SHARED
 from uq.intervals import Replicates
+from uq.population.counting import more_than, turns
 from uq.population.functionals import Population
-from uq.population.scale_laws import IndependentScale
+from uq.population.scale_laws import Scale
 from uq.population.scaling import inputs_of, integrated
-from uq.rows.element import Element, RowLaw
+from uq.rows.element import Element
 from uq.rows.nesting import Nesting, levels_of, nesting_of
 
 _NODES = 120
@@ -28,7 +29,7 @@ causes up to `_WIDE` times the spread of what is integrated inside each unit; el
 
 _WIDE = 3.0
 _WIDEST = 60.0
-_MOST_NUMBERS = 10_000_000
+"""With a larger ratio, what is integrated once per world would need too many: it is not."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class Units:
         Its rows.
     place : Nesting
         Of these rows.
-    shared : IndependentScale or None
-        What scales all lives of a world alike, integrated at `nodes`.
+    shared : Scale or None
+        What scales all lives of a world alike.
     varying : tuple of str
         What differs between the units of a world and is not integrated. With nothing of this kind,
         the probability of a unit's life is known in each world.
@@ -50,7 +51,7 @@ class Units:
 
     element: Element
     place: Nesting
-    shared: IndependentScale | None
+    shared: Scale | None
     varying: tuple[str, ...]
 
     @property
@@ -64,11 +65,17 @@ class Units:
         return not self.varying
 
     @property
+    def end_together(self) -> bool:
+        """Whether all units of a world end together, at a time known but for what scales it."""
+        return self.are_alike and self.shared is not None and self.element.law is None
+
+    @property
     def nodes(self) -> Floats:
         """Standard normal quantiles of what is integrated once per world, shape (nodes,)."""
-        if self.shared is None or self.element.law is None:
+        if self.shared is None:
             return np.zeros(1)
-        finer = ceil(max(1.0, self.shared.spread / (_WIDE * self.element.law.spread)))
+        law = self.element.law
+        finer = 1 if law is None else ceil(max(1.0, self.shared.spread / (_WIDE * law.spread)))
         return np.linspace(-6.0, 6.0, finer * _NODES + 1)
 
     @property
@@ -84,11 +91,11 @@ class Units:
         """
         if self.shared is None:
             return self._of_units(self.element.below(time))[..., None]
-        assert self.element.law is not None
-        lives = self.element.values
+        each, lives = [], self.element.values
         with np.errstate(over="ignore", under="ignore"):
-            longer = np.exp(self.shared.term.at(self.nodes)[:, None] - self.shared.drawn)
-            each = [self._of_units(self.element.law.below(lives * by, time)) for by in longer]
+            for longer in self.shared.longer(self.nodes):
+                other = replace(self.element, values=lives * np.exp(longer))
+                each.append(self._of_units(other.below(time)))
         return np.stack(each, axis=-1)
 
     def _of_units(self, numbers: Floats) -> Floats:
@@ -140,19 +147,27 @@ class _MoreThan:
     def inputs(self) -> tuple[str, ...]:
         return self.units.integrated
 
+    @cached_property
+    def _turns(self) -> Floats:
+        units, element = self.units, self.units.element
+        table = units.place.table(np.where(element.present, element.values, np.nan))
+        found = turns(table, self.size, self.allow, units.are_alike)
+        place = units.place
+        return found[place.sample, place.unit, place.repeat]
+
     @property
     def spread(self) -> float:
         return nan
 
     def below(self, lives: Floats, time: float) -> Floats:
-        ended = self.units.ended(time)
-        if self.allow >= self.size:
-            more = np.zeros(ended[:, 0].shape)
-        elif self.units.are_alike:
-            more = special.bdtrc(self.allow, self.size, ended[:, 0])
+        units = self.units
+        if units.shared is not None and units.element.law is None:
+            each = self._turns * units.shared.below(units.element.values, time)
+            found = np.bincount(units.place.sample, each, units.place.samples).astype(float)
         else:
-            more = 1 - at_most(ended, self.size, self.allow)
-        return np.where(np.isnan(lives), 0.0, np.clip(more @ self.units.weights, 0.0, 1.0))
+            ended = units.ended(time)
+            found = more_than(ended, self.size, self.allow, units.are_alike) @ units.weights
+        return np.where(np.isnan(lives), 0.0, np.clip(found, 0.0, 1.0))
 
 
 def units_of(rows: xr.Dataset, element: Element) -> Units:
@@ -166,14 +181,13 @@ def units_of(rows: xr.Dataset, element: Element) -> Units:
         A life of these rows.
     """
     place, levels = nesting_of(rows), levels_of(rows)
-    own: RowLaw | None = None
-    shared = None
+    own = shared = None
     inputs = inputs_of(rows)
     if element.declared.scales and not element.censored.any():
         own = integrated(rows, element.declared, inputs, {OWN, CHANCE}).law
-        common = integrated(rows, element.declared, inputs, {SHARED}).law if own else None
-        if own and isinstance(common, IndependentScale) and common.spread < _WIDEST * own.spread:
-            shared = common
+        shared = integrated(rows, element.declared, inputs, {SHARED}).law
+        if own and shared and shared.spread >= _WIDEST * own.spread:
+            shared = None
     known = () if own is None else own.inputs
     varying = _unknown(levels, inputs.tied, known)
     if rows.attrs.get("random"):
@@ -190,69 +204,3 @@ def _unknown(
         for name, level in levels.items()
         if level != SHARED and tied.get(name, name) not in known
     )
-
-
-def at_most(ended: Floats, size: int, allow: int) -> Floats:
-    """Return the probability that at most some of a fleet of a world's units have ended.
-
-    Parameters
-    ----------
-    ended : ndarray, shape (samples, units, nodes)
-        Independent probabilities of the units; NaN for units that do not take part.
-    size, allow : int
-
-    Returns
-    -------
-    ndarray, shape (samples, nodes)
-        The mean over all fleets of `size` different units: unbiased for units drawn anew, where
-        any power of the units' mean probability is not. NaN where there are fewer units.
-    """
-    samples, units, nodes = ended.shape
-    rows = np.sort(np.moveaxis(ended, 1, 2).reshape(samples * nodes, units), axis=1)
-    counts = np.isfinite(rows).sum(axis=1)
-    found = np.full(len(rows), np.nan)
-    for count in np.unique(counts[counts >= size]):
-        of = rows[counts == count, :count]
-        certain = bool(np.isin(of, (0.0, 1.0)).all())
-        found[counts == count] = (_of_certain if certain else _of_any)(of, size, min(allow, size))
-    return found.reshape(samples, nodes)
-
-
-def _of_certain(ended: Floats, size: int, allow: int) -> Floats:
-    """Return it of units that have ended or have not: the hypergeometric law."""
-    units = ended.shape[1]
-    count = np.arange(units + 1.0)
-    some = np.arange(allow + 1.0)[:, None]
-    each = _log_choose(count, some) + _log_choose(units - count, size - some)
-    table = np.exp(each - _log_choose(units, size)).sum(axis=0)
-    return np.asarray(np.minimum(table, 1.0)[ended.sum(axis=1).astype(int)])
-
-
-def _log_choose(n: Floats | float, k: Floats | float) -> Floats:
-    n, k = np.asarray(n, float), np.asarray(k, float)
-    found: Floats = special.gammaln(n + 1) - special.gammaln(k + 1) - special.gammaln(n - k + 1)
-    return found
-
-
-def _of_any(ended: Floats, size: int, allow: int) -> Floats:
-    """Return it of units with any probabilities.
-
-    The mean over fleets of r of the first m units, of which unit m is in a share r / m: a recursion
-    over m of weighted means, in which nothing cancels.
-    """
-    rows, units = ended.shape
-    most = max(1, _MOST_NUMBERS // ((size + 1) * (allow + 1)))
-    if rows > most:
-        blocks = np.array_split(ended, -(-rows // most))
-        return np.concatenate([_of_any(block, size, allow) for block in blocks])
-    chance = np.zeros((size + 1, allow + 1, rows))
-    chance[0, 0] = 1.0
-    for m in range(1, units + 1):
-        p = ended[:, m - 1]
-        low, high = max(1, size - (units - m)), min(m, size)
-        share = (np.arange(low, high + 1) / m)[:, None, None]
-        before = chance[low - 1 : high]
-        added = before * (1 - p)
-        added[:, 1:] += before[:, :-1] * p
-        chance[low : high + 1] = (1 - share) * chance[low : high + 1] + share * added
-    return np.asarray(chance[size].sum(axis=0))

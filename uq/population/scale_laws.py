@@ -1,14 +1,23 @@
 """The law of a life in each row, of which some inputs are integrated exactly."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import special
 
 from uq.contract import Floats
-from uq.inputs.conditioning import cdf_between, cdf_within, factor_ends
+from uq.inputs.conditioning import (
+    cdf_between,
+    cdf_within,
+    factor_ends,
+    ppf_between,
+    ppf_within,
+)
 from uq.inputs.law import Law
-from uq.population.sums import Term
+from uq.population.sums import Term, normal_rule
+
+_NODES = 200
 
 
 @dataclass(frozen=True)
@@ -35,13 +44,20 @@ class IndependentScale:
 
     def below(self, lives: Floats, time: float) -> Floats:
         """Return P(T < time) of each row, shape (n,)."""
-        return self.given(lives, time, 0.0)
-
-    def given(self, lives: Floats, time: float, more: float | Floats) -> Floats:
-        """Return the same of lives that are longer by a factor exp(more) than their rows say."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = self.term.below(np.log(time) - np.log(lives) + self.drawn - more)
+            found = self.term.below(np.log(time) - np.log(lives) + self.drawn)
         return np.where(np.isnan(lives), 0.0, found)
+
+    def longer(self, z: Floats) -> Iterator[Floats]:
+        """Yield by how much logarithms of lives grow, shape (n,), at standard normal quantiles."""
+        for at in self.term.at(z):
+            yield at - self.drawn
+
+    @property
+    def moments(self) -> tuple[Floats, Floats]:
+        """Mean growth of the logarithm of each life, and its variance, shapes (n,)."""
+        mean, variance = self.term.moments
+        return mean - self.drawn, np.full(self.drawn.shape, variance)
 
 
 @dataclass(frozen=True)
@@ -93,3 +109,27 @@ class ConditionalScale:
         if self.exponent < 0:
             share = 1 - share
         return np.where(np.isnan(lives), 0.0, share)
+
+    def longer(self, z: Floats) -> Iterator[Floats]:
+        """Yield by how much logarithms of lives grow, shape (n,), at standard normal quantiles."""
+        for at in np.sign(self.exponent) * z:
+            u = special.ndtr(self.mean + self.deviation * at)
+            u = np.clip(u, 2.0**-54, 1 - 2.0**-53)
+            if self.other is None:
+                value = ppf_within(self.law, u, self.bounds)
+            else:
+                ends = factor_ends(self.other, self.bounds)
+                value = self.other * ppf_between(self.law, u, *ends)
+            yield self.exponent * np.log(value / self.drawn)
+
+    @property
+    def moments(self) -> tuple[Floats, Floats]:
+        """Mean growth of the logarithm of each life, and its variance, shapes (n,)."""
+        nodes, weights = (one[0] for one in normal_rule(np.array([-np.inf, np.inf]), _NODES))
+        mean = square = np.zeros(self.drawn.shape)
+        for weight, longer in zip(weights, self.longer(nodes), strict=True):
+            mean, square = mean + weight * longer, square + weight * longer**2
+        return mean, np.maximum(square - mean**2, 0.0)
+
+
+Scale = IndependentScale | ConditionalScale

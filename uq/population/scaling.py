@@ -14,14 +14,16 @@ from uq.designs.registry import DESIGNS
 from uq.inputs.conditioning import cdf_within, factor_of, support
 from uq.inputs.dependence import normal_correlations
 from uq.inputs.law import Law
-from uq.population.scale_laws import ConditionalScale, IndependentScale
+from uq.population.scale_laws import ConditionalScale, IndependentScale, Scale
 from uq.population.sums import LogTerm, law_of_sum
-from uq.rows.element import Element, RowLaw
+from uq.rows.element import Element
 from uq.rows.elements import elements_of, study_file_of
+from uq.rows.weights import has_weights
 from uq.study.file import DependenceTable, StudyFile, Tied
 from uq.study.input_checks import laws_of
 
 EVERYWHERE = (-inf, inf)
+NOT_POSITIVE = "it is not always positive"
 
 
 @dataclass(frozen=True)
@@ -93,12 +95,12 @@ class Integrated:
 
     Attributes
     ----------
-    law : RowLaw or None
+    law : Scale or None
     kept : dict of str to str
         Input that scales the lives -> why it is not integrated.
     """
 
-    law: RowLaw | None
+    law: Scale | None
     kept: Mapping[str, str]
 
 
@@ -127,10 +129,13 @@ def integrated(
     if levels is not None:
         level = {name: law.level for name, law in inputs.laws.items()}
         exponents = {name: e for name, e in exponents.items() if level[name] in levels}
+        kept = {name: why for name, why in kept.items() if level[name] in levels}
     if DESIGNS[rows.attrs["design"]].imported:
         return Integrated(None, dict.fromkeys(exponents, "its rows are imported") | kept)
+    if has_weights(rows):
+        return Integrated(None, dict.fromkeys(exponents, "inspections have changed its law") | kept)
     for name in exponents:
-        if problem := _problem(name, inputs):
+        if problem := _problem(name, inputs) or _sign_problem(name, inputs):
             kept[name] = problem
     terms = {
         name: _term(inputs.laws[name], inputs.bounds[name], exponent)
@@ -150,6 +155,16 @@ def integrated(
         return Integrated(_independent(free, exponents, inputs, kept), kept)
     kept |= dict.fromkeys({*free, *bound} - {widest}, f"{widest} scatters lives more")
     return Integrated(bound.get(widest), kept)
+
+
+def scalers(inputs: Inputs, output: Output) -> dict[str, float]:
+    """Return the exponents of the inputs that are integrated while their laws stay positive."""
+    exponents, kept = _exponents(inputs, output.scales)
+    return {
+        name: exponent
+        for name, exponent in exponents.items()
+        if name not in kept and not _problem(name, inputs)
+    }
 
 
 def _exponents(
@@ -172,21 +187,24 @@ def _exponents(
 
 
 def _problem(name: str, inputs: Inputs) -> str:
-    """Return why an input cannot be integrated, or ""."""
+    """Return why an input cannot be integrated, whatever its law may be, or ""."""
     law = inputs.laws[name]
     if law.discrete:
         return "its law is one of listed values"
     if not (inputs.values[name] > 0).all():
-        return "it is not always positive"
+        return NOT_POSITIVE
     if law.times is not None:
         positive = (inputs.values[law.times] > 0).all()
         return "" if positive else "it is a multiple of an input that is not positive"
-    if not support(law, inputs.bounds[name])[0] > 0:
-        return "it is not always positive"
     if name in inputs.correlated:
         listed = [one for one in inputs.correlated if inputs.laws[one].discrete]
         return f"it depends on listed values of {listed[0]}" if listed else ""
     return ""
+
+
+def _sign_problem(name: str, inputs: Inputs) -> str:
+    law = inputs.laws[name]
+    return "" if law.times or support(law, inputs.bounds[name])[0] > 0 else NOT_POSITIVE
 
 
 @lru_cache(maxsize=64)
@@ -224,14 +242,20 @@ def _conditional(name: str, exponent: float, inputs: Inputs) -> ConditionalScale
         nothing = np.zeros(len(values))
         other = inputs.values[law.times]
         return ConditionalScale((name,), law, bounds, exponent, values, nothing, 1.0, other)
+    slopes, deviation = given_others(name, inputs)
+    mean = np.stack([inputs.normal(other) for other in slopes], axis=1) @ list(slopes.values())
+    return ConditionalScale((name,), law, bounds, exponent, values, mean, deviation)
+
+
+def given_others(name: str, inputs: Inputs) -> tuple[dict[str, float], float]:
+    """Return slopes and deviation of the normal variable of an input, given the others."""
     assert inputs.dependence is not None
     names = list(inputs.correlated)
     matrix = normal_correlations(inputs.dependence.rank_correlation)
     own, rest = names.index(name), [i for i, one in enumerate(names) if one != name]
     slope = np.linalg.solve(matrix[np.ix_(rest, rest)], matrix[rest, own])
-    mean = np.stack([inputs.normal(names[i]) for i in rest], axis=1) @ slope
     deviation = float(np.sqrt(1 - matrix[own, rest] @ slope))
-    return ConditionalScale((name,), law, bounds, exponent, values, mean, deviation)
+    return dict(zip([names[i] for i in rest], slope.tolist(), strict=True)), deviation
 
 
 def population(
@@ -270,5 +294,9 @@ def why_not_integrated(rows: xr.Dataset, element: Element) -> str:
         names = ", ".join(exponents)
         count = int(element.censored.sum())
         return f"{names} not integrated: {count} lives are censored, which gives bounds only"
-    kept = integrated(rows, element.declared, inputs).kept
+    return not_integrated(integrated(rows, element.declared, inputs).kept)
+
+
+def not_integrated(kept: Mapping[str, str]) -> str:
+    """Return a sentence on inputs that are not integrated, or ""."""
     return "; ".join(f"{name} not integrated: {why}" for name, why in kept.items())

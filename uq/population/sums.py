@@ -1,5 +1,6 @@
 """The law of a sum of independent terms, each a multiple of the logarithm of an input."""
 
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -31,6 +32,10 @@ class Term(Protocol):
     """
 
     breaks: Floats
+
+    @property
+    def moments(self) -> tuple[float, float]:
+        """Its mean and variance."""
 
     def below(self, value: Floats, /) -> Floats:
         """Return the probability of less than each value."""
@@ -72,13 +77,18 @@ class LogTerm:
             z.shape
         )
 
+    @cached_property
+    def moments(self) -> tuple[float, float]:
+        """Its mean and variance."""
+        at, weight = normal_rule(special.ndtri(self.below(self.breaks)), _NODES)
+        values = self.at(at)
+        mean = np.average(values, weights=weight)
+        return float(mean), float(np.average((values - mean) ** 2, weights=weight))
+
     @property
     def spread(self) -> float:
         """Its standard deviation."""
-        z, weight = np.polynomial.hermite_e.hermegauss(_NODES)
-        values = self.at(z)
-        mean = np.average(values, weights=weight)
-        return float(np.sqrt(np.average((values - mean) ** 2, weights=weight)))
+        return float(np.sqrt(self.moments[1]))
 
 
 class Sum:
@@ -107,6 +117,13 @@ class Sum:
         middle = (self.ends[1:] + self.ends[:-1]) / 2
         if np.abs(self._exactly(middle, 3 * _NODES) - self.below(middle)).max() > ACCURACY:
             raise ArithmeticError("the probability of the sum is not accurate enough")
+
+    @property
+    def moments(self) -> tuple[float, float]:
+        """Its mean and variance."""
+        pairs = zip(self._first.moments, self._second.moments, strict=True)
+        mean, variance = map(sum, pairs)
+        return mean, variance
 
     def below(self, value: Floats) -> Floats:
         """Return the probability of less than each value."""
@@ -156,15 +173,32 @@ class Sum:
         places = np.sort(
             np.hstack([np.clip(kinks, own[0], own[-1]), np.tile(own, (len(value), 1))]), axis=1
         )
-        z = np.clip(special.ndtri(self._second.below(places)), -_FARTHEST, _FARTHEST)
-        z[:, 0], z[:, -1] = -_FARTHEST, _FARTHEST
-        x, weight = np.polynomial.legendre.leggauss(nodes)
-        half, middle = np.diff(z)[..., None] / 2, ((z[:, 1:] + z[:, :-1]) / 2)[..., None]
-        at = middle + half * x
-        density = np.exp(-(at**2) / 2) / np.sqrt(2 * np.pi) * half * weight
+        at, density = normal_rule(special.ndtri(self._second.below(places)), nodes)
         inner = self._first.below(value[:, None, None] - self._second.at(at))
         found: Floats = (density * inner).sum(axis=(1, 2))
         return found
+
+
+def normal_rule(z: Floats, nodes: int) -> tuple[Floats, Floats]:
+    """Return nodes of Gauss and Legendre's rule for the mean over a standard normal variable.
+
+    Parameters
+    ----------
+    z : ndarray, shape (..., pieces + 1)
+        Ascending, the ends of pieces; the first and the last stand for infinity.
+    nodes : int
+        In each piece.
+
+    Returns
+    -------
+    nodes, weights : ndarray, shape (..., pieces, nodes)
+    """
+    z = np.clip(z, -_FARTHEST, _FARTHEST)
+    z[..., 0], z[..., -1] = -_FARTHEST, _FARTHEST
+    x, weight = np.polynomial.legendre.leggauss(nodes)
+    half, middle = np.diff(z)[..., None] / 2, ((z[..., 1:] + z[..., :-1]) / 2)[..., None]
+    at = middle + half * x
+    return at, np.exp(-(at**2) / 2) / np.sqrt(2 * np.pi) * half * weight
 
 
 def law_of_sum(terms: list[LogTerm]) -> Term:

@@ -1,6 +1,7 @@
 """How the probability of a unit's life spreads over worlds, without the noise of their units."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from math import isfinite
 
 import numpy as np
@@ -63,11 +64,32 @@ def known(ended: Floats, nodes: Floats, part: Replicates) -> Exceeding:
         gap = np.where(above > below, above - below, 1.0)
         at = nodes[after - 1] + np.clip((above - level) / gap, 0, 1) * (nodes[1] - nodes[0])
         share = np.where(count == 0, 0.0, np.where(count == len(nodes), 1.0, special.ndtr(at)))
-        found = weighted_share(share, part=part)
-        alike = found.reason == EXACT
-        return Estimate(found.value, found.value, found.value) if alike else found
+        return _mean(share, part)
 
     return of_one_node if len(nodes) == 1 else exceeding
+
+
+def certain(ended: Floats, part: Replicates) -> Exceeding:
+    """Return the share of worlds with larger probabilities, where all units end together.
+
+    Parameters
+    ----------
+    ended : ndarray, shape (samples,)
+        Probability that the units of a sample have ended, over what they share and is integrated.
+    part : ndarray of int, shape (samples,), or None
+
+    Returns
+    -------
+    callable
+    """
+    share = _mean(ended, part)
+    return lambda probability: share
+
+
+def _mean(share: Floats, part: Replicates) -> Estimate:
+    found = weighted_share(share, part=part)
+    alike = found.reason == EXACT
+    return Estimate(found.value, found.value, found.value) if alike else found
 
 
 class Noisy:
@@ -139,7 +161,8 @@ class Noisy:
         slopes = self._posterior @ (above * self._statistics).T - each[:, None] * self._given
         pulls = each[self._place] @ self._weights + self._influences @ (self._share @ slopes)
         found = weighted_share(pulls, part=self._part, cautious=False)
-        return found if isfinite(found.low) else Estimate(found.value, found.value, found.value)
+        found = replace(found, assumes=ASSUMES)
+        return found if isfinite(found.low) else replace(found, low=found.value, high=found.value)
 
     def _fit(self, parameters: Floats) -> None:
         """Fit the law, by steps from the scatter of the scores that never increase the loss."""

@@ -16,6 +16,7 @@ from uq.drawing.scatter_plot import leading
 from uq.drawing.style import LIMIT, ROWS
 from uq.drawing.symbols import literal
 from uq.drawing.words import element_in_words, in_words, unbroken
+from uq.greek import readable
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
 from uq.literals import plain
@@ -28,10 +29,12 @@ from uq.rows.elements import (
     are_independent,
     elements_of,
     flags,
+    has_independent_samples,
     replicates_of,
     shown_outputs,
 )
 from uq.rows.results import failed
+from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
 from uq.wording import threshold
 
@@ -58,8 +61,10 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        None if no row follows the laws of the inputs, or no output has numbers.
+        None if no row follows the laws of the inputs, no output has numbers, or rows have weights.
     """
+    if has_weights(findings.ds):
+        return None
     analysis = analysis_of(findings.ds)
     outputs = [one for one in shown_outputs(findings.ds, analysis) if one not in findings.absent]
     whole = findings.rows
@@ -74,7 +79,7 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     first = list(inputs).index(leading(independent_inputs(rows), elements[drawn])[0])
     design = _design(rows)
     laws = tolerances(rows, elements)
-    if laws is not None and laws["of"]:
+    if laws is not None and laws["lives"]:
         design["intervals"] += (
             " Shares here are those of lives as computed; tables above, and other tolerances below,"
             " integrate what only scales a life."
@@ -163,7 +168,7 @@ def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
 def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[str, Any]:
     return {
         "name": name,
-        "label": plain(words),
+        "label": plain(readable(words)),
         "unit": "" if unit == "1" else plain(unbroken(unit)),
         "per": per,
         "wide": is_wide(values[np.isfinite(values)]),
@@ -202,20 +207,21 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         "independent": are_independent(rows),
         "replicate": None,
         "sample": None,
+        "samples": None,
+        "parts": "rows",
     }
     if part is None:
         words = (
             "95 % intervals of shares are Wilson's, or those of Clopper and Pearson where hits or"
             " misses are fewer than 20; the band is Kolmogorov's."
         )
-    elif isinstance(part, Clusters):
-        words = "No intervals: the rows of a sample are not independent."
-        found |= {"sample": encoded(part, "<i4")}
     elif (count := len(np.unique(part))) < 2:
-        words = (
-            "No intervals: formulas for independent rows do not apply to this design, which has no"
-            " replicates."
-        )
+        several = "samples" if has_independent_samples(rows) else "replicates"
+        words = f"No intervals: they rest on the scatter between {several}, of which there is one."
+    elif isinstance(part, Clusters):
+        several = "samples" if has_independent_samples(rows) else "replicates"
+        words = f"95 % intervals of shares rest on the scatter between {count} {several}."
+        found |= {"sample": encoded(part, "<i4"), "samples": part.samples, "parts": several}
     else:
         words = f"95 % intervals of shares rest on the scatter between {count} replicates."
         found |= {"replicate": encoded(part, "<i4")}

@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,31 +13,35 @@ from markupsafe import Markup, escape
 
 from uq.analysis.findings import Findings
 from uq.conclusions.answer import conclude
-from uq.conclusions.page import STYLE, others, regimes
+from uq.conclusions.page import STYLE, regimes
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.literals import plain
 from uq.provenance import provenance
 from uq.report.convergence import convergence_of
 from uq.report.embedded import rows_inside
-from uq.report.fleets import fleet_table
+from uq.report.fleets import fleet_notes, fleet_table
+from uq.report.groups import REGIME, groups
 from uq.report.headlines import headline
-from uq.report.indices import sensitivity_of
+from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.inputs import fixed_inputs, input_tables
 from uq.report.levels import levels_of
-from uq.report.outcomes import category_table, outcomes, result_tables, status_table, words_used
+from uq.report.outcomes import category_table, outcomes, status_table
 from uq.report.pictures import pictures
+from uq.report.references import references
 from uq.rows.elements import study_file_of
 from uq.rows.results import failed, open_result
-from uq.rows.variables import outputs_of
 from uq.store.files import check_target, whole
-from uq.study.registry import find_model
 
 _SHOWN_TEXT = 50_000
 """Characters of the study's text that a page shows: a study may contain data files."""
 
 
-def write_report(result: str | Path, path: str | Path) -> None:
+def write_report(
+    result: str | Path,
+    path: str | Path,
+    lay_out: Callable[[xr.Dataset, str], str] | None = None,
+) -> None:
     """Write the report of a result as one self-contained HTML file.
 
     Parameters
@@ -44,6 +49,8 @@ def write_report(result: str | Path, path: str | Path) -> None:
     result : path-like
     path : path-like
         Written completely or not at all.
+    lay_out : callable, optional
+        Result, name of its file -> HTML: `page`, the default, or `uq.report.dossier.dossier`.
 
     Raises
     ------
@@ -55,7 +62,7 @@ def write_report(result: str | Path, path: str | Path) -> None:
     check_target(path, 0)
     if path.exists() and path.samefile(result):
         raise InputError(f"{path}: is the result itself; give the report another name")
-    text = page(ds, result.name)
+    text = (lay_out or page)(ds, result.name)
     with whole(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
@@ -75,6 +82,12 @@ def page(ds: xr.Dataset, name: str) -> str:
     str
     """
     return templates().get_template("page.html").render(_content(ds, name), file=name)
+
+
+def study_text(ds: xr.Dataset) -> dict[str, Any]:
+    """Return the text of the study as far as a page shows it, and whether that is cut."""
+    text = ds.attrs["study"]
+    return {"text": text.expandtabs(4)[:_SHOWN_TEXT], "text_is_cut": len(text) > _SHOWN_TEXT}
 
 
 @cache
@@ -111,8 +124,8 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
     summary = findings.summary
     found = outcomes(ds, summary)
     methods = sensitivity_of(findings)
-    lives = {name for name, output in outputs_of(ds).items() if output.is_lifetime}
     drawn = list(pictures(findings, "results", without=findings.absent))
+    headed = headline(answer, drawn)
     lost = int(failed(ds).sum())
     hashes = ("study_sha256", "study_identity")
     return {
@@ -120,8 +133,8 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "study": study_file_of(ds),
         "design": DESIGNS[ds.attrs["design"]],
         "summary": summary,
-        "answer": headline(answer, drawn),
-        "other_answers": others(answer),
+        "answer": headed,
+        "groups": list(groups(findings, answer, found, drawn, methods)),
         "regimes_answered": regimes(answer),
         "answer_style": STYLE,
         "inputs": list(input_tables(ds)),
@@ -130,29 +143,19 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "status": status_table(ds, summary),
         "failed": lost,
         "regimes": category_table("regime", summary.regimes) if summary.regimes else None,
-        "categories": [category_table(name, one) for name, one in summary.categories.items()],
-        "rows_drawn": list(pictures(findings, "rows")),
+        "rows_drawn": [
+            *(one for one in drawn if output_of(one.of.name) == REGIME),
+            *pictures(findings, "rows"),
+        ],
+        "regime_indices": of_output(methods, REGIME),
         "convergence": convergence_of(findings, found),
-        "results": list(result_tables(found)),
-        "words_used": words_used(found),
-        "results_drawn": [one for one in drawn if one.of.name not in lives],
-        "lives": list(result_tables(found, of_lives=True)),
-        "lives_drawn": [one for one in drawn if one.of.name in lives],
         "levels": levels_of(findings),
         "fleets": fleet_table(findings),
+        "fleet_notes": fleet_notes(findings),
         "methods": methods,
         "rows_inside": rows_inside(findings, file),
-        "text": ds.attrs["study"].expandtabs(4)[:_SHOWN_TEXT],
-        "text_is_cut": len(ds.attrs["study"]) > _SHOWN_TEXT,
+        **study_text(ds),
         "provenance": [name for name in (*provenance(), *hashes) if name in ds.attrs],
         "rerun": int((ds["rerun"].values != 0).sum()) if "rerun" in ds else 0,
-        "references": _references(ds),
+        "references": references(ds),
     }
-
-
-def _references(ds: xr.Dataset) -> tuple[str, ...] | None:
-    """Return the references that the model asks to cite, or None if it is not installed."""
-    try:
-        return find_model(ds.attrs["model"]).references
-    except InputError:
-        return None

@@ -1,26 +1,32 @@
-"""What a page needs to weight its rows: the laws of inputs, and those of lives."""
+"""What a page needs to weight its rows: the laws of inputs, and how they scale lives."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from uq.designs.registry import DESIGNS
 from uq.drawing.words import in_words
+from uq.inputs.law import Law
+from uq.inputs.observed import IntegerRange
 from uq.literals import plain
-from uq.population.scale_laws import IndependentScale
-from uq.population.scaling import Inputs, inputs_of, integrated
-from uq.population.sums import LogTerm, Sum
-from uq.report.encoding import encoded
+from uq.population.densities import correlations
+from uq.population.scaling import Inputs, given_others, inputs_of, scalers
 from uq.rows.element import Element
 
-SIMPLE = ("normal", "truncated-normal", "lognormal", "uniform", "loguniform", "triangular")
+KNOWN = (
+    *("normal", "truncated-normal", "lognormal", "uniform", "loguniform", "triangular", "pert"),
+    *("beta", "weibull", "gamma", "gumbel", "exponential", "histogram", "integer-range"),
+)
 """Laws that the scripts know (``live/laws.js``)."""
+
+LISTED = "its values are listed and have neither width nor place"
 
 
 def tolerances(rows: xr.Dataset, elements: Sequence[Element]) -> dict[str, Any] | None:
-    """Return the laws of inputs that have sliders, and the laws of lives.
+    """Return the laws of inputs, which of them have sliders, and what scales lives.
 
     Parameters
     ----------
@@ -37,64 +43,90 @@ def tolerances(rows: xr.Dataset, elements: Sequence[Element]) -> dict[str, Any] 
     if DESIGNS[rows.attrs["design"]].imported:
         return None
     inputs = inputs_of(rows)
-    laws: list[Mapping[str, Any]] = []
-    of, refused = {}, {}
-    for element in elements:
-        if not element.declared.scales or element.censored.any():
-            continue
-        law = integrated(rows, element.declared, inputs).law
-        if law is None:
-            continue
-        if not isinstance(law, IndependentScale):
-            refused[element.name] = "what scales this life depends on other inputs"
-            continue
-        same = [i for i, one in enumerate(laws) if one["inputs"] == list(law.inputs)]
-        of[element.name] = same[0] if same else len(laws)
-        if not same:
-            laws.append(_life_law(law))
-    tabulated = {name for law in laws if "table" in law for name in law["inputs"]}
-    without = dict(_without(inputs, tabulated))
-    sliders = [_slider(name, inputs) for name in inputs.laws if name not in without]
-    if not sliders or len(refused) == len(elements):
+    without = {name: why for name in inputs.laws if (why := _why_without(name, inputs))}
+    scaled = {
+        one.name: scalers(inputs, one.declared)
+        for one in elements
+        if one.declared.scales and not one.censored.any()
+    }
+    refused = {name: why for name, one in scaled.items() if (why := _why_refused(one, inputs))}
+    integrated = {name: one for name, one in scaled.items() if one and name not in refused}
+    known = {name: law for name, law in inputs.laws.items() if _kind(law) in KNOWN}
+    if len(without) == len(inputs.laws) or len(refused) == len(elements):
         return None
     return {
-        "inputs": sliders,
+        "laws": [_plain_law(name, inputs) for name in known],
+        "sliders": [name for name in known if name not in without],
         "without": [[plain(in_words(rows[name])), why] for name, why in without.items()],
-        "laws": laws,
-        "of": of,
+        "correlated": list(_copulas(inputs)),
+        "lives": {name: _scales(one, inputs) for name, one in integrated.items()},
         "refused": refused,
     }
 
 
-def _without(inputs: Inputs, tabulated: set[str]) -> Iterator[tuple[str, str]]:
-    """Yield inputs that have no slider, and why."""
-    leaders = {law.times for law in inputs.laws.values()} | set(inputs.tied.values())
-    for name, law in inputs.laws.items():
-        distribution: str = vars(law)["distribution"]
-        if law.times is not None or name in leaders or name in inputs.correlated:
-            yield name, "it is joined with other inputs"
-        elif distribution not in SIMPLE:
-            yield name, f"its law is {distribution}"
-        elif name in tabulated:
-            yield name, "it scales lives together with other inputs"
+def _kind(law: Law) -> str:
+    return str(vars(law)["distribution"])
 
 
-def _slider(name: str, inputs: Inputs) -> dict[str, Any]:
+def _why_without(name: str, inputs: Inputs) -> str:
+    """Return why an input has no slider, or ""."""
+    law = inputs.laws[name]
+    if law.discrete and not isinstance(law, IntegerRange):
+        return LISTED
+    if _kind(law) not in KNOWN:
+        return f"this page does not know its law, {_kind(law)}"
+    if isinstance(law, IntegerRange) and law.upper - law.lower < 2:
+        return "it has two values only"
+    if 0 in getattr(law, "counts", ()):
+        return "its histogram has empty bins, in which there are no rows"
+    if name in inputs.correlated:
+        for other in inputs.correlated:
+            if inputs.laws[other].discrete:
+                return f"it depends on listed values of {other}"
+            if _kind(inputs.laws[other]) not in KNOWN:
+                return f"it depends on {other}, whose law this page does not know"
+    return ""
+
+
+def _why_refused(exponents: Mapping[str, float], inputs: Inputs) -> str:
+    """Return why the lives that these inputs scale have no answer, or ""."""
+    for name in {*exponents, *inputs.correlated} if exponents else ():
+        if _kind(inputs.laws[name]) not in KNOWN:
+            return f"this page does not know the law of {name}, {_kind(inputs.laws[name])}"
+    return ""
+
+
+def _plain_law(name: str, inputs: Inputs) -> dict[str, Any]:
     law = inputs.laws[name]
     ignored = {"distribution", "source", "times", "level", "truncate"}
     return {
         "name": name,
-        "distribution": vars(law)["distribution"],
-        "args": law.model_dump(exclude=ignored, exclude_none=True),
+        "distribution": _kind(law),
+        "args": law.model_dump(exclude=ignored, exclude_none=True, mode="json"),
         "truncate": law.truncate,
+        "times": law.times,
         "bounds": [end if isfinite(end) else None for end in inputs.bounds[name]],
     }
 
 
-def _life_law(law: IndependentScale) -> Mapping[str, Any]:
-    found: dict[str, Any] = {"inputs": list(law.inputs), "drawn": encoded(law.drawn, "<f8")}
-    if isinstance(law.term, LogTerm):
-        return found | {"exponent": law.term.exponent}
-    assert isinstance(law.term, Sum)
-    table = {"ends": law.term.ends.tolist(), "coefficients": law.term.coefficients.tolist()}
-    return found | {"table": table}
+def _copulas(inputs: Inputs) -> Iterator[dict[str, Any]]:
+    """Yield how inputs depend on each other, all of them and without each one."""
+    for without in (None, *inputs.correlated) if inputs.correlated else ():
+        names, matrix = correlations(inputs, () if without is None else (without,))
+        excess = np.linalg.inv(matrix) - np.eye(len(names))
+        yield {"without": without, "names": names, "excess": excess.tolist()}
+
+
+def _scales(exponents: Mapping[str, float], inputs: Inputs) -> dict[str, Any]:
+    """Return the inputs that scale a life: free ones, and those bound to others."""
+    free, bound = [], []
+    for name, exponent in exponents.items():
+        one: dict[str, Any] = {"name": name, "exponent": exponent}
+        if other := inputs.laws[name].times:
+            bound.append(one | {"times": other, "deviation": 1.0})
+        elif name in inputs.correlated:
+            slopes, deviation = given_others(name, inputs)
+            bound.append(one | {"slopes": list(slopes.items()), "deviation": deviation})
+        else:
+            free.append(one)
+    return {"free": free, "bound": bound}

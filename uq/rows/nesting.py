@@ -5,7 +5,7 @@ inputs, each with ``own`` inputs of its own, each computed in several repeats th
 Samples are independent, their rows are not.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -123,15 +123,27 @@ def first_samples(ds: xr.Dataset, samples: int) -> xr.Dataset:
 
 def levels_of(ds: xr.Dataset) -> dict[str, str]:
     """Return the level of each input of a result, by name."""
-    entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
-    laws = {name: one for name, one in entries.items() if not isinstance(one, Tied)}
-    followed = {name: one.equals for name, one in entries.items() if isinstance(one, Tied)}
-    return {name: laws[followed.get(name, name)].level for name in entries}
+    return {name: level for name, (_, level) in _placed(ds).items()}
 
 
-def levels_that_vary(ds: xr.Dataset) -> Sequence[str]:
-    """Return the levels on which rows of a result differ; a random model differs by chance."""
-    found = set(levels_of(ds).values())
+def levels_that_vary(ds: xr.Dataset, without: Collection[str] = ()) -> Sequence[str]:
+    """Return the levels on which rows of a result differ; a random model differs by chance.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+    without : collection of str
+        Inputs that do not count, nor those that equal them.
+    """
+    found = {level for law_of, level in _placed(ds).values() if law_of not in without}
     if ds.attrs.get("random"):
         found.add(CHANCE)
     return [level for level in LEVELS if level in found]
+
+
+def _placed(ds: xr.Dataset) -> dict[str, tuple[str, str]]:
+    """Return of each input the one that it equals (or itself), and the level."""
+    entries = read_study_text(ds.attrs["study"], "study of this result").uncertain
+    leaders = {name: one.equals if isinstance(one, Tied) else name for name, one in entries.items()}
+    laws = {name: one for name, one in entries.items() if not isinstance(one, Tied)}
+    return {name: (leader, laws[leader].level) for name, leader in leaders.items()}

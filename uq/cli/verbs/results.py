@@ -100,9 +100,7 @@ def summary(
     fits: Annotated[
         bool, typer.Option("--fits", help="Fit Weibull and lognormal laws to lifetimes.")
     ] = False,
-    plain: Annotated[
-        bool, typer.Option("--plain", help="Integrate nothing exactly: lives as computed.")
-    ] = False,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show how rows ended, and statistics of each output."""
@@ -155,12 +153,13 @@ def sensitivity(
 def levels(
     result: given.ResultFile,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="Only this output.")] = None,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show how much scatter is shared, own, or due to chance."""
     from uq.cli import levels
 
-    levels.levels(result, output, json)
+    levels.levels(result, output, plain, json)
 
 
 def fleet(
@@ -218,6 +217,51 @@ def what_if(
     question.what_if(result, set_, json)
 
 
+def update(
+    source: Annotated[
+        Path, typer.Argument(metavar="STUDY|OUT.nc", help="A study (TOML), or a result.")
+    ],
+    inspections: Annotated[
+        Path, typer.Argument(metavar="INSPECTIONS.csv", help="What was measured.")
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="POSTERIOR.nc", help="Where to write it.")
+    ],
+    rows: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Rows of a study, not its own number.")
+    ] = None,
+    model_error: Annotated[
+        float | None,
+        typer.Option(min=0.0, metavar="CV", help="Scatter of reality about the model."),
+    ] = None,
+    by: Annotated[
+        list[float] | None,
+        typer.Option(metavar="T", help="A time [s], such as that of the next outage."),
+    ] = None,
+    workers: given.Workers = None,
+    scheduler: given.Scheduler = None,
+    model: given.ModelReference = None,
+    quiet: given.Quiet = False,
+    json: given.Json = False,
+) -> int:
+    """Learn from inspections: inputs, units, and lives to come."""
+    from uq.cli import learning
+
+    options = RunOptions(workers, scheduler)
+    return learning.update(
+        source,
+        inspections,
+        output,
+        rows,
+        model_error,
+        by or [],
+        model,
+        options,
+        quiet or json,
+        json,
+    )
+
+
 def twin(
     result: given.ResultFile, model: given.ModelReference = None, json: given.Json = False
 ) -> None:
@@ -260,15 +304,19 @@ def report(
     result: given.ResultFile,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Default: OUT.html beside OUT.nc."),
+        typer.Option("-o", "--output", metavar="FILE", help="Default: OUT.html, OUT-dossier.html."),
     ] = None,
+    dossier: Annotated[
+        bool, typer.Option("--dossier", help="Order it along outlines for assessments.")
+    ] = False,
     show: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Write all that a result says to one page for a browser."""
-    from uq.report import write_report
+    from uq.report import page, write_report
+    from uq.report.dossier import dossier as in_order
 
-    path = output or result.with_suffix(".html")
-    write_report(result, path)
+    path = output or result.with_name(f"{result.stem}{'-dossier' * dossier}.html")
+    write_report(result, path, in_order if dossier else page)
     print(plain_line(str(path)))
     if show and not webbrowser.open(path.resolve().as_uri()):
         print("no browser found; open this file yourself", file=sys.stderr)

@@ -1,71 +1,188 @@
-// Laws of inputs whose density is simple: as uq/inputs/distributions.py and uq/inputs/conditioning.py.
+// Laws of inputs: as uq/inputs/distributions.py and uq/inputs/observed.py.
 
-// Of each law: the logarithm of its density at x before any truncation; the probabilities below and
-// above x; and its arguments when its spread is multiplied by a factor and its middle moved by some
-// standard deviations.
+// Of each law, `of` its arguments: the logarithm of its density, and the probabilities below and above x,
+// before any truncation. `moved` are its arguments when its spread is multiplied by a factor and its middle
+// moved by some standard deviations.
 const LAWS = {
   "normal": {
-    logDensity: ({mean, sd}, x) => -(((x - mean) / sd) ** 2) / 2 - Math.log(sd),
-    tails: ({mean, sd}, x) => tails((x - mean) / sd),
+    of: ({mean, sd}) => ({
+      logDensity: x => -(((x - mean) / sd) ** 2) / 2 - Math.log(sd * ROOT_OF_TURN),
+      tails: x => normalTails((x - mean) / sd),
+    }),
     moved: ({mean, sd}, factor, shift) => ({mean: mean + shift * sd, sd: factor * sd}),
   },
   "lognormal": {
-    logDensity(law, x) {
-      const {median, sigma} = logarithmic(law);
-      return -((Math.log(x / median) / sigma) ** 2) / 2 - Math.log(sigma * x);
+    of(args) {
+      const {median, sigma} = logarithmic(args), z = x => Math.log(x / median) / sigma;
+      return {
+        logDensity: x => -(z(x) ** 2) / 2 - Math.log(sigma * x * ROOT_OF_TURN),
+        tails: x => x > 0 ? normalTails(z(x)) : [0, 1],
+      };
     },
-    tails(law, x) {
-      const {median, sigma} = logarithmic(law);
-      return x > 0 ? tails(Math.log(x / median) / sigma) : [0, 1];
-    },
-    moved(law, factor, shift) {
-      const {sigma} = logarithmic(law), by = Math.exp(shift * sigma);
-      if ("cv" in law) return {mean: law.mean * by, cv: factor * law.cv};
-      return {median: law.median * by, sigma: factor * law.sigma};
+    moved(args, factor, shift) {
+      const by = Math.exp(shift * logarithmic(args).sigma);
+      if ("cv" in args) return {mean: args.mean * by, cv: factor * args.cv};
+      return {median: args.median * by, sigma: factor * args.sigma};
     },
   },
   "uniform": {
     bounded: true,
-    logDensity: ({lower, upper}) => -Math.log(upper - lower),
-    tails: ({lower, upper}, x) => flat(lower, upper, x),
-    moved: ({lower, upper}, factor, shift) => narrowed(lower, upper, factor, shift),
+    of: ({lower, upper}) => ({
+      logDensity: () => -Math.log(upper - lower),
+      tails: x => flat(lower, upper, x),
+    }),
+    moved: narrowed,
   },
   "loguniform": {
     bounded: true,
-    logDensity: ({lower, upper}, x) => -Math.log(x * Math.log(upper / lower)),
-    tails: ({lower, upper}, x) => x > 0 ? flat(Math.log(lower), Math.log(upper), Math.log(x)) : [0, 1],
+    of({lower, upper}) {
+      const ends = [Math.log(lower), Math.log(upper)], height = -Math.log(Math.log(upper / lower));
+      return {
+        logDensity: x => height - Math.log(x),
+        tails: x => x > 0 ? flat(...ends, Math.log(x)) : [0, 1],
+      };
+    },
     moved({lower, upper}, factor, shift) {
-      const moved = narrowed(Math.log(lower), Math.log(upper), factor, shift);
-      return {lower: Math.exp(moved.lower), upper: Math.exp(moved.upper)};
+      const ends = narrowed({lower: Math.log(lower), upper: Math.log(upper)}, factor, shift);
+      return {lower: Math.exp(ends.lower), upper: Math.exp(ends.upper)};
     },
   },
   "triangular": {
     bounded: true,
-    logDensity({lower, mode, upper}, x) {
-      const height = x < mode ? (x - lower) / (mode - lower) : x > mode ? (upper - x) / (upper - mode) : 1;
-      return Math.log(2 * height / (upper - lower));
+    kinks: ({mode}) => [mode],
+    of({lower, mode, upper}) {
+      const width = upper - lower, height = Math.log(2 / width);
+      return {
+        logDensity: x => height + Math.log(x < mode ? (x - lower) / (mode - lower)
+          : x > mode ? (upper - x) / (upper - mode) : 1),
+        tails(x) {
+          if (x <= lower || x >= upper) return x <= lower ? [0, 1] : [1, 0];
+          if (x < mode) return complement((x - lower) ** 2 / width / (mode - lower));
+          return complement((upper - x) ** 2 / width / (upper - mode)).reverse();
+        },
+      };
     },
-    tails({lower, mode, upper}, x) {
-      if (x <= lower || x >= upper) return x <= lower ? [0, 1] : [1, 0];
+    moved: narrowed,
+  },
+  "pert": {
+    bounded: true,
+    of({lower, mode, upper}) {
       const width = upper - lower;
-      const below = x < mode ? (x - lower) ** 2 / width / (mode - lower) : 1 - (upper - x) ** 2 / width / (upper - mode);
-      return [below, 1 - below];
+      return LAWS.beta.of({
+        alpha: 1 + 4 * (mode - lower) / width, beta: 1 + 4 * (upper - mode) / width, lower, upper,
+      });
     },
-    moved({lower, mode, upper}, factor, shift) {
-      const ends = narrowed(lower, upper, factor, shift);
-      return {...ends, mode: ends.lower + factor * (mode - lower)};
+    moved: narrowed,
+  },
+  "beta": {
+    bounded: true,
+    of({alpha, beta, lower, upper}) {
+      const width = upper - lower, place = x => (x - lower) / width;
+      const height = logGamma(alpha + beta) - logGamma(alpha) - logGamma(beta) - Math.log(width);
+      const times = (power, log) => power === 0 ? 0 : power * log; // also where the logarithm is infinite
+      return {
+        logDensity: x => height + times(alpha - 1, Math.log(place(x))) + times(beta - 1, Math.log((upper - x) / width)),
+        tails: x => [betaBelow(alpha, beta, place(x)), betaBelow(beta, alpha, (upper - x) / width)],
+      };
+    },
+    moved: narrowed,
+  },
+  "weibull": {
+    of: ({shape, scale}) => ({
+      logDensity: x => Math.log(shape / scale) + (shape - 1) * Math.log(x / scale) - (x / scale) ** shape,
+      tails: x => decaying(x > 0 ? (x / scale) ** shape : 0),
+    }),
+    moved: ({shape, scale}, factor, shift) => ({
+      shape: shape / factor, scale: scale * Math.exp(shift * GUMBEL_SD / shape),
+    }),
+  },
+  "gamma": {
+    of({shape, scale}) {
+      const height = -logGamma(shape) - shape * Math.log(scale);
+      return {
+        logDensity: x => height + (shape - 1) * Math.log(x) - x / scale,
+        tails: x => gammaTails(shape, x / scale),
+      };
+    },
+    // Of the same mean, times a factor.
+    moved: ({shape, scale}, factor, shift) => ({
+      shape: shape / factor ** 2, scale: scale * factor ** 2 * Math.exp(shift / Math.sqrt(shape)),
+    }),
+  },
+  "gumbel": {
+    of: ({mode, scale}) => ({
+      logDensity: x => -Math.log(scale) - (x - mode) / scale - Math.exp((mode - x) / scale),
+      tails: x => decaying(Math.exp((mode - x) / scale)).reverse(),
+    }),
+    moved: ({mode, scale}, factor, shift) => ({mode: mode + shift * GUMBEL_SD * scale, scale: factor * scale}),
+  },
+  "exponential": {
+    scaleOnly: true,
+    of: ({mean}) => ({
+      logDensity: x => -Math.log(mean) - x / mean,
+      tails: x => decaying(x > 0 ? x / mean : 0),
+    }),
+    moved: ({mean}, factor, shift) => ({mean: mean * Math.exp(shift)}),
+  },
+  "histogram": {
+    bounded: true,
+    kinks: ({edges}) => edges,
+    ends: ({edges}) => ({lower: edges[0], upper: edges.at(-1)}),
+    of({edges, counts}) {
+      const sum = total(counts), below = [0];
+      for (const count of counts) below.push(below.at(-1) + count / sum);
+      const bin = x => Math.min(Math.max(edges.findLastIndex(edge => edge <= x), 0), counts.length - 1);
+      return {
+        logDensity(x) {
+          const i = bin(x);
+          return Math.log(counts[i] / sum / (edges[i + 1] - edges[i]));
+        },
+        tails(x) {
+          const i = bin(x);
+          return complement(below[i] + (below[i + 1] - below[i]) * flat(edges[i], edges[i + 1], x)[0]);
+        },
+      };
+    },
+    moved({edges}, factor, shift) {
+      const ends = {lower: edges[0], upper: edges.at(-1)}, {lower} = narrowed(ends, factor, shift);
+      return {edges: edges.map(edge => lower + factor * (edge - ends.lower))};
+    },
+  },
+  // As if each whole number were spread over half a unit either side.
+  "integer-range": {
+    bounded: true,
+    discrete: true,
+    of: ({lower, upper}) => ({
+      logDensity: () => -Math.log(upper - lower + 1),
+      tails: x => flat(lower - 0.5, upper + 0.5, x),
+    }),
+    moved({lower, upper}, factor, shift) {
+      const ends = narrowed({lower, upper}, factor, shift);
+      const least = Math.min(Math.ceil(ends.lower - 1e-9), upper - 1);
+      return {lower: least, upper: Math.max(Math.floor(ends.upper + 1e-9), least + 1)};
     },
   },
 };
 LAWS["truncated-normal"] = LAWS.normal;
 
-function tails(z) {
+const ROOT_OF_TURN = Math.sqrt(2 * Math.PI);
+const GUMBEL_SD = Math.PI / Math.sqrt(6); // standard deviation of the logarithm of a unit exponential
+
+function normalTails(z) {
   return [normalBelow(z), normalBelow(-z)];
 }
 
-function flat(from, to, x) {
-  const below = Math.min(1, Math.max(0, (x - from) / (to - from)));
+function complement(below) {
   return [below, 1 - below];
+}
+
+// Below and above, where the probability above is exp(-hazard).
+function decaying(hazard) {
+  return [-Math.expm1(-hazard), Math.exp(-hazard)];
+}
+
+function flat(from, to, x) {
+  return complement(Math.min(1, Math.max(0, (x - from) / (to - from))));
 }
 
 function logarithmic({mean, cv, median, sigma}) {
@@ -75,68 +192,9 @@ function logarithmic({mean, cv, median, sigma}) {
 }
 
 // Ends within the old ones: there are no rows beyond.
-function narrowed(lower, upper, factor, shift) {
+function narrowed({lower, upper, mode}, factor, shift) {
   const half = (upper - lower) / 2, room = half * (1 - factor);
   const middle = (lower + upper) / 2 + Math.min(Math.max(shift * half / Math.sqrt(3), -room), room);
-  return {lower: middle - factor * half, upper: middle + factor * half};
-}
-
-// A law that `plain` states, within the bounds of its parameter.
-class Law {
-  constructor(plain, args = plain.args) {
-    this.plain = plain;
-    this.kind = LAWS[plain.distribution];
-    this.args = args;
-    const {lower = -Infinity, upper = Infinity} = args, [low, high] = plain.truncate ?? [-Infinity, Infinity];
-    const [least, most] = plain.bounds;
-    this.own = [Math.max(low, lower), Math.min(high, upper)];
-    this.ends = [Math.max(least ?? -Infinity, this.own[0]), Math.min(most ?? Infinity, this.own[1])];
-    this.kept = this.between(this.ends);
-    this.below = this.tails(this.ends[0])[0];
-  }
-
-  tails(x) {
-    if (x === -Infinity) return [0, 1];
-    return x === Infinity ? [1, 0] : this.kind.tails(this.args, x);
-  }
-
-  between(ends) {
-    const [[below, notBelow], [notAbove, above]] = ends.map(end => this.tails(end));
-    return Math.max(notAbove - below, notBelow - above);
-  }
-
-  // Its probability outside the bounds of the parameter.
-  get outside() {
-    return 1 - this.kept / this.between(this.own);
-  }
-
-  // The logarithm of the density at each value.
-  logDensities(values) {
-    const [low, high] = this.ends, kept = Math.log(this.kept);
-    return values.map(x => x < low || x > high ? -Infinity : this.kind.logDensity(this.args, x) - kept);
-  }
-
-  probability(x) {
-    if (x < this.ends[0]) return 0;
-    return Math.min(1, Math.max(0, (this.tails(x)[0] - this.below) / this.kept));
-  }
-
-  // The law with its spread times a factor, its middle moved; arguments are rounded to be written.
-  moved(factor, shift) {
-    if (factor === 1 && shift === 0) return this;
-    const args = {...this.args};
-    for (const [name, value] of Object.entries(this.kind.moved(this.args, factor, shift))) {
-      args[name] = Number(value.toPrecision(6));
-    }
-    if (this.kind.bounded) {
-      args.lower = Math.max(args.lower, this.args.lower);
-      args.upper = Math.min(args.upper, this.args.upper);
-    }
-    return new Law(this.plain, args);
-  }
-
-  // The arguments that differ from another's.
-  changes(other) {
-    return Object.entries(this.args).filter(([name, value]) => value !== other.args[name]);
-  }
+  const ends = {lower: middle - factor * half, upper: middle + factor * half};
+  return mode === undefined ? ends : {...ends, mode: ends.lower + factor * (mode - lower)};
 }

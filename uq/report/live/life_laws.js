@@ -1,47 +1,73 @@
-// The law of a life in each row, of which the inputs that only scale it are integrated: as
-// uq/population/scale_laws.py and uq/population/sums.py.
+// The law of a life in each row, of which inputs that only scale it are integrated: as
+// uq/population/scaling.py and uq/population/scale_laws.py.
 
-// Chebyshev polynomials between ascending ends: the probability of a sum of logarithms.
-function tabulated({ends, coefficients}) {
-  return value => {
-    if (value <= ends[0]) return 0;
-    if (value >= ends.at(-1)) return 1;
-    let piece = 0;
-    while (ends[piece + 1] < value) piece++;
-    const x = (2 * value - ends[piece] - ends[piece + 1]) / (ends[piece + 1] - ends[piece]);
-    const c = coefficients[piece];
-    let [one, two] = [0, 0];
-    for (let i = c.length - 1; i > 0; i--) [one, two] = [2 * x * one - two + c[i], one];
-    return Math.min(1, Math.max(0, x * one - two + c[0]));
-  };
-}
-
-// A multiple of the logarithm of an input.
-function logarithmOf(law, exponent) {
-  return value => {
-    const share = law.probability(Math.exp(value / exponent));
-    return exponent > 0 ? share : 1 - share;
-  };
-}
-
-class LifeLaw {
-  constructor(plain) {
-    this.inputs = plain.inputs;
-    this.plain = plain;
-    this.drawn = numbersOf(plain.drawn, Float64Array);
-    this.bares = new Map();
-  }
-
-  // The probability of less than a sum of logarithms, under the laws that are asked for.
-  below(laws) {
-    return this.plain.table ? tabulated(this.plain.table) : logarithmOf(laws.get(this.inputs[0]), this.plain.exponent);
+// Inputs that are independent of all others.
+class IndependentScale {
+  constructor(scales, term, columns) {
+    this.inputs = scales.map(one => one.name);
+    this.term = term;
+    this.drawn = new Float64Array(columns.get(this.inputs[0]).values.length);
+    for (const {name, exponent} of scales) {
+      columns.get(name).values.forEach((x, row) => { this.drawn[row] += exponent * Math.log(x); });
+    }
   }
 
   // The logarithm of each life without what is integrated.
-  bare(column) {
-    if (!this.bares.has(column)) {
-      this.bares.set(column, column.values.map((life, row) => Math.log(life) - this.drawn[row]));
-    }
-    return this.bares.get(column);
+  bare({values}) {
+    return values.map((life, row) => Math.log(life) - this.drawn[row]);
   }
+
+  // The probability of each row that the life is shorter; 0 where there is none.
+  below(column, time) {
+    if (this.column !== column) [this.column, this.bares] = [column, this.bare(column)];
+    const at = Math.log(time);
+    return this.bares.map(bare => isNaN(bare) ? 0 : this.term.below(at - bare));
+  }
+}
+
+// One input whose law depends on the other inputs of the row.
+class ConditionalScale {
+  constructor({name, exponent, times, slopes, deviation}, laws, columns) {
+    Object.assign(this, {inputs: [name], exponent, deviation, law: laws.get(name)});
+    this.drawn = columns.get(name).values;
+    this.others = times ? columns.get(times).values : null;
+    if (slopes) {
+      this.mean = new Float64Array(this.drawn.length);
+      for (const [other, slope] of slopes) {
+        laws.get(other).normal(columns.get(other).values).forEach((z, row) => { this.mean[row] += slope * z; });
+      }
+    }
+  }
+
+  below({values}, time) {
+    const {law, others, mean, exponent} = this;
+    return values.map((life, row) => {
+      if (isNaN(life)) return 0;
+      const reached = this.drawn[row] * (time / life) ** (1 / exponent);
+      if (others) return law.shares(reached / others[row], law.beside(others[row]))[exponent > 0 ? 0 : 1];
+      const share = law.shares(reached)[0];
+      const z = share <= 0 ? -Infinity : share >= 1 ? Infinity : normalAt(share);
+      return normalBelow((exponent > 0 ? 1 : -1) * (z - mean[row]) / this.deviation);
+    });
+  }
+}
+
+// The law that Python integrates, of the inputs that it may: all that are independent of the others, or
+// the one that depends on others if it alone scatters the lives more.
+function lifeLawOf({free, bound}, laws, columns) {
+  const kept = [...free, ...bound].filter(({name, times}) => times || laws.get(name).isPositive);
+  const terms = kept.filter(one => free.includes(one)).map(one => [one, new LogTerm(laws.get(one.name), one.exponent)]);
+  const others = kept.filter(one => bound.includes(one)).map(one => [one, reachOf(one, columns)]);
+  const widest = others.reduce((best, one) => one[1] > best[1] ? one : best, [null, 0]);
+  if (terms.length && (!widest[0] || Math.hypot(...terms.map(([, term]) => term.spread)) >= widest[1])) {
+    return new IndependentScale(terms.map(([one]) => one), sumOf(terms.map(([, term]) => term)), columns);
+  }
+  return widest[0] && new ConditionalScale(widest[0], laws, columns);
+}
+
+// The standard deviation of the logarithms of lives that an input causes, given the others.
+function reachOf({name, exponent, times, deviation}, columns) {
+  const {values} = columns.get(name), others = times && columns.get(times).values;
+  const logs = values.map((x, row) => Math.log(others ? x / others[row] : x)), mean = total(logs) / logs.length;
+  return deviation * Math.abs(exponent) * Math.sqrt(total(logs.map(one => (one - mean) ** 2)) / logs.length);
 }

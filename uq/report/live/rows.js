@@ -46,6 +46,12 @@ class Column {
     });
   }
 
+  // The rows that have a value, ascending.
+  get order() {
+    return this.ascending ??= [...this.states.keys()].filter(row => this.states[row] < UNDEFINED)
+      .sort((a, b) => this.values[a] - this.values[b] || this.states[a] - this.states[b]);
+  }
+
   get title() {
     return this.unit ? `${this.label} [${this.unit}]` : this.label;
   }
@@ -69,6 +75,7 @@ class Rows {
     this.numbers = numbersOf(plain.numbers, Int32Array);
     this.failed = numbersOf(plain.failed, Uint8Array);
     this.replicate = plain.replicate ? numbersOf(plain.replicate, Int32Array) : null;
+    this.samples ??= null;
     this.sample = plain.sample ? numbersOf(plain.sample, Int32Array) : null;
     this.columns = plain.columns.map(one => new Column(one, this.failed));
     this.categories = plain.categories.map(one => new Category(one));

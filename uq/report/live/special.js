@@ -1,5 +1,13 @@
 // Special functions, to about twelve digits.
 
+const ROUNDING = 64 * Number.EPSILON;
+
+function total(numbers) {
+  let sum = 0;
+  for (const one of numbers) sum += one;
+  return sum;
+}
+
 // The normal law's probability of less than x (J. F. Hart, Computer Approximations, 1968, as given by
 // G. West, "Better approximations to cumulative normal functions", Wilmott, May 2005).
 function normalBelow(x) {
@@ -18,6 +26,19 @@ function normalBelow(x) {
     tail = Math.exp(-z * z / 2) / fraction / Math.sqrt(2 * Math.PI);
   }
   return x > 0 ? 1 - tail : tail;
+}
+
+// Where the normal law has this probability of less: Halley's steps from M. Abramowitz and I. A. Stegun,
+// Handbook of Mathematical Functions (1964), 26.2.23.
+function normalAt(probability) {
+  if (probability > 0.5) return -normalAt(1 - probability);
+  const t = Math.sqrt(-2 * Math.log(probability));
+  let z = (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308))) - t;
+  for (let i = 0; i < 3; i++) {
+    const error = (normalBelow(z) - probability) * Math.sqrt(2 * Math.PI) * Math.exp(z * z / 2);
+    z -= error / (1 + z * error / 2);
+  }
+  return z;
 }
 
 // C. Lanczos, SIAM J. Numer. Anal. 1, 86 (1964).
@@ -54,6 +75,30 @@ function betaBelow(a, b, x) {
     if (Math.abs(c * d - 1) < 1e-15) break;
   }
   return front * fraction;
+}
+
+// The regularised incomplete gamma functions, below and above x: a series, or Lentz's continued fraction.
+function gammaTails(a, x) {
+  if (!(x > 0)) return [0, 1];
+  if (x === Infinity) return [1, 0];
+  const front = Math.exp(a * Math.log(x) - x - logGamma(a));
+  if (x < a + 1) {
+    let term = 1 / a, sum = term;
+    for (let n = 1; term > sum * 1e-17; n++) sum += term *= x / (a + n);
+    const below = Math.min(front * sum, 1);
+    return [below, 1 - below];
+  }
+  let b = x + 1 - a, c = Infinity, d = 1 / b, fraction = d;
+  for (let n = 1; n < 100000; n++) {
+    const factor = n * (a - n);
+    b += 2;
+    d = 1 / (b + factor * d);
+    c = b + factor / c;
+    fraction *= c * d;
+    if (Math.abs(c * d - 1) < 1e-15) break;
+  }
+  const above = Math.min(front * fraction, 1);
+  return [1 - above, above];
 }
 
 function betaQuantile(a, b, probability) {

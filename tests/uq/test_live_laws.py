@@ -1,0 +1,113 @@
+"""The laws that a page computes with, against those of Python."""
+
+import json
+
+import numpy as np
+import pytest
+from report_scripts import scripts
+
+from uq.inputs.conditioning import cdf_within, log_density_between
+from uq.inputs.registry import LAWS, law_of
+from uq.population.sums import LogTerm, law_of_sum
+from uq.report.tolerances import KNOWN
+
+ARGUMENTS = {
+    "normal": {"mean": 3.0, "sd": 0.4},
+    "truncated-normal": {"mean": 3.0, "sd": 0.9, "lower": 1.0, "upper": 4.0},
+    "lognormal": {"mean": 3.0, "cv": 0.3},
+    "uniform": {"lower": 1.0, "upper": 4.0},
+    "loguniform": {"lower": 0.5, "upper": 4.0},
+    "triangular": {"lower": 1.0, "mode": 1.5, "upper": 4.0},
+    "pert": {"lower": 1.0, "mode": 3.5, "upper": 4.0},
+    "beta": {"alpha": 0.7, "beta": 2.5, "lower": 1.0, "upper": 4.0},
+    "weibull": {"shape": 1.7, "scale": 2.0},
+    "gamma": {"shape": 4.5, "scale": 0.5},
+    "gumbel": {"mode": 3.0, "scale": 0.3},
+    "exponential": {"mean": 1.5},
+    "histogram": {"edges": [1.0, 1.5, 3.0, 4.0], "counts": [5.0, 20.0, 10.0]},
+    "integer-range": {"lower": 1, "upper": 9},
+}
+BOUNDS = (0.2, 6.0)
+CASES = [(name, {}) for name in KNOWN]
+CASES += [("gamma", {"truncate": [1.0, 3.0]}), ("normal", {"truncate": [2.9, 5.0]})]
+CASES += [
+    ("gamma", {"shape": 0.4}),
+    ("gamma", {"shape": 1e4, "scale": 2e-4}),
+    ("pert", {"mode": 1.0}),
+]
+"""Name of a law -> arguments that differ from those above."""
+
+
+@pytest.fixture(scope="module")
+def asked(browser, tmp_path_factory):
+    """Return a function that evaluates an expression with the scripts of a page."""
+    path = tmp_path_factory.mktemp("laws") / "laws.html"
+    path.write_text(f"<meta charset=utf-8><script>{scripts()}</script>", encoding="utf-8")
+    browser.open(path)
+    assert browser.complaints() == []
+    return browser.value
+
+
+def plain(name, changes):
+    return ARGUMENTS[name] | {k: v for k, v in changes.items() if k != "truncate"}
+
+
+def in_page(name, changes, bounds=BOUNDS):
+    """Return the expression of a law."""
+    law = {"distribution": name, "args": plain(name, changes), "bounds": bounds}
+    return f"new Law({json.dumps(law | {'truncate': changes.get('truncate')})})"
+
+
+def test_each_law_has_a_slider_or_a_reason():
+    assert {*ARGUMENTS} == {*KNOWN}
+    assert all(name in KNOWN or law.discrete for name, law in LAWS.items())
+
+
+@pytest.mark.parametrize("moved", [(1, 0), (0.7, 0.4), (1, -1.2)], ids=str)
+def test_densities_and_probabilities_are_those_of_python(asked, moved):
+    for name, changes in CASES:
+        x = np.linspace(0.25, 5.9, 40) if name != "integer-range" else np.arange(1.0, 7.0)
+        found = asked(
+            f"(() => {{ const law = {in_page(name, changes)}.moved({moved[0]}, {moved[1]}),"
+            f" x = Float64Array.from({json.dumps(x.tolist())});"
+            " const shares = [...x].map(one => law.shares(one));"
+            " return {args: law.args, logs: [...law.logDensities(x)].map(String),"
+            " below: shares.map(one => one[0]), above: shares.map(one => one[1])} })()"
+        )
+        law = law_of({"distribution": name} | changes | found["args"])
+        logs = log_density_between(law, x, *BOUNDS)
+        np.testing.assert_allclose(
+            np.array(found["logs"], dtype=float), logs, rtol=1e-7, atol=1e-8, err_msg=name
+        )
+        below = cdf_within(law, x, BOUNDS)
+        inside = x < 5.99 if name != "integer-range" else x < 0  # its own ends lie between numbers
+        np.testing.assert_allclose(
+            np.array(found["below"])[inside], below[inside], rtol=1e-8, atol=1e-12, err_msg=name
+        )
+        np.testing.assert_allclose(
+            np.array(found["above"])[inside], 1 - below[inside], rtol=1e-6, atol=1e-11, err_msg=name
+        )
+        has_room = moved[0] < 1 or not {"lower", "edges"} & {*ARGUMENTS[name]}
+        assert (found["args"] != plain(name, changes)) == (
+            moved != (1, 0) and (has_room or name == "truncated-normal")
+        )
+
+
+def test_the_law_of_a_product_is_that_of_python(asked):
+    products = (
+        [("gamma", 1.0), ("lognormal", -2.0)],
+        [("triangular", -1.0), ("loguniform", 0.5)],
+        [("weibull", 1.0), ("beta", -1.0), ("histogram", 1.0)],
+    )
+    for terms in products:
+        laws = [law_of({"distribution": name} | ARGUMENTS[name]) for name, _ in terms]
+        python = law_of_sum(
+            [LogTerm(law, BOUNDS, exponent) for law, (_, exponent) in zip(laws, terms, strict=True)]
+        )
+        places = np.linspace(python.breaks[0], python.breaks[-1], 201)
+        inside = ", ".join(f"new LogTerm({in_page(name, {})}, {e})" for name, e in terms)
+        found = asked(
+            f"(() => {{ const sum = sumOf([{inside}]);"
+            f" return {json.dumps(places.tolist())}.map(t => sum.below(t)) }})()"
+        )
+        np.testing.assert_allclose(found, python.below(places), atol=1e-9, err_msg=str(terms))

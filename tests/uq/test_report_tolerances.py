@@ -1,0 +1,153 @@
+"""Other tolerances: what the sliders of a page find, against what Python finds on the same rows."""
+
+import json
+import shlex
+
+import numpy as np
+import pytest
+from computed import computed, study_of
+from explored import cells
+from report_scripts import scripts
+
+from uq.analysis.findings import Findings
+from uq.analysis.what_if import _changed, answer, read_changes, what_if_json
+from uq.errors import RunError
+from uq.intervals import share_interval
+from uq.population.functionals import Population
+from uq.population.reweighting import Weighting
+from uq.population.scaling import inputs_of, population
+from uq.report.embedded import rows_inside
+from uq.rows.elements import independent_rows, replicates_of
+
+NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
+SIGMA = {"distribution": "lognormal", "median": 1.0, "sigma": 0.4}
+GAMMA = {"distribution": "gamma", "shape": 4.0, "scale": 0.25}
+COUNTS = {"distribution": "histogram", "edges": [-2.0, 0.0, 1.0, 3.0], "counts": [3.0, 5.0, 2.0]}
+NESTED = {"samples": 200, "units": 3}
+RANKS = {"parameters": ["a", "z"], "rank_correlation": [[1.0, 0.4], [0.4, 1.0]]}
+CASES = {
+    "weighted": ("z", {"z": NORMAL}, {}, None),
+    "truncated": ("z", {"z": NORMAL | {"truncate": [-2.0, 1.5]}}, {}, None),
+    "counts": ("z", {"z": COUNTS}, {}, None),
+    "integrated": ("a", {"a": GAMMA}, {}, None),
+    "product": ("b", {"a": GAMMA, "b": SIGMA, "c": SIGMA}, {}, None),
+    "factor": ("b", {"b": SIGMA | {"sigma": 0.3, "times": "a"}}, {}, None),
+    "scaled by a factor": ("a", {"b": SIGMA | {"sigma": 0.3, "times": "a"}}, {}, None),
+    "correlated": ("z", {}, {}, RANKS),
+    "scaled by what is correlated": ("a", {}, {}, RANKS),
+    "replicates": ("z", {}, {"method": "sobol", "samples": 128, "replicates": 8}, None),
+    "units": ("z", {}, NESTED, None),
+}
+"""Name -> the input that is moved, laws that differ, design, and rank correlations."""
+
+
+def scaled(uncertain, dependence=None, **design):
+    """Return a result of lives that input a only scales, beside an output of both inputs."""
+    some = {"a": SIGMA, "z": NORMAL} | uncertain
+    tables = {
+        "study": {"name": "scaled", "model": "scaled"},
+        "design": {"method": "monte-carlo", "samples": 1000, "seed": 3} | design,
+        "uncertain": some,
+        "analysis": {"outputs": ["life", "y"], "thresholds": {"life": [0.8], "y": [0.5]}},
+    } | ({"dependence": dependence} if dependence else {})
+    return computed(study_of(tables, "sample_models:SCALED"))
+
+
+def move(browser, name, width, shift):
+    """Move the sliders of an input."""
+    for i, value in enumerate((width, shift)):
+        browser.value(
+            f"(() => {{ const own = document.querySelector('.tolerance[data-name={name}]');"
+            f" const slider = own.querySelectorAll('input')[{i}];"
+            f" slider.value = {value}; slider.dispatchEvent(new Event('input')) }})()"
+        )
+
+
+def asked_of_python(browser, ds):
+    """Return what the command that the page shows finds in Python."""
+    browser.painted()
+    command = browser.value("document.querySelector('#tolerances .command code').innerText")
+    words = shlex.split(command)
+    assert words[:3] == ["uq", "what-if", "a result.nc"]
+    changes = read_changes([word for word in words[3:] if word != "--set"])
+    return changes, answer(ds, changes)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_slider_finds_what_python_finds(shown, case):
+    name, laws, design, ranks = CASES[case]
+    ds = scaled(laws, ranks, **design)
+    browser = shown(ds)
+    move(browser, name, 0.8, 0.3)
+    changes, found = asked_of_python(browser, ds)
+    assert changes
+    outputs = what_if_json(found)["outputs"]
+    here = cells(browser, "#tolerances")
+    for output, at, side in (("life", "0.8", "below"), ("y", "0.5", "above")):
+        one = outputs[output]["thresholds"][at][side]
+        expected = [one[end] for end in ("value", "low", "high")]
+        assert here[f"{output}/{at}"][0] == pytest.approx(expected, rel=1e-7)
+    assert here["life/0.8"][0] != pytest.approx(here["life/0.8"][1])
+    worth = browser.value("document.querySelector('#tolerances .said data').value")
+    assert float(worth) == pytest.approx(found.effective_rows, rel=1e-7)
+
+
+def test_too_few_rows_are_refused_as_in_python(shown):
+    ds = scaled({}, samples=60)
+    browser = shown(ds)
+    move(browser, "z", 1.5, 1.5)
+    browser.painted()
+    with pytest.raises(RunError) as refused:
+        asked_of_python(browser, ds)
+    said = browser.value("document.querySelector('#tolerances .said').innerText")
+    assert said.split(":")[0] == str(refused.value).split(":")[0] and "Pareto k" in said
+    assert np.isnan(cells(browser, "#tolerances")["life/0.8"][0][0])
+
+
+def test_inputs_without_a_slider_are_named(shown):
+    listed = {"distribution": "discrete-choice", "values": [0.5, 1.0], "weights": [1.0, 1.0]}
+    browser = shown(scaled({"a": listed}))
+    assert browser.value("document.querySelectorAll('.tolerance').length") == 1
+    notes = browser.value("document.querySelector('#tolerances .note').innerText")
+    assert "its values are listed" in notes
+
+
+CURVES = """(() => { const all = new Reweighting(rows); MOVES
+  const changes = all.changed.flatMap(name => all.laws.get(name).changes(all.old.get(name))
+    .map(([key, value]) => [`uncertain.${name}.${key}`, value]));
+  return [changes, ...["life", "y"].map(name => {
+    const one = new WeightedCurve(all, all.columns.get(name));
+    return [one.curve, [...one.band()].at(-1)];
+  })] })()"""
+
+
+@pytest.mark.parametrize("design", [{"samples": 300}, NESTED], ids=["rows", "units"])
+def test_curves_and_their_intervals_are_those_of_python(browser, tmp_path, design):
+    ds = independent_rows(scaled({"c": GAMMA}, **design))
+    inside = json.dumps(rows_inside(Findings(ds), "a.nc"))
+    path = tmp_path / "curves.html"
+    script = f"{scripts()}; const rows = new Rows({inside})"
+    path.write_text(f"<meta charset=utf-8><script>{script}</script>", encoding="utf-8")
+    browser.open(path)
+    part = replicates_of(ds)
+    for moves in ({}, {"z": (0.8, 0.3)}, {"c": (0.7, 0.2)}):
+        moved = "".join(f"all.move({json.dumps(n)}, {a}, {b});" for n, (a, b) in moves.items())
+        changes, *curves = browser.value(CURVES.replace("MOVES", moved))
+        elements = population(ds, ["life", "y"])
+        if moves:
+            new = _changed(ds, dict(changes))
+            elements = Weighting(ds, inputs_of(ds), new, part).elements(["life", "y"])
+        for element, (curve, band) in zip(elements, curves, strict=True):
+            rows = Population(element, part)
+            ends = zip(band["low"], band["high"], strict=True)  # a step has those before it, too
+            for at, (low, high) in dict(zip(band["at"], ends, strict=True)).items():
+                if element.is_plain:
+                    expected = share_interval(element.values > at, part)
+                else:
+                    expected = rows.outliving(at).numbers[1:]
+                found = np.array([low, high], dtype=float)  # null stands for NaN
+                assert found == pytest.approx(expected, rel=1e-6, abs=1e-9, nan_ok=True)
+            middle = len(curve["at"]) // 2
+            share = rows.outliving(curve["at"][middle]).value
+            assert curve["share"][middle] == pytest.approx(share, abs=2e-3)
+    assert browser.complaints() == []

@@ -1,0 +1,192 @@
+"""The key of a number: its path in the JSON of its verb, as in `outputs/life/quantiles/0.05`.
+
+A key of a verb other than `uq summary` begins with its name, options in brackets:
+``sensitivity[method=delta]/outputs/y/delta/x1``. In names, ``~`` is written ``~0`` and ``/`` is
+written ``~1``, as in JSON Pointer (RFC 6901).
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from uq.errors import InputError, nearest
+
+SUMMARY = "summary"
+
+_LONGEST = 200  # characters of a key in an error line
+
+Path = tuple[str, ...]
+Options = Mapping[str, str]
+Json = Mapping[str, Any]
+
+
+class Key(NamedTuple):
+    """A key, taken apart.
+
+    Attributes
+    ----------
+    verb : str
+    options : dict of str to str
+    path : tuple of str
+        In the JSON of the verb.
+    """
+
+    verb: str
+    options: dict[str, str]
+    path: Path
+
+
+def key_of(
+    *path: str | int, verb: str = SUMMARY, options: Mapping[str, str | None] | None = None
+) -> str:
+    """Return the key of a number.
+
+    Parameters
+    ----------
+    *path : str or int
+        In the JSON of the verb.
+    verb : str
+    options : dict of str to str, optional
+        Those that are None are left out.
+
+    Returns
+    -------
+    str
+    """
+    given = [f"{name}={value}" for name, value in (options or {}).items() if value is not None]
+    parts = [_escaped(str(part)) for part in path]
+    inside = f"[{','.join(given)}]" if given else ""
+    return "/".join(parts if verb == SUMMARY and not given else [verb + inside, *parts])
+
+
+def taken_apart(key: str, verbs: Mapping[str, Iterable[str]]) -> Key:
+    """Return the parts of a key.
+
+    Parameters
+    ----------
+    key : str
+    verbs : dict of str to iterable of str
+        Name -> names of its options.
+
+    Returns
+    -------
+    Key
+
+    Raises
+    ------
+    InputError
+        When the verb does not have such an option.
+    """
+    found = re.match(rf"({'|'.join(map(re.escape, verbs))})(?:\[(.*?)\])?(?:/|$)", key)
+    verb, inside = (found[1], found[2]) if found else (SUMMARY, None)
+    rest = key[found.end() :] if found else key
+    options = {}
+    for text in re.split(r",(?![^\[]*\])", inside) if inside else []:
+        name, equals, value = text.partition("=")
+        names = tuple(verbs[verb])
+        begins = any(name.startswith(one) for one in names if one.endswith("."))
+        if not (name in names or begins) or not equals:
+            known = ", ".join(f"{one}{'NAME' * one.endswith('.')}=..." for one in names) or "none"
+            raise InputError(
+                f"key '{_cut(key)}': no such option of {verb}: {_cut(text)} (allowed: {known})"
+            )
+        options[name] = value
+    return Key(verb, options, tuple(_plain(part) for part in rest.split("/")) if rest else ())
+
+
+def value_at(whole: Any, path: Path) -> Any:
+    """Return what stands at a path of JSON.
+
+    Raises
+    ------
+    KeyError
+        When there is nothing.
+    """
+    for part in path:
+        if isinstance(whole, list):
+            if not part.isdecimal() or int(part) >= len(whole):
+                raise KeyError(part)
+            whole = whole[int(part)]
+        elif isinstance(whole, dict):
+            whole = whole[part]
+        else:
+            raise KeyError(part)
+    return whole
+
+
+def numbers_in(entry: Any) -> dict[str, Any]:
+    """Return a number with what explains it; empty where there is no number.
+
+    Parameters
+    ----------
+    entry : object
+        A number, or an estimate with ``value``, ``low`` and the like.
+
+    Returns
+    -------
+    dict
+    """
+    if is_number(entry):
+        return {"value": entry}
+    if not isinstance(entry, dict) or any(map(_holds_numbers, entry.values())):
+        inner = entry if isinstance(entry, dict) and is_number(entry.get("value", "")) else {}
+        return {name: one for name, one in inner.items() if not isinstance(one, dict | list)}
+    return entry if any(map(is_number, entry.values())) else {}
+
+
+def is_number(value: object) -> bool:
+    """Whether a value of JSON is a number, or null in its place."""
+    return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
+
+
+def _holds_numbers(entry: object) -> bool:
+    """Whether there is more than words in a part of JSON."""
+    words = isinstance(entry, list) and all(isinstance(one, str) for one in entry)
+    return isinstance(entry, dict | list) and not words
+
+
+def paths_of_numbers(whole: Any, path: Path = ()) -> Iterator[Path]:
+    """Yield the path of every number in JSON, and of every estimate as a whole."""
+    if path and numbers_in(whole):
+        yield path
+    inner = enumerate(whole) if isinstance(whole, list) else ()
+    for name, one in whole.items() if isinstance(whole, dict) else inner:
+        if isinstance(one, dict | list) or is_number(one):
+            yield from paths_of_numbers(one, (*path, str(name)))
+
+
+def no_such_key(key: Key, whole: Any, verbs: Iterable[str]) -> InputError:
+    """Return the error about a key that leads to no number, with the nearest one that does.
+
+    Parameters
+    ----------
+    key : Key
+    whole : dict
+        The JSON of its verb.
+    verbs : iterable of str
+        With one of which it might have been meant to begin.
+    """
+
+    def text(path: Path) -> str:
+        return key_of(*path, verb=key.verb, options=key.options)
+
+    wanted, known = text(key.path), [text(path) for path in paths_of_numbers(whole)]
+    inside = [one for one in known if one.startswith(f"{wanted}/")]
+    if inside:
+        return InputError(f"key '{wanted}': several numbers; add to it, as in '{inside[0]}'")
+    near = nearest(wanted, known) or nearest(wanted.partition("/")[0], verbs)
+    return InputError(f"no such key '{_cut(wanted)}'{near or f' (the first one: {known[0]})'}")
+
+
+def _cut(key: str) -> str:
+    """Return a key for an error line, cut if it is longer than any."""
+    line = " ".join(key.split())
+    return line if len(line) <= _LONGEST else f"{line[:_LONGEST]}..."
+
+
+def _escaped(part: str) -> str:
+    return part.replace("~", "~0").replace("/", "~1")
+
+
+def _plain(part: str) -> str:
+    return part.replace("~1", "/").replace("~0", "~")

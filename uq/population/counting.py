@@ -1,0 +1,150 @@
+"""How many units of a fleet have ended, from the probabilities of the units of its world."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from uq.contract import Floats
+
+_MOST_NUMBERS = 10_000_000
+
+
+def more_than(ended: Floats, size: int, allow: int, are_alike: bool) -> Floats:
+    """Return the probability that more than some of a fleet of a world's units have ended.
+
+    Parameters
+    ----------
+    ended : ndarray, shape (samples, units, nodes)
+        As in `at_most`; of units that are alike, a single one.
+    size, allow : int
+    are_alike : bool
+        Whether all units of a world have the same known probability.
+
+    Returns
+    -------
+    ndarray, shape (samples, nodes)
+    """
+    if allow >= size:
+        return np.zeros(ended[:, 0].shape)
+    if are_alike:
+        return np.asarray(special.bdtrc(allow, size, ended[:, 0]))
+    return 1 - at_most(ended, size, allow)
+
+
+def turns(lives: Floats, size: int, allow: int, are_alike: bool) -> Floats:
+    """Return the probability that each life of a world is the one after which too many have ended.
+
+    Where all lives of a world are scaled alike, their order does not change: more than `allow` of
+    a fleet have ended when one of them has, whatever the scale.
+
+    Parameters
+    ----------
+    lives : ndarray, shape (samples, units, repeats)
+        NaN where there is none.
+    size, allow : int
+    are_alike : bool
+        Whether all lives of a world are the same.
+
+    Returns
+    -------
+    ndarray, shape (samples, units, repeats)
+        Zero in samples with too few units.
+    """
+    samples, units, repeats = lives.shape
+    blocks = -(-lives.size * units * repeats // _MOST_NUMBERS)
+    found = []
+    for block in np.array_split(lives, max(blocks, 1)):
+        table = block.reshape(len(block), 1, -1) if are_alike else block
+        order, ended = _one_by_one(table)
+        each = np.zeros(order.shape)
+        steps = np.diff(more_than(ended, size, allow, are_alike), axis=1, prepend=0.0)
+        np.put_along_axis(each, order, steps, axis=1)
+        found.append(each)
+    whole = np.nan_to_num(np.concatenate(found)).reshape(lives.shape)
+    return np.where(np.isnan(lives), 0.0, whole)
+
+
+def _one_by_one(lives: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """Return the order of the lives of each world, and which part of its units each leaves ended.
+
+    Shapes (samples, lives) and (samples, units, lives).
+    """
+    samples, units, repeats = lives.shape
+    known = np.isfinite(lives) | np.isposinf(lives)
+    count = known.sum(axis=2)
+    order = np.argsort(lives.reshape(samples, -1), axis=1)
+    sample, place = np.indices(order.shape)
+    parts = known / np.maximum(count, 1)[..., None]
+    ended = np.zeros((samples, units, units * repeats))
+    ended[sample, order // repeats, place] = np.take_along_axis(
+        parts.reshape(samples, -1), order, axis=1
+    )
+    ended = np.minimum(np.cumsum(ended, axis=2), 1.0)
+    ended[count == 0] = np.nan
+    return order, ended
+
+
+def at_most(ended: Floats, size: int, allow: int) -> Floats:
+    """Return the probability that at most some of a fleet of a world's units have ended.
+
+    Parameters
+    ----------
+    ended : ndarray, shape (samples, units, nodes)
+        Independent probabilities of the units; NaN for units that do not take part.
+    size, allow : int
+
+    Returns
+    -------
+    ndarray, shape (samples, nodes)
+        The mean over all fleets of `size` different units: unbiased for units drawn anew, where
+        any power of the units' mean probability is not. NaN where there are fewer units.
+    """
+    samples, units, nodes = ended.shape
+    rows = np.sort(np.moveaxis(ended, 1, 2).reshape(samples * nodes, units), axis=1)
+    counts = np.isfinite(rows).sum(axis=1)
+    found = np.full(len(rows), np.nan)
+    for count in np.unique(counts[counts >= size]):
+        of = rows[counts == count, :count]
+        certain = bool(np.isin(of, (0.0, 1.0)).all())
+        found[counts == count] = (_of_certain if certain else _of_any)(of, size, min(allow, size))
+    return found.reshape(samples, nodes)
+
+
+def _of_certain(ended: Floats, size: int, allow: int) -> Floats:
+    """Return it of units that have ended or have not: the hypergeometric law."""
+    units = ended.shape[1]
+    count = np.arange(units + 1.0)
+    some = np.arange(allow + 1.0)[:, None]
+    each = _log_choose(count, some) + _log_choose(units - count, size - some)
+    table = np.exp(each - _log_choose(units, size)).sum(axis=0)
+    return np.asarray(np.minimum(table, 1.0)[ended.sum(axis=1).astype(int)])
+
+
+def _log_choose(n: Floats | float, k: Floats | float) -> Floats:
+    n, k = np.asarray(n, float), np.asarray(k, float)
+    found: Floats = special.gammaln(n + 1) - special.gammaln(k + 1) - special.gammaln(n - k + 1)
+    return found
+
+
+def _of_any(ended: Floats, size: int, allow: int) -> Floats:
+    """Return it of units with any probabilities.
+
+    The mean over fleets of r of the first m units, of which unit m is in a share r / m: a recursion
+    over m of weighted means, in which nothing cancels.
+    """
+    rows, units = ended.shape
+    most = max(1, _MOST_NUMBERS // ((size + 1) * (allow + 1)))
+    if rows > most:
+        blocks = np.array_split(ended, -(-rows // most))
+        return np.concatenate([_of_any(block, size, allow) for block in blocks])
+    chance = np.zeros((size + 1, allow + 1, rows))
+    chance[0, 0] = 1.0
+    for m in range(1, units + 1):
+        p = ended[:, m - 1]
+        low, high = max(1, size - (units - m)), min(m, size)
+        share = (np.arange(low, high + 1) / m)[:, None, None]
+        before = chance[low - 1 : high]
+        added = before * (1 - p)
+        added[:, 1:] += before[:, :-1] * p
+        chance[low : high + 1] = (1 - share) * chance[low : high + 1] + share * added
+    return np.asarray(chance[size].sum(axis=0))

@@ -1,0 +1,194 @@
+"""What was found: propagation, convergence, sensitivities, uncertainty, conclusions."""
+
+from collections.abc import Iterator
+from math import isfinite
+
+from uq.analysis.findings import Findings
+from uq.analysis.statistics.statistic import Reader
+from uq.analysis.statistics.table import STATISTICS
+from uq.conclusions.advice import verdict
+from uq.conclusions.answer import conclude
+from uq.conclusions.page import fragment
+from uq.conclusions.parts import Quantity
+from uq.designs.registry import DESIGNS
+from uq.keys import key_of
+from uq.report.cells import Cell, Table
+from uq.report.convergence import convergence_of
+from uq.report.dossier.items import Item
+from uq.report.fleets import fleet_table
+from uq.report.indices import Method, sensitivity_of
+from uq.report.levels import levels_of
+from uq.report.outcomes import category_table, outcomes, result_tables, status_table
+from uq.report.pictures import pictures
+from uq.rows.elements import analysis_of
+from uq.rows.nesting import is_nested, nesting_of, size_in_words
+from uq.rows.results import failed
+from uq.tracing.citations import cited
+
+COVERAGE = 0.9
+"""Of the interval between the quantiles that the answer holds, 5 and 95 %."""
+
+
+def propagation(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield how the laws were propagated, and how rows ended."""
+    ds, summary = findings.ds, findings.summary
+    attrs = ds.attrs
+    rows = [("rows", str(summary.samples)), ("independent rows", str(summary.rows_used))]
+    if is_nested(ds):
+        place = nesting_of(ds)
+        rows.append(("samples", size_in_words(place.samples, place.units, place.repeats)))
+    yield Item(
+        "Design",
+        facts=[
+            ("method", f"{attrs['design']}: {DESIGNS[attrs['design']].meaning}"),
+            ("replicates", str(attrs["replicates"])),
+            ("seed", str(attrs["seed"])),
+            *rows,
+        ],
+    )
+    lost, most = int(failed(ds).sum()), 100 * analysis_of(ds).max_failed
+    yield Item(
+        "Rows that could not be computed",
+        text=[
+            f"{lost} of {summary.samples} rows failed; the study allows {most:g} %. They are left"
+            " out of every statistic, and tolerance bounds count them as the worst value."
+        ],
+        tables=[status_table(ds, summary)],
+    )
+
+
+def convergence(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield whether the rows are enough."""
+    found = convergence_of(findings, outcomes(findings.ds, findings.summary))
+    yield Item("Verdict", text=verdict(findings))
+    refused = [found.refused] if found.refused else []
+    notes = [*found.warnings, *refused]
+    yield Item(
+        "Sampling error, and numerical error of the rows",
+        tables=[found.table] if found.table else [],
+        notes=notes,
+    )
+    yield Item("Estimates against the number of rows", pictures=found.pictures, notes=refused)
+
+
+def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield the indices by each method."""
+    methods = sensitivity_of(findings)
+    yield from map(_indices, methods)
+    if not methods:
+        yield Item("Indices", notes=["The design of this study supports no sensitivity method."])
+
+
+def _indices(method: Method) -> Item:
+    notes = [f"{note} ({one.name})" for one in method.subjects for note in one.notes]
+    return Item(
+        f"Indices by {method.name}",
+        tables=[table for one in method.subjects for table in one.tables],
+        notes=[method.refused or method.used, *notes],
+    )
+
+
+def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield what is known of the quantities of interest."""
+    found = outcomes(findings.ds, findings.summary)
+    of_jcgm = _coverage_intervals(findings)
+    yield Item(
+        "Estimate, standard uncertainty and coverage interval",
+        tables=[of_jcgm] if of_jcgm.rows else [],
+        notes=[
+            "What JCGM 101, 5.5 asks for: the intervals are probabilistically symmetric, from the 5"
+            " % to the 95 % quantile, and cover variability and lack of knowledge together."
+        ],
+    )
+    yield Item(
+        "Statistics with their intervals",
+        tables=list(result_tables(found)),
+        pictures=list(pictures(findings, "results", without=findings.absent)),
+        notes=findings.summary.notes,
+    )
+    if findings.summary.regimes:
+        yield Item(
+            "Regimes",
+            tables=[category_table("regime", findings.summary.regimes)],
+            pictures=list(pictures(findings, "rows")),
+        )
+    yield Item("Estimators and their sources", tables=_estimators(findings))
+    levels, fleets = levels_of(findings), fleet_table(findings)
+    yield Item(
+        "What is shared, own, or due to chance",
+        tables=[*([levels.table] if levels else []), *([fleets] if fleets else [])],
+        notes=levels.notes if levels else ["Each sample has one row."],
+    )
+
+
+def _coverage_intervals(findings: Findings) -> Table:
+    header = (
+        "output",
+        "unit",
+        "estimate (mean)",
+        "standard uncertainty",
+        "coverage",
+        "from",
+        "to",
+    )
+    rows = [_interval(findings, one) for one in conclude(findings).quantities]
+    return Table("Estimates and coverage intervals", header, rows)
+
+
+def _interval(findings: Findings, one: Quantity) -> tuple[Cell, ...]:
+    assert one.range is not None
+    unit, described = one.range.unit, findings.summary.outputs[one.name]
+
+    def cell(value: float, *key: str) -> Cell:
+        if value != value:
+            return Cell("-")
+        traced = key_of("outputs", one.name, *key) if described.find(*key) else ""
+        text = unit.number(value) if isfinite(value) else unit.text(value)
+        return Cell(text, key=value if isfinite(value) else None, traced=traced)
+
+    moments = (described.find(key) for key in ("mean", "sd"))
+    return (
+        Cell(one.name, one.words),
+        Cell(unit.name),
+        *(cell(found.estimate.value, *found.key) for found in moments if found),
+        Cell(f"{100 * COVERAGE:g} %"),
+        cell(one.range.low.value, "quantiles", "0.05"),
+        cell(one.range.high.value, "quantiles", "0.95"),
+    )
+
+
+def _estimators(findings: Findings) -> list[Table]:
+    """Return what computes the statistics of the tables, and whom each of these cites."""
+    shown = (
+        (name, one)
+        for described in findings.summary.outputs.values()
+        for name, several in described.parts.items()
+        for one in several
+        if one.is_read_by(Reader.REPORT)
+    )
+    functions = dict.fromkeys(
+        function for name, one in shown for function in one.by or (STATISTICS[name],)
+    )
+    rows = [
+        (Cell(one.does), Cell("; ".join(one.sources) or "a definition"), Cell(one.code))
+        for one in map(cited, functions)
+    ]
+    header = ("estimator", "source", "function")
+    return [Table("Estimators", header, rows)] if rows else []
+
+
+def studies(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield what other assumptions would change."""
+    found = [one.text for one in conclude(findings).advice if one.tightened is not None]
+    yield Item("Less scatter of what matters most", text=found)
+    note = (
+        "'uq what-if' shows the same rows under other laws, 'uq compare' two studies; neither is"
+        " part of a result."
+    )
+    yield Item("Other laws, models and numerical settings", notes=[note])
+
+
+def conclusions(findings: Findings, file: str) -> Iterator[Item]:
+    """Yield the answer."""
+    yield Item("The answer", html=fragment(conclude(findings)))
+    yield Item("Comparison with the acceptance criteria")

@@ -1,0 +1,44 @@
+"""One thing that is expected under a heading of a dossier: its contents, or nothing."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from uq.report.cells import Table
+from uq.report.pictures import Picture
+
+
+@dataclass(frozen=True)
+class Item:
+    """One thing that is expected under a heading.
+
+    Attributes
+    ----------
+    title : str
+    text : sequence of str
+        Paragraphs.
+    facts : sequence of tuple of str
+        Names and values.
+    tables : sequence of Table
+    pictures : sequence of Picture
+    code : str
+        Text as it stands in a file.
+    html : Markup
+    notes : sequence of str
+        Small print: without the above, it provides nothing.
+    """
+
+    title: str
+    text: Sequence[str] = ()
+    facts: Sequence[tuple[str, str]] = ()
+    tables: Sequence[Table] = ()
+    pictures: Sequence[Picture] = ()
+    code: str = ""
+    html: Markup = Markup()
+    notes: Sequence[str] = ()
+
+    @property
+    def is_provided(self) -> bool:
+        """Whether there is anything but small print."""
+        return any((self.text, self.facts, self.tables, self.pictures, self.code, self.html))

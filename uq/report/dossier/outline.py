@@ -1,0 +1,68 @@
+"""The headings of a dossier, and the documents that they follow."""
+
+from typing import NamedTuple
+
+
+class Heading(NamedTuple):
+    """A heading.
+
+    Attributes
+    ----------
+    name : str
+        Its place in a page.
+    title : str
+    after : tuple of str
+        What it follows; the first word or two name one of `DOCUMENTS`.
+    """
+
+    name: str
+    title: str
+    after: tuple[str, ...]
+
+
+DOCUMENTS = {
+    "RG 1.245": "U.S. Nuclear Regulatory Commission, Preparing probabilistic fracture mechanics"
+    " submittals, Regulatory Guide 1.245, Revision 0, January 2022.",
+    "NUREG/CR-7278": "L. Hund, J. Lewis, N. Martin, M. Starr, D. Brooks, A. Zhang, R. Dingreville,"
+    " A. Eckert, J. Mullins, P. Raynaud, D. Rudland, D. Dijamco, S. Cumblidge, Technical basis for"
+    " the use of probabilistic fracture mechanics in regulatory applications, NUREG/CR-7278,"
+    " January 2022.",
+    "JCGM 101": "Joint Committee for Guides in Metrology, Evaluation of measurement data:"
+    ' Supplement 1 to the "Guide to the expression of uncertainty in measurement": Propagation of'
+    " distributions using a Monte Carlo method, JCGM 101:2008.",
+}
+"""Short name -> document. RG 1.245 says what a submittal contains, NUREG/CR-7278 why."""
+
+_CONTENTS = "RG 1.245, section C.2"
+
+OUTLINE = (
+    Heading("context", "Context", (_CONTENTS,)),
+    Heading("information", "Information made available", (_CONTENTS,)),
+    Heading(
+        "quantities",
+        "Quantities of interest and acceptance criteria",
+        (_CONTENTS, "JCGM 101, 5.1"),
+    ),
+    Heading(
+        "software",
+        "Software quality assurance, verification and validation",
+        (_CONTENTS,),
+    ),
+    Heading("models", "Models", (_CONTENTS, "JCGM 101, 5.1")),
+    Heading("inputs", "Inputs and their uncertainty", (_CONTENTS, "JCGM 101, 6")),
+    Heading(
+        "propagation",
+        "Propagation of uncertainty",
+        (_CONTENTS, "JCGM 101, 7.2 to 7.4"),
+    ),
+    Heading("convergence", "Convergence", (_CONTENTS, "JCGM 101, 7.9")),
+    Heading("sensitivities", "Sensitivity analyses", (_CONTENTS,)),
+    Heading(
+        "uncertainty",
+        "Uncertainty of the quantities of interest",
+        (_CONTENTS, "JCGM 101, 5.5"),
+    ),
+    Heading("studies", "Sensitivity studies", (_CONTENTS,)),
+    Heading("conclusions", "Conclusions", ("NUREG/CR-7278",)),
+)
+"""In the order of RG 1.245; the wording is ours."""

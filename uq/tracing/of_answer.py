@@ -1,0 +1,74 @@
+"""The numbers of the answer, and where they come from."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import xarray as xr
+
+from uq.analysis.effects import effects
+from uq.analysis.event_curve import event_curve
+from uq.analysis.findings import Findings
+from uq.analysis.summary import status_counts, summarise
+from uq.conclusions.answer import conclude, regimes_of
+from uq.conclusions.as_json import answer_json
+from uq.conclusions.parts import Answer
+from uq.conclusions.quantities import LOW, quantities, with_bounds
+from uq.conclusions.settling import unsettled
+from uq.indices.targets import split_name
+from uq.intervals import share_interval
+from uq.keys import Json, Options, Path, value_at
+from uq.rows.elements import analysis_of, independent_rows, named_elements
+from uq.rows.results import failed
+from uq.tracing.citations import Citation, cited
+from uq.tracing.of_indices import estimator_of
+from uq.tracing.of_summary import functions_of, states_of
+from uq.tracing.origin import Origin
+
+
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of the answer: of the quantity or the part alone that a path names."""
+    findings = Findings(ds)
+    part, *names = path or ("",)
+    if part == "quantities" and names:
+        known = tuple(quantities(findings, names[0]))
+        return answer_json(Answer("", 0, 0, known, (), ()))
+    if part == "regimes":
+        return answer_json(Answer("", 0, 0, (), tuple(regimes_of(findings)), ()))
+    if part in ("rows", "failed"):
+        return answer_json(Answer("", ds.sizes["sample"], int(failed(ds).sum()), (), (), ()))
+    return answer_json(conclude(findings, weighed=False))
+
+
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+    """Return where a number of the answer comes from."""
+    part, *names = path
+    if part in ("rows", "failed"):
+        return Origin((cited(status_counts),), ds)
+    if part == "advice":
+        return Origin((cited(unsettled),), ds)
+    if "ranking" in names:
+        ranking = value_at(said, path[: path.index("ranking") + 1])
+        index = estimator_of(ranking["method"], ranking["index"])
+        return Origin((cited(effects) if "effects" in names else index,), ds)
+    if names[-1] in ("parts", "decided_by") or names[-2:-1] in (["parts"], ["decided_by"]):
+        return Origin((cited(event_curve), cited(share_interval)), ds)
+    rows = independent_rows(ds)
+    if part == "regimes":
+        found = summarise(ds, analysis_of(ds)).regimes[names[0]]
+        return Origin(tuple(map(cited, found.by)), rows)
+    states = states_of(named_elements(rows, names[0])[0])
+    return Origin(tuple(dict.fromkeys(_estimators(ds, *names))), rows, states)
+
+
+def _estimators(ds: xr.Dataset, name: str, part: str, *rest: str) -> Iterator[Citation]:
+    """Yield what computes a promise, a likely range, or the probability of an event."""
+    asked = with_bounds(analysis_of(ds, name.partition("[")[0]), Findings(ds))
+    found = summarise(ds, asked).outputs[name]
+    keys: list[Path] = [("quantiles", repr(LOW))]
+    if part == "promise":
+        keys = [("tolerance", "lower")] * ("quantile" not in "".join(rest)) + keys
+    elif part == "events":
+        side = "below" if "<" in rest[0] else "above"
+        keys = [("thresholds", split_name(rest[0])[2], side)]
+    for key in keys:
+        yield from map(cited, functions_of(found, key))

@@ -1,0 +1,35 @@
+"""The numbers of `uq fleet`, and where they come from."""
+
+from typing import Any
+
+import xarray as xr
+
+from uq.analysis.fleet import fleet, fleet_of
+from uq.analysis.fleet_json import fleet_json
+from uq.errors import InputError
+from uq.keys import Json, Options, Path
+from uq.population.functionals import Population
+from uq.rows.elements import independent_rows, named_elements
+from uq.tracing.citations import cited
+from uq.tracing.of_summary import states_of
+from uq.tracing.origin import Origin
+from uq.written import read_threshold
+
+
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of fleets of a size."""
+    try:
+        size, allow = int(options.get("size", "")), int(options.get("allow", "0"))
+    except ValueError:
+        raise InputError(
+            "a key of a fleet begins with fleet[size=N], or with by=T, allow=K, output=LIFE as well"
+        ) from None
+    by = [read_threshold("by", options["by"], "a life", "s")] if "by" in options else []
+    return fleet_json(fleet_of(ds, size, by, allow, options.get("output")))
+
+
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+    """Return where a number of a fleet comes from."""
+    rows = independent_rows(ds)
+    states = states_of(named_elements(rows, said["output"])[0])
+    return Origin((cited(fleet), cited(Population)), rows, states, tuple(said["notes"]))

@@ -1,0 +1,58 @@
+"""The numbers of `uq convergence`, and where they come from."""
+
+from typing import Any
+
+import xarray as xr
+
+from uq import json_form
+from uq.analysis.as_json import convergence_json, errors_json
+from uq.analysis.convergence import enough, estimates_from, method_shown
+from uq.analysis.converging import converging
+from uq.analysis.statistics.table import STATISTICS
+from uq.analysis.summary import summarise
+from uq.estimate import Estimate
+from uq.indices.targets import split_name
+from uq.keys import Json, Options, Path, value_at
+from uq.rows.elements import independent_rows
+from uq.rows.nesting import first_samples
+from uq.tracing.citations import cited
+from uq.tracing.of_indices import estimator_of
+from uq.tracing.origin import Origin
+
+
+def says(ds: xr.Dataset, options: Options, path: Path) -> dict[str, Any]:
+    """Return the JSON of running estimates: of the element alone that a path names, if it does."""
+    named = split_name(path[1])[1] if path[:1] == ("outputs",) and path[1:] else None
+    return convergence_json(converging(ds, named))
+
+
+def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
+    """Return where a running estimate comes from."""
+    _, target, kind, *rest = path
+    if kind != "estimates":
+        return Origin((cited(enough),), independent_rows(ds))
+    label, place = rest[0], int(rest[1])
+    rows = first_samples(ds, said["outputs"][target]["estimates"][label][place]["samples"])
+    of = summarise(rows).outputs.get(target)
+    for name, statistics in of.parts.items() if of else ():
+        for one in statistics:
+            if one.label == label:
+                by = tuple(map(cited, one.by or (STATISTICS[name],)))
+                return Origin(by, independent_rows(rows))
+    method = method_shown(ds)
+    assert method is not None
+    return Origin((estimator_of(method, label.split()[0]),), rows)
+
+
+def again(verb: Any, found: Origin, options: Options, path: Path) -> Any:
+    """Return the entry at a path from the rows of its origin: the estimate of the last size."""
+    if path[2] != "estimates":
+        errors = enough(found.rows, path[1]).to_dict("index")[path[1]]
+        return value_at(errors_json(errors), path[2:])
+    for name, label, numbers, *_ in estimates_from(found.rows, [path[1]]):
+        if (name, label) == (path[1], path[3]):
+            entry = {"samples": int(found.rows["group"].max()) + 1} | json_form.numbers(
+                Estimate(*numbers)
+            )
+            return value_at(entry, path[5:])
+    raise KeyError(path[3])
