@@ -87,12 +87,12 @@ def test_probabilities_stand_on_their_side_of_the_threshold():
 
 def test_undefined_rows_have_a_column_beside_both_probabilities():
     ds = kinds(samples=100, analysis={"outputs": ["angle"], "thresholds": {"angle": "30 degrees"}})
-    (table,) = (one for one in results_of(ds) if one.caption.startswith("Probabilities"))
+    table = results_of(ds, "Probabilities")
     line = lines(table)["angle"]
     share = float(np.isnan(ds["angle"].values).mean())
     assert line["undefined"] == f"{100 * share:.1f} %" and line["threshold"] == "magnitude 30°"
     assert float(line["P(above)"]) + float(line["P(below)"]) + share == pytest.approx(1, abs=1e-3)
-    whole = results_of(lives(thresholds={"life": [7 * DAY]}))[1]
+    whole = results_of(lives(thresholds={"life": [7 * DAY]}), "Probabilities")
     assert "undefined" not in whole.header
 
 
