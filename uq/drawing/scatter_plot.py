@@ -32,6 +32,7 @@ from uq.rows.elements import (
     named_elements,
     replicates_of,
 )
+from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
 from uq.units import unit_of
 
@@ -64,6 +65,7 @@ def scatter(ds: xr.Dataset, output: str, *, axes: Axes | None = None) -> Figure:
     -------
     matplotlib.figure.Figure
     """
+    refuse_weights(ds, "a scatter plot")
     rows = independent_rows(ds)
     element = named_elements(rows, output)[0]
     inputs = independent_inputs(rows)
@@ -216,6 +218,7 @@ def pairs(ds: xr.Dataset, *, axes: Axes | None = None) -> Figure:
     InputError
         When there are no regimes, or fewer than two inputs.
     """
+    refuse_weights(ds, "pairs of inputs by regime")
     rows = independent_rows(ds)
     regimes = occurring_regimes(rows)
     inputs = independent_inputs(rows)

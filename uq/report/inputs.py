@@ -6,7 +6,7 @@ from math import floor, log10
 import numpy as np
 import xarray as xr
 
-from uq.analysis.sampled_inputs import compare, laws_and_values
+from uq.analysis.sampled_inputs import compare, laws_and_values, weights_of_samples
 from uq.conclusions.sources import mark
 from uq.conclusions.words import unit_for
 from uq.contract import Floats
@@ -65,13 +65,13 @@ def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
 
 
 def _uncertain(ds: xr.Dataset) -> Table:
-    given = laws_and_values(ds)
+    given, weights = laws_and_values(ds), weights_of_samples(ds)
     rows = []
     for name, entry in study_file_of(ds).uncertain.items():
         quantiles = [Cell("")] * 3
         if name in given:
             law_of, _ = given[name]
-            found = compare(*given[name]).sampled
+            found = compare(*given[name], weights).sampled
             units = "1" if law_of.times is not None else str(ds[name].attrs["units"])
             quantiles = _quantiles(units, found)
         rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
