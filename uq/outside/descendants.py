@@ -2,12 +2,16 @@
 
 import ctypes
 import os
+import resource
 import sys
 from contextlib import suppress
 from pathlib import Path
 
 _PR_SET_CHILD_SUBREAPER = 36
 _SECONDS = 5.0
+
+LARGEST = 10_000_000_000
+"""Bytes of a file that a program may write."""
 
 _adopting = False
 
@@ -16,9 +20,13 @@ def adopt() -> None:
     """Become, on Linux, the parent of all descendants whose own parent ends.
 
     For a process whose descendants all belong to rows, so that `end_descendants` may end them.
+    Neither it nor they can write files larger than `LARGEST`.
     """
     global _adopting
     _adopting = True
+    _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    own = LARGEST if most == resource.RLIM_INFINITY else min(LARGEST, most)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (own, most))
     if sys.platform == "linux":
         with suppress(OSError, AttributeError):
             ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)

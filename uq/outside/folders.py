@@ -12,6 +12,14 @@ from pathlib import Path
 import psutil
 
 _RUNNING = "running"
+_LARGEST_KEPT = 10_000_000  # bytes of a file of a row that failed
+
+
+def _lighten(folder: Path) -> None:
+    """Remove the large files of a row that failed, which could fill the disk."""
+    for file in folder.rglob("*"):
+        if not file.is_symlink() and file.is_file() and file.stat().st_size > _LARGEST_KEPT:
+            file.unlink()
 
 
 class Folders:
@@ -47,6 +55,7 @@ class Folders:
             kept = self.kept(numbers)
             shutil.rmtree(kept, ignore_errors=True)
             with suppress(OSError):
+                _lighten(folder)
                 folder.rename(kept)
             raise
         finally:

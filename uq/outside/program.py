@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from uq.contract import Model, Parameter
-from uq.outside.descendants import end_descendants
+from uq.outside.descendants import LARGEST, end_descendants
 from uq.outside.folders import Folders
 from uq.outside.machine_file import MachineFile, filled, read_machine
 from uq.outside.results_of_programs import STDERR_FILE, STDOUT_FILE, value_in
@@ -143,7 +143,9 @@ class _Program:
 
 
 def _how_it_ended(code: int, meanings: Mapping[str, str], said: Path) -> str:
-    if code < 0:
+    if code == -signal.SIGXFSZ:
+        text = f"was ended, as it wrote a file larger than {LARGEST:.0e} bytes"
+    elif code < 0:
         text = f"was ended by signal {-code} ({signal.strsignal(-code)})"
     else:
         meaning = meanings.get(str(code))
