@@ -13,7 +13,7 @@ from uq.analysis.overview import summary
 from uq.clusters import Clusters
 from uq.inputs.registry import law_of
 from uq.population.functionals import Population
-from uq.population.means import EXACT, FEW, effective_rows, weighted_share
+from uq.population.means import EXACT, FEW, effective_rows, share_to_compare, weighted_share
 from uq.population.scaling import (
     inputs_of,
     integrated,
@@ -22,6 +22,7 @@ from uq.population.scaling import (
 )
 from uq.population.sums import LogTerm, law_of_sum
 from uq.rows.elements import independent_rows, replicates_of
+from uq.two_samples import difference
 
 EVERYWHERE = (-np.inf, np.inf)
 NORMAL = {"distribution": "normal", "mean": 0.0, "sd": 1.0}
@@ -193,6 +194,19 @@ def test_paired_rows_of_two_studies_are_compared_by_their_laws():
     width = (table["high"] - table["low"]).loc["P(<1.0)"]
     assert width < 0.5 * np.ptp(alone.loc[("life", "P(<1.0)"), ["low", "high"]])
     assert json.dumps(summarised(wider))
+
+
+def test_the_difference_of_two_probabilities_is_not_widened_for_outliers_twice():
+    """Both are skewed to the same side; each alone has a wider interval."""
+    rare = {"analysis": {"outputs": ["life"], "thresholds": {"life": [0.2]}}}
+    first, second = (computed(with_seed(scaled_study(WHOLE, **rare), seed)) for seed in (1, 2))
+    key = ("life", "P(<0.2)")
+    found = compare(first, second).loc[key]
+    numbers = [next(population(ds, ["life"])).below(0.2) for ds in (first, second)]
+    expected = difference(*map(share_to_compare, numbers), 0.0)
+    assert (found["low"], found["high"]) == pytest.approx((expected.low, expected.high))
+    alone = difference(*map(weighted_share, numbers), 0.0)
+    assert found["high"] - found["low"] < 0.95 * (alone.high - alone.low)
 
 
 def test_failed_rows_still_give_bounds():
