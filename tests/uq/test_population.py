@@ -215,6 +215,18 @@ def test_failed_rows_still_give_bounds():
     assert below["failed_low"] < below["low"] < below["high"] < below["failed_high"]
 
 
+def test_rows_that_all_failed_have_no_worth():
+    ds = computed(scaled_study(WHOLE, samples=10, settings={"fail_above": -99.0}))
+    assert summarised(ds)["outputs"]["life"]["failed"] == 10
+
+
+def test_probabilities_of_one_but_for_rounding_are_not_exact():
+    """Rows that all end show no more than that a longer life is rare."""
+    found = weighted_share(np.full(16, 1 - 2.0**-53))
+    assert found.value == found.high == 1.0 and 0.7 < found.low < 0.85 and not found.reason
+    assert weighted_share(np.full(16, 1e-9)).reason == EXACT
+
+
 def test_replicates_give_the_interval_of_other_designs():
     design = {"method": "sobol", "replicates": 8}
     rows, _ = populated(computed(scaled_study(WHOLE, design, samples=64)))

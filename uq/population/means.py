@@ -10,6 +10,7 @@ from scipy import special
 from uq.contract import Floats
 from uq.estimate import Estimate
 from uq.intervals import (
+    ROUNDING,
     Replicates,
     binomial_interval,
     is_constant,
@@ -75,6 +76,8 @@ def weighted_share(
     parts = len(found)
     if parts < 2:
         return Estimate(mean)
+    if numbers.min() >= 1 - ROUNDING:  # the complement has no digits
+        mean = 1.0
     if is_constant(numbers if mean <= 0.5 else 1 - numbers) and 0 < mean < 1:
         return Estimate(mean, reason=EXACT)
     low, high = _of_logit(mean, found)
