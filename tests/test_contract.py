@@ -7,9 +7,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from uq.contract import Kind, Parameter, Setting, Status
+from uq.contract import Kind, Parameter, Setting, Status, censored_name
 from uq.inputs.values import read_settings
-from uq.rows.columns import censored_name
 from uq.rows.evaluate import evaluate
 from uq.study.registry import find_model, model_names
 

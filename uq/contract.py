@@ -149,6 +149,11 @@ class Output:
         return np.abs(values) if self.is_angle else values
 
 
+def censored_name(output: str) -> str:
+    """Return the name of the flag beside a lifetime."""
+    return f"{output}_censored"
+
+
 class Status(IntEnum):
     """How a row ended; the names, in lower case with hyphens, are part of the result's schema."""
 
@@ -229,10 +234,12 @@ class Trajectory(_History):
 
 Batch = Callable[
     [Floats, NDArray[np.uint64], Any],
-    tuple[Mapping[str, NDArray[Any]], NDArray[np.int8]],
+    tuple[Mapping[str, NDArray[Any]], NDArray[np.int8]]
+    | tuple[Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[int, str]],
 ]
 """``batch(x, seed, settings)``: x (n, d) in declared order, seed (n,), a settings object ->
-({output name: (n, *dims)}, status (n,) int8). Row i depends on x[i], seed[i] and settings alone."""
+({output name: (n, *dims)}, status (n,) int8), and optionally {i: sentence} of rows that failed.
+Row i depends on x[i], seed[i] and settings alone."""
 
 
 def _no_coordinates(settings: Any) -> Mapping[str, Sequence[Any]]:

@@ -64,7 +64,7 @@ def test_every_reader_says_how_many_rows_it_takes(uq, folder):
     assert np.isnan(summary(ds).loc["life", "B1"])
     cells = dict(
         zip(
-            *(lambda t: (t.header, t.rows[0]))(*result_tables(found(ds), of_lives=True)),
+            *(lambda t: (t.header, t.rows[0]))(list(result_tables(found(ds)))[1]),
             strict=True,
         )
     )

@@ -23,7 +23,7 @@ from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.report.convergence import convergence_of
 from uq.report.indices import sensitivity_of
-from uq.report.inputs import fixed_inputs, input_tables
+from uq.report.inputs import _quantiles, fixed_inputs, input_tables
 from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
 
 DAY = 86400.0
@@ -46,13 +46,16 @@ def lives(censored=0, **analysis):
     return asking(ds, outputs=["life", "y"], **analysis)
 
 
-def results_of(ds, of_lives=False):
-    return list(result_tables(outcomes(ds, summarise(ds)), of_lives))
+def results_of(ds, caption):
+    """Return the one table whose caption begins so."""
+    tables = result_tables(outcomes(ds, summarise(ds)))
+    (table,) = (one for one in tables if one.caption.startswith(caption))
+    return table
 
 
 def test_statistics_are_in_the_unit_of_their_line():
     ds = lives()
-    (table,) = results_of(ds)
+    table = results_of(ds, "Statistics")
     life, y = lines(table).values()
     median = summarised(ds)["outputs"]["life"]["quantiles"]["0.5"]
     assert life["unit"] == "days" and life["50 % quantile"] == f"{median['value'] / DAY:.5g}"
@@ -65,7 +68,7 @@ def test_statistics_are_in_the_unit_of_their_line():
 
 def test_tolerance_bounds_say_what_is_covered_and_how_surely():
     bounds = {"coverage": 0.8, "confidence": 0.95}
-    _, table = results_of(lives(tolerance=bounds))
+    table = results_of(lives(tolerance=bounds), "Tolerance bounds")
     assert table.caption == (
         "Tolerance bounds: with 95 % confidence each, 80 % of all lie above the lower, and 80 %"
         " below the upper"
@@ -75,7 +78,7 @@ def test_tolerance_bounds_say_what_is_covered_and_how_surely():
 
 
 def test_probabilities_stand_on_their_side_of_the_threshold():
-    _, table = results_of(lives(thresholds={"life": [7 * DAY]}))
+    table = results_of(lives(thresholds={"life": [7 * DAY]}), "Probabilities")
     ((_, threshold, above, below),) = table.rows
     assert (threshold.text, threshold.key) == ("7 days", 7 * DAY)
     assert float(above.text) == pytest.approx(53 / 64, abs=1e-4)
@@ -85,7 +88,7 @@ def test_probabilities_stand_on_their_side_of_the_threshold():
 def test_a_probability_that_assumes_something_says_so():
     ds = lives(censored=30, thresholds={"life": [14 * DAY]})
     entry = summarised(ds)["outputs"]["life"]["thresholds"][f"{14 * DAY!r}"]
-    _, table = results_of(ds)
+    table = results_of(ds, "Probabilities")
     line = lines(table)["life"]
     assert line["note"].startswith(entry["reason"]) and "Kaplan-Meier" in line["note"]
     assert line["P(below)"] == f"{entry['kaplan_meier']['below']['value']:.5g}"
@@ -93,7 +96,7 @@ def test_a_probability_that_assumes_something_says_so():
 
 def test_b_lives_are_beside_the_rows_that_did_not_end():
     ds = lives(censored=3)
-    line = lines(*results_of(ds, of_lives=True))["life"]
+    line = lines(results_of(ds, "B-lives"))["life"]
     assert line["unit"] == "days" and 5 < float(line["B10"]) < 7
     assert (line["rows never ending"], line["rows censored"]) == ("10", "3")
 
@@ -139,6 +142,20 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
     assert float(found["x4"]["50 %"]) == pytest.approx(0.5, abs=2e-3)  # of the factor
 
 
+@pytest.mark.parametrize(
+    ("units", "found", "texts"),
+    [
+        ("rad s-1", [156.742, 157.0, 157.258], ["156.74 rad s⁻¹", "157.00 rad s⁻¹"]),
+        ("m", [2.09e-4, 2.5e-4, 2.91e-4], ["209 µm", "250 µm"]),
+        ("1", [0.2467, 0.295, 0.3435], ["0.247", "0.295"]),
+        ("N", [5.0, 5.0, 5.0], ["5 N", "5 N"]),
+    ],
+)
+def test_quantiles_of_an_input_can_be_told_apart(units, found, texts):
+    cells = _quantiles(units, np.array(found))
+    assert [cell.text.replace("\u00a0", " ") for cell in cells][:2] == texts
+
+
 def test_fixed_inputs_have_units_and_correlations_a_source():
     dependence = {
         "parameters": ["rate", "threshold"],
@@ -161,10 +178,10 @@ def test_fixed_inputs_have_units_and_correlations_a_source():
     )
     laws, ranks = input_tables(ds)
     fixed = fixed_inputs(ds)
-    assert lines(laws)["threshold"]["law"] == "uniform(lower = 0.1, upper = 0.2)\u00a0m\u00a0s⁻¹"
+    assert lines(laws)["threshold"]["law"] == "uniform(lower = 0.1, upper = 0.2) m\u00a0s⁻¹"
     assert ranks.caption == "Rank correlations: a guess"
     assert [[cell.text for cell in row] for row in ranks.rows] == [["threshold, rate", "0.5"]]
-    assert lines(fixed)["depth"]["value"] == "0.00025\u00a0m"
+    assert lines(fixed)["depth"]["value"] == "250\u00a0µm"
 
 
 def test_indices_are_ranked_beside_an_input_without_effect():
@@ -172,7 +189,7 @@ def test_indices_are_ranked_beside_an_input_without_effect():
     (method,) = sensitivity_of(Findings(ds))
     lost = int(ds["y"].isnull().sum())
     assert lost > 0
-    assert method.used.startswith(f"From {200 - lost} rows; {lost} groups with missing")
+    assert method.used.startswith(f"from {200 - lost} rows; {lost} groups with missing")
     (table,) = method.subjects[0].tables
     names = [row[0].text for row in table.rows]
     nulls = ["(an input without effect)", "(largest of 4 such inputs)"]
@@ -183,7 +200,7 @@ def test_indices_are_ranked_beside_an_input_without_effect():
 
 def test_indices_have_their_intervals_and_no_dropped_groups_without_need():
     (method,) = sensitivity_of(Findings(linear("saltelli", samples=32, replicates=4)))
-    assert method.used == "From 768 rows"
+    assert method.used == "from 768 rows"
     first, *_ = method.subjects[0].tables[0].rows
     low, high = map(float, first[1].more.split(" to "))
     assert low < float(first[1].text) < high
@@ -204,6 +221,31 @@ def test_rows_less_exact_than_their_number_are_warned_of():
     (warning,) = found.warnings
     assert warning.startswith("y: the rows' own error (1 1)")
     assert sentence("no fewer samples") in found.refused and found.pictures == []
+
+
+def test_numbers_of_a_kind_have_bars_on_one_scale():
+    cells = [
+        Cell("2", key=2.0, scale="m", ends=(1.0, 4.0)),
+        Cell("1", key=-1.0, scale="m"),
+        Cell("0.5", key=0.5, scale="share"),
+        Cell("7", key=7.0),
+        Cell("never", key=np.inf, scale="m"),
+    ]
+    table = Table("", ("",) * 5, [tuple(cells)])
+    assert table.scales == {"share": (0.0, 1.0), "m": (-1.0, 4.0)}
+    of_two, of_less, of_share, none, never = (one.bar(table.scales) for one in cells)
+    assert "left:20.0%;width:40.0%" in of_two and "left:40.0%;width:60.0%" in of_two  # with ends
+    assert "left:0.0%;width:20.0%" in of_less and "bar-ends" not in of_less
+    assert "left:0.0%;width:50.0%" in of_share and none == never == ""
+
+
+def test_probabilities_and_quantiles_have_bars():
+    ds = lives(thresholds={"life": [7 * DAY]})
+    scales = {one.scale for one in results_of(ds, "Probabilities").rows[0] if one.scale}
+    assert scales == {"share"}
+    table = results_of(ds, "Statistics")
+    marked = {h for h, one in zip(table.header, table.rows[0], strict=True) if one.scale == "s"}
+    assert marked >= {"5 % quantile", "50 % quantile"} and "never" not in marked
 
 
 def test_what_never_ends_sorts_last_and_what_says_nothing_is_left_out():

@@ -77,7 +77,7 @@ def test_numbers_of_lives_and_angles_are_traced_and_equal(verb, every):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("verb", ["summary", "sensitivity", "levels", "convergence"])
+@pytest.mark.parametrize("verb", ["summary", "answer", "sensitivity", "levels", "convergence"])
 def test_every_number_of_every_kind_is_traced_and_equal(verb):
     check(every_kind(), verb)
     check(crossed(), verb)
@@ -91,10 +91,31 @@ def test_options_are_part_of_a_key():
     check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
 
 
+def keys_in(text):
+    """Return the keys that a page shows; a sentence may have several."""
+    found = re.findall(r'data-trace="(.*?)"', text, re.DOTALL)
+    return [key for several in found for key in html.unescape(several).split("\n")]
+
+
+def test_the_numbers_of_each_sentence_lead_to_themselves():
+    ds = kinds(samples=400, analysis=ASKED)
+    found = api.answer(ds)
+    text = found._repr_html_()
+    keys = keys_in(text)
+    assert {f"answer/quantities/{found.lead.name}/{part}" for part in ("promise", "range")} < {
+        *keys
+    }
+    assert any("/share" in key for key in keys) and any("/contributions/" in key for key in keys)
+    for key in keys:
+        assert traced(ds, key).equal, key
+    rest = re.sub(r"<span data-trace=.*?</span>|<style>.*?</style>", "", text, flags=re.DOTALL)
+    assert " %" in text and " %" not in rest
+
+
 def test_every_number_of_a_report_leads_to_itself(no_other_figures):
     ds = crossed()
     text = page(ds, "out.nc")
-    keys = [html.unescape(key) for key in re.findall(r'data-trace="(.*?)"', text)]
+    keys = keys_in(text)
     assert len(keys) == len(set(keys)) > 15
     for key in keys:
         assert traced(ds, key).equal, key
@@ -151,6 +172,14 @@ def test_names_with_a_slash_have_keys_of_their_own():
         traced(ds, "outputs/a/b/mean")
 
 
+def test_a_key_as_long_as_a_book_is_refused_in_a_line():
+    for key in ("outputs/" + "a" * 9999, "sensitivity[a=" + "b" * 9999 + "]/x", "outputs/\ny/\n"):
+        with pytest.raises(InputError) as refusal:
+            traced(linear(), key)
+        assert len(str(refusal.value)) < 600 and "\n" not in str(refusal.value)
+    assert traced(linear(), "  outputs/y/mean\n").equal  # as copied
+
+
 @pytest.mark.parametrize(
     ("key", "words"),
     [
@@ -181,3 +210,20 @@ def test_a_result_without_a_sound_row_is_traced_too():
     assert found["rows"]["states"] == {"with a value": 0, "failed": 64}
     assert traced(ds, "status/raised").numbers == {"value": 64}
     json.dumps(found, allow_nan=False)
+
+
+def test_numbers_of_the_answer_are_those_of_its_sentences_and_have_keys(uq, write_study):
+    ds = every_kind()
+    check(ds, "answer", every=101)
+    check(crossed(), "answer", every=17)
+    key = "answer/quantities/life[side=left,depth=0.5]/promise"
+    found, said = traced(ds, key).numbers, api.answer(ds).quantities
+    promise = next(one for one in said if one.name == "life[side=left,depth=0.5]").promise
+    assert (found["lower"], found["sentence"]) == (promise.lower, promise.sentence)
+    uq("run", write_study("exponential-wear", uncertain=("rate",), law=LAW), "-o", "out.nc")
+    whole = strict_json(uq("summary", "out.nc", "--json").out)
+    entry = whole["answer"]["quantities"]["life"]["range"]
+    again = strict_json(uq("trace", "out.nc", "answer/quantities/life/range", "--json").out)
+    assert entry.items() <= again.items() and again["equal"]
+    quantile = whole["outputs"]["life"]["quantiles"]["0.5"]["value"]
+    assert entry["median"] == quantile == again["median"]

@@ -21,6 +21,7 @@ from uq.rows.elements import (
 )
 from uq.rows.nesting import levels_that_vary, size_in_words
 from uq.rows.variables import outputs_of
+from uq.rows.weights import refuse_weights
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -148,6 +149,7 @@ def fleet_of(
     output: str | None = None,
 ) -> Fleet:
     """Return what `fleet` tabulates."""
+    refuse_weights(ds, "fleets")
     if why := why_no_statistics(ds):
         raise InputError(f"no fleet: the rows of a '{ds.attrs['design']}' design {why}")
     if size < 1 or allow < 0:

@@ -26,6 +26,7 @@ from uq.rows.elements import (
     study_file_of,
 )
 from uq.rows.nesting import is_nested
+from uq.rows.weights import has_weights
 from uq.study.file import Tied
 
 _ROUNDING = 1e-6  # an interval so much narrower than the plain ones is zero but for rounding
@@ -41,6 +42,7 @@ class Kinship(Enum):
     ROWS = "The studies share a seed: rows with the same number are paired."
     REPLICATES = "The studies share a seed: replicates with the same number are paired."
     ROWS_IMPORTED = "The imported rows are the same: rows with the same number are paired."
+    WEIGHTED = "Inspections have weighted the rows, so these intervals are conservative."
     UNKNOWN_IMPORTED = (
         "How the imported rows were drawn is unknown, so these intervals are conservative."
     )
@@ -63,6 +65,8 @@ def kinship(first: xr.Dataset, second: xr.Dataset) -> Kinship:
     Kinship
     """
     both = (first, second)
+    if any(has_weights(ds) for ds in both):
+        return Kinship.WEIGHTED
     if any(DESIGNS[ds.attrs["design"]].imported for ds in both):
         return _kinship_of_imported(first, second)
     if first.attrs["seed"] != second.attrs["seed"]:
@@ -160,6 +164,8 @@ class Pair:
             if intervals.is_constant(apart + np.abs(own).max()):  # they differ only by rounding
                 return Estimate(value)
             return Estimate(value, *intervals.scatter_interval(value, apart))
+        if self.kinship is Kinship.WEIGHTED:
+            return two_samples.difference(known[0], known[1], self.unpaired)
         if estimator.counts_hits and all(one is None for one in self._replicate):
             known = [_newcombe(sample) for sample in samples]
         elif estimator.averages:

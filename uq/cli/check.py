@@ -8,7 +8,8 @@ from uq.designs.registry import DESIGNS
 from uq.methods.registry import fed_by
 from uq.rows.sampling import group_size, rows
 from uq.running import runner
-from uq.study.definition import Study, load_study
+from uq.running.loading import load_study
+from uq.study.definition import Study
 from uq.wording import law
 
 

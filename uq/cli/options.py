@@ -27,7 +27,11 @@ Plain = Annotated[
 ]
 ModelReference = Annotated[
     str | None,
-    typer.Option("--model", metavar="PKG.MOD:ATTR", help="Use a model that is not installed."),
+    typer.Option(
+        "--model",
+        metavar="FILE.py",
+        help="Use a model that is not installed: FILE.py[:NAME], or PKG.MOD:ATTR.",
+    ),
 ]
 Workers = Annotated[
     int | None,

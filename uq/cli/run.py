@@ -16,9 +16,10 @@ from uq.contract import Status
 from uq.literals import plain_line
 from uq.rows import results
 from uq.running import runner
+from uq.running.loading import load_study
 from uq.running.options import Progress, RunOptions
 from uq.store import folder_of
-from uq.study.definition import Study, load_study
+from uq.study.definition import Study
 from uq.upkeep.amending import study_of
 
 

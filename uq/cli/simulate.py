@@ -14,7 +14,7 @@ from uq.errors import InputError
 from uq.literals import read_number, read_toml
 from uq.places import file_behind
 from uq.rows.one_row import Row, run_row
-from uq.study.registry import find_model
+from uq.running.loading import load_model
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,7 +29,7 @@ def simulate(
     plot: Path | None,
 ) -> int:
     """Run a model once and show the result; return the exit code."""
-    model = find_model(reference)
+    model = load_model(reference)
     given = dict(_number(text) for text in parameters)
     chosen = dict(literal(text) for text in settings)
     if output or plot:

@@ -34,13 +34,11 @@ def answer_json(found: Answer) -> dict[str, Any]:
 
 
 def _quantity(one: Quantity) -> dict[str, Any]:
-    return {
-        "words": one.words,
-        "promise": None if one.promise is None else _promise(one.promise),
-        "range": None if one.range is None else _range(one.range),
-        "events": {event.name: _event(event) for event in one.events},
-        "ranking": None if one.ranking is None else _ranking(one.ranking),
-    }
+    found: dict[str, Any] = {"words": one.words}
+    found |= {} if one.promise is None else {"promise": _promise(one.promise)}
+    found |= {} if one.range is None else {"range": _range(one.range)}
+    found["events"] = {event.name: _event(event) for event in one.events}
+    return found | _of_ranking(one.ranking)
 
 
 def _promise(one: Promise) -> dict[str, Any]:
@@ -83,7 +81,7 @@ def _event(one: Event) -> dict[str, Any]:
                 f"{name}_below": parts[place]["below"],
             }
         found |= {"over": one.over, "parts": parts}
-    return found | {"ranking": None if one.ranking is None else _ranking(one.ranking)}
+    return found | _of_ranking(one.ranking)
 
 
 def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
@@ -93,8 +91,10 @@ def _parts(curve: EventCurve) -> Iterator[dict[str, Any]]:
         yield {"above": low, "below": high} | json_form.numbers(share)
 
 
-def _ranking(one: Ranking) -> dict[str, Any]:
-    return {
+def _of_ranking(one: Ranking | None) -> dict[str, Any]:
+    if one is None:
+        return {}
+    found = {
         "sentence": one.sentence,
         "target": one.target,
         "method": one.method,
@@ -103,6 +103,7 @@ def _ranking(one: Ranking) -> dict[str, Any]:
         "rows_factor": json_form.number(one.rows_factor),
         "contributions": [_contribution(each) for each in one.contributions],
     }
+    return {"ranking": found}
 
 
 def _contribution(one: Contribution) -> dict[str, Any]:
@@ -126,4 +127,5 @@ def _change(one: Change, name: str) -> dict[str, Any]:
 
 
 def _advice(one: Advice) -> dict[str, Any]:
-    return {"text": one.text, "inputs": list(one.inputs), "rows": one.rows}
+    rows = {} if one.rows is None else {"rows": one.rows}
+    return {"text": one.text, "inputs": list(one.inputs)} | rows

@@ -149,6 +149,8 @@ class Tightened:
     reason : str
         Why the rows cannot show it, or "".
     effective_rows : float
+    key : str
+        Of `after`, for ``uq trace``; "" where it is not known.
     """
 
     inputs: tuple[str, ...]
@@ -159,6 +161,13 @@ class Tightened:
     unit: Unit = field(default_factory=Unit)
     reason: str = ""
     effective_rows: float = float("nan")
+    key: str = ""
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether the number differs to the digits shown."""
+        text = percent if self.is_share else self.unit.text
+        return text(self.before.value) != text(self.after.value)
 
     @property
     def lengthens(self) -> bool:
@@ -250,6 +259,15 @@ class Answer:
         """The shares of the main regimes; "" where there is one at most."""
         shares = [f"{share_text(one.share)} {one.said}" for one in self.main_regimes]
         return f"{', '.join(shares)}." if shares else ""
+
+    @property
+    def told_regimes(self) -> list[tuple[Event, bool]]:
+        """The main regimes, and whether to say what decides each; the first is the rest."""
+        found = []
+        for place, one in enumerate(self.main_regimes):
+            known = one.ranking is not None and one.ranking.leader is not None
+            found.append((one, known and place > 0))
+        return found
 
     @property
     def lines(self) -> list[str]:

@@ -25,6 +25,8 @@ class Promise:
     unit : Unit
     is_life, of_magnitude : bool
         Whether it is a life that ends; whether it is the magnitude of an angle.
+    ends : str
+        What a life does at its end.
     """
 
     coverage: float
@@ -36,6 +38,7 @@ class Promise:
     reason: str = ""
     is_life: bool = False
     of_magnitude: bool = False
+    ends: str = "end"
 
     @property
     def sentence(self) -> str:
@@ -78,19 +81,20 @@ class Promise:
         if self.of_magnitude:
             return "stay within"
         if self.is_life:
-            return "end within" if upper else "last longer than"
+            return f"{self.ends} within" if upper else "last longer than"
         return "stay below" if upper else "stay above"
 
 
 @dataclass(frozen=True)
 class Range:
-    """The likely range: quantiles of 5, 50 and 95 %."""
+    """The likely range: quantiles of 5, 50 and 95 %; ``ends`` is what a life does at its end."""
 
     low: Estimate
     median: Estimate
     high: Estimate
     unit: Unit
     of_magnitude: bool = False
+    ends: str = "end"
 
     @property
     def sentence(self) -> str:
@@ -101,10 +105,12 @@ class Range:
             ends = self.unit.between(self.low.value, self.high.value, " and ")
             parts.append(f"90 % {what}lie between {ends}")
         elif isfinite(self.low.value) and self.high.value == inf:
-            most = "never end" if "value" not in self.high.beyond else "exceed the horizon"
-            parts.append(f"5 % end within {self.unit.text(self.low.value)}; more than 5 % {most}")
+            never = f"never {self.ends}"
+            most = never if "value" not in self.high.beyond else "exceed the horizon"
+            low = self.unit.text(self.low.value)
+            parts.append(f"5 % {self.ends} within {low}; more than 5 % {most}")
         if isfinite(self.median.value):
             parts.append(f"median {self.unit.text(self.median.value)}")
         elif self.median.value == inf and "value" not in self.median.beyond:
-            parts.append("at least half never end")
+            parts.append(f"at least half never {self.ends}")
         return sentence("; ".join(parts)) if parts else ""

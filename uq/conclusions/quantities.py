@@ -20,10 +20,12 @@ from uq.conclusions.rankings import method_for, ranking_of
 from uq.conclusions.words import Unit, element_called, unit_for
 from uq.errors import InputError
 from uq.estimate import NOTHING, Estimate
+from uq.greek import readable
 from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.targets import lightened, number_of, split_name
 from uq.methods.registry import METHODS
+from uq.population.smoothing import weights_of
 from uq.rows.elements import (
     Element,
     analysis_of,
@@ -34,6 +36,7 @@ from uq.rows.elements import (
 )
 from uq.rows.nesting import is_nested
 from uq.rows.variables import outputs_of
+from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
 from uq.wording import threshold
 
@@ -68,7 +71,8 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
         shown_outputs(ds, asked),
         key=lambda name: (name not in asked.thresholds, not declared[name].is_lifetime),
     )
-    context = Context(findings.rows, wanted, replicates_of(findings.rows))
+    part = replicates_of(findings.rows)
+    context = Context(findings.rows, wanted, part, weights_of(findings.rows))
     return [
         _quantity(findings, summary, context, one)
         for one in elements_of(findings.rows, names)  # one at a time in memory
@@ -111,13 +115,18 @@ def _quantity(findings: Findings, summary: Summary, context: Context, element: E
     return Quantity(
         element.name,
         element_called(findings.ds, element),
-        element.meaning,
+        readable(element.meaning),
         _promise(findings.ds, described, element, context.analysis, unit),
         Range(
-            _quantile(described, LOW), middle, _quantile(described, HIGH), unit, element.is_angle
+            _quantile(described, LOW),
+            middle,
+            _quantile(described, HIGH),
+            unit,
+            element.is_angle,
+            _end_of(element),
         ),
         tuple(_events(findings, described, element, unit)),
-        _ranking(findings, element, unit),
+        _as_computed(_ranking(findings, element, unit), described),
     )
 
 
@@ -154,7 +163,13 @@ def _promise(
         reason,
         element.is_lifetime,
         element.is_angle,
+        _end_of(element),
     )
+
+
+def _end_of(element: Element) -> str:
+    """Return what a life does at its end, in words."""
+    return "succeed" if element.declared.success else "end"
 
 
 def _sides(
@@ -178,6 +193,8 @@ def _why_no_bound(ds: xr.Dataset, both: list[Statistic | None], bounds: list[flo
         return f"it needs {needed} rows"
     if any(not isnan(one) for one in bounds):
         return "too few lives end"
+    if has_weights(ds):
+        return "inspections have weighted the rows"
     if is_nested(ds):
         return "the rows of one sample are not independent"
     return f"the rows of a '{ds.attrs['design']}' design are not independent"
@@ -204,6 +221,14 @@ def _ranking(findings: Findings, element: Element, unit: Unit) -> Ranking | None
     return replace(found, contributions=own)
 
 
+def _as_computed(ranking: Ranking | None, described: Described) -> Ranking | None:
+    """Return a ranking that says if it is of lives as computed, while other numbers integrate."""
+    facts = [one.facts.get("integrated") for one in described.parts["integrated"]]
+    if ranking is None or not ranking.what or not any(facts):
+        return ranking
+    return replace(ranking, what=f"{ranking.what}, from lives as computed: nothing is integrated")
+
+
 def _events(
     findings: Findings, described: Described, element: Element, unit: Unit
 ) -> Iterator[Event]:
@@ -212,8 +237,7 @@ def _events(
         if one.key[-1] != side or one.at is None:
             continue
         at = threshold(one.at, element.units)
-        verb = "succeed" if element.declared.success else "end"
-        said = f"{verb} within {at}" if element.is_lifetime else f"exceed {at}"
+        said = f"{_end_of(element)} within {at}" if element.is_lifetime else f"exceed {at}"
         said += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{one.at!r})"
         yield event(findings, target, said, one)

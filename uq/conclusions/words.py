@@ -8,6 +8,7 @@ from typing import NamedTuple
 import xarray as xr
 
 from uq.estimate import Estimate
+from uq.greek import readable
 from uq.rows.element import Element
 from uq.units import beside, powers, unit_of
 from uq.wording import percent, percent_interval
@@ -110,7 +111,7 @@ def _plural(words: str) -> str:
 
 def element_called(ds: xr.Dataset, element: Element) -> str:
     """Return an element in words: ``time to wear depth, left, 250 µm``."""
-    words = [element.meaning]
+    words = [readable(element.meaning)]
     for dim, value in element.place.items():
         attrs = ds[element.output][dim].attrs if dim in ds[element.output].coords else {}
         if isinstance(value, str):

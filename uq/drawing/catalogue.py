@@ -62,7 +62,7 @@ class Entry:
     draw: Callable[..., Figure]
     of: Callable[[Findings], Iterator[Subject]]
     caption: str = "{name}: {meaning}"
-    section: Literal["inputs", "rows", "results", "sensitivities", "convergence", ""] = "results"
+    section: Literal["inputs", "rows", "results", "convergence", ""] = "results"
     applies: tuple[Applies, ...] = ()
     in_report: tuple[Applies, ...] = ()
     needs: tuple[str, ...] = ()

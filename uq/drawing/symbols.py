@@ -2,15 +2,8 @@ r"""Symbols as formulas that matplotlib typesets: ``omega_s1`` is written $\omeg
 
 import re
 
-_GREEK = (
-    "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi chi "
-    "psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"
-)
-_LETTER = rf"(?:{'|'.join(_GREEK.split())})"
-_GREEK_WORD = re.compile(rf"(?<![A-Za-z]){_LETTER}(?![A-Za-z])")
-_IN_TEXT = re.compile(
-    rf"(?<![\w-])(?:{_LETTER}(?:_[A-Za-z0-9]+|\d+)?|[A-Za-z]_[A-Za-z0-9]+)(?!\w)(?:\(0\))?"
-)
+from uq.greek import IN_TEXT, WORD
+
 _WHOLE = re.compile(r"(?:[A-Za-z]+(?:_[A-Za-z0-9]+)?|[\d ()+*/'.-])+")
 
 
@@ -35,15 +28,15 @@ def formula(symbol: str) -> str:
         return literal(symbol)
     text = symbol if "_" in symbol else re.sub(r"(?<=[A-Za-z])(\d+)\b", r"_\1", symbol)
     text = re.sub(r"_([A-Za-z0-9]+)", _subscript, text.replace(" ", r"\,"))
-    return f"${_GREEK_WORD.sub(lambda found: chr(92) + found[0], text)}$"
+    return f"${WORD.sub(lambda found: chr(92) + found[0], text)}$"
 
 
 def _subscript(found: re.Match[str]) -> str:
-    upright = found[1].isalpha() and not _GREEK_WORD.fullmatch(found[1])
+    upright = found[1].isalpha() and not WORD.fullmatch(found[1])
     return rf"_{{\mathrm{{{found[1]}}}}}" if upright else f"_{{{found[1]}}}"
 
 
 def typeset(text: str) -> str:
     """Return text with its symbols as formulas, its roots and minus signs as such."""
-    text = _IN_TEXT.sub(lambda found: formula(found[0]), literal(text))
+    text = IN_TEXT.sub(lambda found: formula(found[0]), literal(text))
     return text.replace("sqrt(", "√(").replace(" - ", " \N{MINUS SIGN} ")

@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 
 from uq.drawing.symbols import formula, literal, typeset
+from uq.greek import symbol as as_text
 from uq.literals import plain
 from uq.rows.elements import Element
 from uq.units import powers as powers
@@ -70,6 +71,8 @@ def rows_in_words(chosen: Sequence[Element]) -> str:
         most = max(int(getattr(element, state).sum()) for element in chosen)
         if most:
             counts.append(f"{'up to ' if len(chosen) > 1 else ''}{most} {state}")
+    if chosen[0].weights is not None:
+        counts.append("weighted by inspections")
     return ", ".join(counts)
 
 
@@ -80,7 +83,7 @@ def element_in_words(ds: xr.Dataset, element: Element) -> str:
 
 def in_words(variable: xr.DataArray) -> str:
     """Return the meaning of a variable, with its symbol (never broken) where it has one."""
-    symbol = symbol_of(variable).replace(" ", "\u00a0")
+    symbol = as_text(symbol_of(variable)).replace(" ", "\u00a0")
     return f"{meaning_of(variable)} ({symbol})" if symbol else meaning_of(variable)
 
 

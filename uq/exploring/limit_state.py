@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from uq.contract import Floats, Output, Status
+from uq.contract import Floats, Output, Status, censored_name
 from uq.errors import InputError, nearest
 from uq.inputs.values import unknown_name
-from uq.rows.columns import censored_name
 from uq.rows.element import places
 from uq.rows.evaluate import Chunk
 from uq.rows.sampling import Rows, physical, row_seeds

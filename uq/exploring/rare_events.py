@@ -14,8 +14,9 @@ from uq.exploring.design_points import design_points, drawn_around
 from uq.exploring.limit_state import LimitState, evaluator_of
 from uq.exploring.subset_simulation import LEVEL_SHARE, SMALLEST, subset_interval, subset_simulation
 from uq.intervals import Ends, binomial_interval, log_scatter_interval
+from uq.running.loading import load_study
 from uq.running.options import RunOptions
-from uq.study.definition import Study, load_study
+from uq.study.definition import Study
 
 _FEWEST = 100  # rows of a level: 10 chains
 _Generators = list[np.random.Generator]

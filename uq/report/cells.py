@@ -1,12 +1,19 @@
 """Tables of a report, in plain data that the template lays out."""
 
-from collections.abc import Sequence
-from math import inf, isfinite
+from collections.abc import Mapping, Sequence
+from itertools import chain
+from math import inf, isfinite, nan
 from typing import NamedTuple
+
+from markupsafe import Markup
 
 from uq import wording
 from uq.analysis.statistics.statistic import Statistic
+from uq.conclusions.bars import bar
 from uq.indices.targets import FORMS, split_name
+
+SHARE = "share"
+"""The scale of shares: from 0 to 1."""
 
 
 class Cell(NamedTuple):
@@ -21,12 +28,24 @@ class Cell(NamedTuple):
         The number to sort by; a cell without one is text.
     traced : str
         The key of its number for ``uq trace``; "" if it has none.
+    scale : str
+        Numbers of a table with the same one have bars on a common scale; "" for no bar.
+    ends : tuple of float
+        Of the interval of its number; NaN where there is none.
     """
 
     text: str
     more: str = ""
     key: float | None = None
     traced: str = ""
+    scale: str = ""
+    ends: tuple[float, float] = (nan, nan)
+
+    def bar(self, scales: Mapping[str, tuple[float, float]]) -> Markup:
+        """Return its number as a bar on one of the scales of its table."""
+        if self.key is None or not self.scale:
+            return Markup()
+        return bar(self.key, *self.ends, scales[self.scale])
 
 
 class Table(NamedTuple):
@@ -43,12 +62,23 @@ class Table(NamedTuple):
     header: tuple[str, ...]
     rows: Sequence[tuple[Cell, ...]]
 
+    @property
+    def scales(self) -> dict[str, tuple[float, float]]:
+        """The ends of the scale of each kind of number: zero, and all numbers with intervals."""
+        found = {SHARE: (0.0, 1.0)}
+        for one in chain.from_iterable(self.rows):
+            if one.scale not in ("", SHARE):
+                low, high = found.get(one.scale, (0.0, 0.0))
+                known = [end for end in (one.key, *one.ends) if end is not None and isfinite(end)]
+                found[one.scale] = min(low, *known, 0.0), max(high, *known, 0.0)
+        return found
+
     def has_numbers(self, column: int) -> bool:
         """Whether a column is one of numbers, or of dashes in their place."""
         return any(row[column].key is not None or row[column].text == "-" for row in self.rows)
 
 
-def cell(one: Statistic, per: float = 1.0) -> Cell:
+def cell(one: Statistic, per: float = 1.0, scale: str = "") -> Cell:
     """Return the cell of a statistic, its interval below.
 
     Parameters
@@ -56,6 +86,8 @@ def cell(one: Statistic, per: float = 1.0) -> Cell:
     one : Statistic
     per : float
         Length of the unit that the cell is in.
+    scale : str, optional
+        Of its bar.
 
     Returns
     -------
@@ -72,7 +104,8 @@ def cell(one: Statistic, per: float = 1.0) -> Cell:
     )
     last = inf if estimate.value == inf and one.otherwise is None else None
     key = estimate.value if isfinite(estimate.value) else last
-    return Cell(text, "; ".join(filter(None, small)), key)
+    ends = (estimate.low, estimate.high)
+    return Cell(text, "; ".join(filter(None, small)), key, scale=scale, ends=ends)
 
 
 def without_empty_columns(table: Table) -> Table:

@@ -16,6 +16,7 @@ from uq.drawing.scatter_plot import leading
 from uq.drawing.style import LIMIT, ROWS
 from uq.drawing.symbols import literal
 from uq.drawing.words import element_in_words, in_words, unbroken
+from uq.greek import readable
 from uq.indices.independent_inputs import independent_inputs
 from uq.intervals import upper_probability
 from uq.literals import plain
@@ -33,6 +34,7 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.results import failed
+from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
 from uq.wording import threshold
 
@@ -59,8 +61,10 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        None if no row follows the laws of the inputs, or no output has numbers.
+        None if no row follows the laws of the inputs, no output has numbers, or rows have weights.
     """
+    if has_weights(findings.ds):
+        return None
     analysis = analysis_of(findings.ds)
     outputs = [one for one in shown_outputs(findings.ds, analysis) if one not in findings.absent]
     whole = findings.rows
@@ -164,7 +168,7 @@ def _asked(column: Mapping[str, Any], element: Element, value: float) -> str:
 def _column(name: str, words: str, unit: str, per: float, values: Any) -> dict[str, Any]:
     return {
         "name": name,
-        "label": plain(words),
+        "label": plain(readable(words)),
         "unit": "" if unit == "1" else plain(unbroken(unit)),
         "per": per,
         "wide": is_wide(values[np.isfinite(values)]),
@@ -204,6 +208,7 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         "replicate": None,
         "sample": None,
         "samples": None,
+        "parts": "rows",
     }
     if part is None:
         words = (
@@ -216,7 +221,7 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
     elif isinstance(part, Clusters):
         several = "samples" if has_independent_samples(rows) else "replicates"
         words = f"95 % intervals of shares rest on the scatter between {count} {several}."
-        found |= {"sample": encoded(part, "<i4"), "samples": part.samples}
+        found |= {"sample": encoded(part, "<i4"), "samples": part.samples, "parts": several}
     else:
         words = f"95 % intervals of shares rest on the scatter between {count} replicates."
         found |= {"replicate": encoded(part, "<i4")}

@@ -1,6 +1,6 @@
 """Sensitivities in a report: one table for each target of each method."""
 
-from collections import defaultdict
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from math import isfinite
@@ -12,34 +12,36 @@ from uq.analysis.findings import Findings
 from uq.drawing.index_plot import subject
 from uq.errors import InputError
 from uq.estimate import Estimate
+from uq.greek import readable
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import TargetIndices, methods
+from uq.indices.targets import split_name
 from uq.keys import key_of
 from uq.methods.indices import S1, IndexKind, Null
-from uq.report.cells import Cell, Table
-from uq.report.pictures import Picture, pictures
+from uq.report.cells import SHARE, Cell, Table
 
 
 class Subject(NamedTuple):
-    """The indices of one target by one method.
+    """The indices of one target, by one method or several.
 
     Attributes
     ----------
     name : str
     words : str
-    refused : str
-        Why there are none, or "".
-    tables : list of Table
-    pictures : tuple of Picture
-    notes : list of str
+    tables : tuple of Table
+    notes : tuple of str
+        Among them why a method has no indices.
     """
 
     name: str
     words: str
-    refused: str = ""
     tables: tuple[Table, ...] = ()
-    pictures: tuple[Picture, ...] = ()
     notes: tuple[str, ...] = ()
+
+    @property
+    def output(self) -> str:
+        """The output that it is about."""
+        return output_of(self.name)
 
 
 class Method(NamedTuple):
@@ -51,8 +53,9 @@ class Method(NamedTuple):
     subjects: tuple[Subject, ...] = ()
 
 
-Drawn = defaultdict[tuple[str, str], list[Picture]]
-"""Method and target -> their figures."""
+def output_of(target: str) -> str:
+    """Return the output that a target of indices is about, or an event."""
+    return re.split(r"[\[=]", split_name(target)[1])[0]
 
 
 def sensitivity_of(findings: Findings) -> list[Method]:
@@ -66,43 +69,52 @@ def sensitivity_of(findings: Findings) -> list[Method]:
     -------
     list of Method
     """
-    drawn: Drawn = defaultdict(list)
-    for picture in pictures(findings, "sensitivities"):
-        drawn[picture.of.method, picture.of.name].append(picture)
-    return [_method(findings, name, drawn) for name in methods(findings.ds)]
+    return [_method(findings, name) for name in methods(findings.ds)]
 
 
-def _method(findings: Findings, name: str, drawn: Drawn) -> Method:
+def _method(findings: Findings, name: str) -> Method:
     try:
         found = findings.sensitivities(name)
     except InputError as error:
         return Method(name, refused=str(error))
-    used = f"From {found.rows_used} rows"
+    used = f"from {found.rows_used} rows"
     if found.groups_dropped:
         used += f"; {found.groups_dropped} groups with missing values dropped"
-    subjects = (
-        _subject(findings.ds, name, one, drawn[name, target])
-        for target, one in found.targets.items()
-    )
+    subjects = (_subject(findings.ds, name, one) for one in found.targets.values())
     return Method(name, used=used, subjects=tuple(subjects))
 
 
-def _subject(
-    ds: xr.Dataset, method: str, found: TargetIndices, drawn: Sequence[Picture]
-) -> Subject:
+def _subject(ds: xr.Dataset, method: str, found: TargetIndices) -> Subject:
     name, indices = found.name, found.indices
-    words = subject(ds, name)
+    words = readable(subject(ds, name))
     words = words[:1].upper() + words[1:]
     if found.refused:
-        return Subject(name, words, refused=found.refused)
+        return Subject(name, words, notes=(f"no indices by {method}: {found.refused}",))
     kinds, pairs = found.kinds(), found.kinds(of_pairs=True)
-    listed = ((f"Indices of {name}", kinds), (f"Second order, of {name}", pairs))
+    of = f"{name} by {method}"
+    listed = ((f"Indices of {of}", kinds), (f"Second order, of {of}", pairs))
     traced = partial(key_of, "outputs", name, verb="sensitivity", options={"method": method})
     tables = tuple(_table(caption, one, indices.nulls, traced) for caption, one in listed if one)
     if indices.noise:
         line = [(Cell("noise"), _cell(S1, indices.noise, traced("noise")))]
-        tables += (Table(f"Share of noise in the variance of {name}", ("", "share"), line),)
-    return Subject(name, words, "", tables, tuple(drawn), indices.notes)
+        tables += (Table(f"Share of noise in the variance of {of}", ("", "share"), line),)
+    return Subject(name, words, tables, indices.notes)
+
+
+def of_output(methods: Sequence[Method], output: str) -> list[Subject]:
+    """Return the indices of an output, those of a target by all methods together.
+
+    Parameters
+    ----------
+    methods : sequence of Method
+    output : str
+    """
+    found: dict[str, Subject] = {}
+    for one in (one for method in methods for one in method.subjects if one.output == output):
+        known = found.get(one.name, Subject(one.name, one.words))
+        notes = (*dict.fromkeys(known.notes + one.notes),)
+        found[one.name] = known._replace(tables=known.tables + one.tables, notes=notes)
+    return list(found.values())
 
 
 def _table(
@@ -117,9 +129,10 @@ def _table(
             yield _cell(kind, one, traced(*((kind.key, label) if label in values[kind] else dummy)))
 
     rows = [(Cell(label), *cells(label, found)) for label, found in lines(values, nulls)]
-    return Table(caption, ("input", *(kind.key for kind in values)), rows)
+    return Table(caption, ("input", *(kind.words for kind in values)), rows)
 
 
 def _cell(kind: IndexKind, one: Estimate, traced: str) -> Cell:
     key = one.value if isfinite(one.value) else None
-    return Cell(kind.text(one.value), kind.interval(one), key, traced)
+    scale = SHARE if kind.unit == "variance" else kind.key
+    return Cell(kind.text(one.value), kind.interval(one), key, traced, scale, (one.low, one.high))

@@ -1,17 +1,23 @@
 """The inputs in a report: laws, sources, and how well each number is known."""
 
 from collections.abc import Iterator
+from math import floor, log10
 
+import numpy as np
 import xarray as xr
 
-from uq.analysis.sampled_inputs import compare, laws_and_values
+from uq.analysis.sampled_inputs import compare, laws_and_values, weights_of_samples
 from uq.conclusions.sources import mark
+from uq.conclusions.words import unit_for
+from uq.contract import Floats
 from uq.drawing.words import unbroken
+from uq.greek import readable, symbol
 from uq.inputs.law import Law
 from uq.report.cells import Cell, Table, without_empty_columns
 from uq.rows.elements import study_file_of
 from uq.study.file import Tied
-from uq.wording import law, number
+from uq.units import beside, unit_of
+from uq.wording import law
 
 
 def input_tables(ds: xr.Dataset) -> Iterator[Table]:
@@ -53,20 +59,36 @@ def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
     value = ds[name].item()
     # The source in the model is that of the nominal value alone.
     source = (Cell(""), Cell("set in this study, under [fixed]")) if by_study else _source(ds, name)
-    return (_name(ds, name), Cell(_with_unit(ds, name, value), key=value), *source)
+    unit = unit_of(str(ds[name].attrs["units"]), value)
+    text = beside(f"{value / unit.size:.6g}", unbroken(unit.name)).replace(" ", "\u00a0")
+    return (_name(ds, name), Cell(text, key=value), *source)
 
 
 def _uncertain(ds: xr.Dataset) -> Table:
-    given = laws_and_values(ds)
+    given, weights = laws_and_values(ds), weights_of_samples(ds)
     rows = []
     for name, entry in study_file_of(ds).uncertain.items():
         quantiles = [Cell("")] * 3
         if name in given:
-            found = compare(*given[name]).sampled
-            quantiles = [Cell(number(value), key=float(value)) for value in found]
+            law_of, _ = given[name]
+            found = compare(*given[name], weights).sampled
+            units = "1" if law_of.times is not None else str(ds[name].attrs["units"])
+            quantiles = _quantiles(units, found)
         rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
     header = ("input", "law", "5 % of rows", "50 %", "95 %", "known", "source")
     return without_empty_columns(Table("Uncertain inputs", header, rows))
+
+
+def _quantiles(units: str, found: Floats) -> list[Cell]:
+    """Return quantiles in the unit of the median, to the digits that tell them apart."""
+    unit = unit_for(units, abs(found[1]))
+    step = np.ptp(found) / unit.per / 30
+    places = max(0, -floor(log10(step))) if step > 0 else 0
+    texts = (f"{float(one) / unit.per:.{places}f}" if places else unit.number(one) for one in found)
+    return [
+        Cell(beside(text, unit.name).replace(" ", "\u00a0"), key=float(one))
+        for text, one in zip(texts, found, strict=True)
+    ]
 
 
 def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
@@ -74,18 +96,12 @@ def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:
         return f"equals {entry.equals}"
     if entry.times is not None:
         return f"{entry.times} times {law(entry)}"
-    return _with_unit(ds, name, law(entry))
-
-
-def _with_unit(ds: xr.Dataset, name: str, value: float | str) -> str:
-    unit = unbroken(ds[name].attrs["units"])
-    text = value if isinstance(value, str) else f"{value:.6g}"
-    return text if unit == "1" else f"{text}\u00a0{unit}"
+    return beside(law(entry), unbroken(ds[name].attrs["units"]))
 
 
 def _name(ds: xr.Dataset, name: str) -> Cell:
     attrs = ds[name].attrs
-    return Cell(name, f"{attrs['symbol']}: {attrs['long_name']}")
+    return Cell(name, f"{symbol(attrs['symbol'])}: {readable(attrs['long_name'])}")
 
 
 def _source(ds: xr.Dataset, name: str) -> tuple[Cell, Cell]:

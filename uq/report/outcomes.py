@@ -10,10 +10,10 @@ from uq.analysis.statistics.statistic import Listing, Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary
 from uq.contract import Output, Status
-from uq.drawing.words import element_in_words, unbroken
+from uq.drawing.words import place_in_words, unbroken
 from uq.estimate import Estimate
 from uq.keys import key_of
-from uq.report.cells import Cell, Table, cell, without_empty_columns
+from uq.report.cells import SHARE, Cell, Table, cell, without_empty_columns
 from uq.rows.elements import elements_of, independent_rows
 from uq.units import typical, unit_of
 from uq.wording import percent, percent_interval, threshold
@@ -27,7 +27,7 @@ def status_table(ds: xr.Dataset, summary: Summary) -> Table:
         example = str(ds["status"].attrs.get(f"example_{label.replace('-', '_')}", ""))
         share = found / max(summary.samples, 1)
         count = Cell(str(found), key=float(found), traced=key_of("status", label))
-        cells = (count, Cell(percent(share), key=share))
+        cells = (count, Cell(percent(share), key=share, scale=SHARE))
         rows.append((Cell(label), *cells, Cell(meaning.get(label, "")), Cell(example)))
     header = ("status", "rows", "share", "meaning", "first message")
     return without_empty_columns(Table("Status of all rows", header, rows))
@@ -51,7 +51,11 @@ def _share(one: Estimate) -> Cell:
     if isnan(one.value):
         return Cell("-")
     below = percent_interval(one.low, one.high) if one.has_interval else ""
-    return Cell(percent(one.value), below, one.value)
+    return Cell(percent(one.value), below, one.value, "", SHARE, (one.low, one.high))
+
+
+_VALUES = ("mean", "sd", "quantiles", "b_lives", "tolerance")
+"""First parts of the keys of statistics that are values of the output."""
 
 
 class Outcome:
@@ -60,23 +64,28 @@ class Outcome:
     Parameters
     ----------
     name : str
-    words : str
-        Which element it is: ``time to wear depth, left, 250 µm``.
+    place : str
+        Within the output: ``left, 250 µm``; "" for a single element.
     declared : Output
     described : Described
     """
 
-    def __init__(self, name: str, words: str, declared: Output, described: Described):
-        self.name, self.words, self.declared = name, words, declared
+    def __init__(self, name: str, place: str, declared: Output, described: Described):
+        self.name, self.place, self.declared = name, place, declared
         self.parts = described.parts
         quantiles = (one.estimate.value for one in described.parts["quantiles"])
         unit = unit_of(described.units, typical(quantiles))
         self.unit = unit._replace(name=unbroken(unit.name))
 
     @property
+    def output(self) -> str:
+        """The output that it is an element of."""
+        return self.name.partition("[")[0]
+
+    @property
     def label(self) -> Cell:
-        """The name, with its words below."""
-        return Cell(self.name, self.words)
+        """Its place within the output, with its name below; the name of a single element."""
+        return Cell(self.place, self.name) if self.place else Cell(self.name)
 
     @property
     def unit_cell(self) -> Cell:
@@ -87,20 +96,25 @@ class Outcome:
         """Return the length of the unit in which a statistic is shown."""
         return self.unit.size if one.unit == self.declared.unit else 1.0
 
+    def scale(self, one: Statistic) -> str:
+        """Return the scale of its bars: values of the output share one."""
+        is_value = one.key[0] in _VALUES and one.unit == self.declared.unit
+        return self.declared.unit if is_value else ""
+
 
 def outcomes(ds: xr.Dataset, summary: Summary) -> list[Outcome]:
     """Return the elements that a summary describes, in its order."""
     names = dict.fromkeys(name.partition("[")[0] for name in summary.outputs)
     found = []
     for element in elements_of(independent_rows(ds), list(names)):
-        words = element_in_words(ds, element)
         described = summary.outputs[element.name]
-        found.append(Outcome(element.name, words, element.declared, described))
+        place = place_in_words(ds, element)
+        found.append(Outcome(element.name, place, element.declared, described))
     return found
 
 
-def result_tables(found: list[Outcome], of_lives: bool = False) -> Iterator[Table]:
-    """Yield the tables of statistics that are not empty: of lifetimes, or of all other outputs."""
+def result_tables(found: list[Outcome]) -> Iterator[Table]:
+    """Yield the tables of statistics that are not empty."""
     shown = [
         (outcome, one)
         for part in STATISTICS
@@ -109,9 +123,8 @@ def result_tables(found: list[Outcome], of_lives: bool = False) -> Iterator[Tabl
         if one.is_read_by(Reader.REPORT)
     ]
     for listing in dict.fromkeys(one.kind.listing for _, one in shown):
-        if listing.of_lives == of_lives:
-            own = [(outcome, one) for outcome, one in shown if one.kind.listing == listing]
-            yield _table(listing, found, own)
+        own = [(outcome, one) for outcome, one in shown if one.kind.listing == listing]
+        yield _table(listing, found, own)
 
 
 def _table(listing: Listing, found: list[Outcome], shown: list[tuple[Outcome, Statistic]]) -> Table:
@@ -151,10 +164,10 @@ def _cell(outcome: Outcome, one: Statistic | None, listing: Listing) -> Cell:
         return Cell("")
     traced = key_of("outputs", outcome.name, *one.key)
     if listing.by:  # the small print has its own column
-        return cell(replace(one.best, more=""))._replace(traced=traced)
+        return cell(replace(one.best, more=""), scale=SHARE)._replace(traced=traced)
     if one.estimate.reason and isnan(one.estimate.value) and one.rows_needed is None:
         return Cell("none", one.estimate.reason)
-    return cell(one, outcome.per(one))._replace(traced=traced)
+    return cell(one, outcome.per(one), outcome.scale(one))._replace(traced=traced)
 
 
 _WORDS = {

@@ -13,7 +13,7 @@ from markupsafe import Markup, escape
 
 from uq.analysis.findings import Findings
 from uq.conclusions.answer import conclude
-from uq.conclusions.page import STYLE, others, regimes
+from uq.conclusions.page import STYLE, regimes
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError
 from uq.literals import plain
@@ -21,16 +21,16 @@ from uq.provenance import provenance
 from uq.report.convergence import convergence_of
 from uq.report.embedded import rows_inside
 from uq.report.fleets import fleet_notes, fleet_table
+from uq.report.groups import REGIME, groups
 from uq.report.headlines import headline
-from uq.report.indices import sensitivity_of
+from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.inputs import fixed_inputs, input_tables
 from uq.report.levels import levels_of
-from uq.report.outcomes import outcomes, regime_table, result_tables, status_table, words_used
+from uq.report.outcomes import outcomes, regime_table, status_table
 from uq.report.pictures import pictures
 from uq.report.references import references
 from uq.rows.elements import study_file_of
 from uq.rows.results import failed, open_result
-from uq.rows.variables import outputs_of
 from uq.store.files import check_target, whole
 
 _SHOWN_TEXT = 50_000
@@ -124,8 +124,8 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
     summary = findings.summary
     found = outcomes(ds, summary)
     methods = sensitivity_of(findings)
-    lives = {name for name, output in outputs_of(ds).items() if output.is_lifetime}
     drawn = list(pictures(findings, "results", without=findings.absent))
+    headed = headline(answer, drawn)
     lost = int(failed(ds).sum())
     hashes = ("study_sha256", "study_identity")
     return {
@@ -133,8 +133,8 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "study": study_file_of(ds),
         "design": DESIGNS[ds.attrs["design"]],
         "summary": summary,
-        "answer": headline(answer, drawn),
-        "other_answers": others(answer),
+        "answer": headed,
+        "groups": list(groups(findings, answer, found, drawn, methods)),
         "regimes_answered": regimes(answer),
         "answer_style": STYLE,
         "inputs": list(input_tables(ds)),
@@ -143,13 +143,12 @@ def _content(ds: xr.Dataset, file: str) -> dict[str, Any]:
         "status": status_table(ds, summary),
         "failed": lost,
         "regimes": regime_table(summary) if summary.regimes else None,
-        "rows_drawn": list(pictures(findings, "rows")),
+        "rows_drawn": [
+            *(one for one in drawn if output_of(one.of.name) == REGIME),
+            *pictures(findings, "rows"),
+        ],
+        "regime_indices": of_output(methods, REGIME),
         "convergence": convergence_of(findings, found),
-        "results": list(result_tables(found)),
-        "words_used": words_used(found),
-        "results_drawn": [one for one in drawn if one.of.name not in lives],
-        "lives": list(result_tables(found, of_lives=True)),
-        "lives_drawn": [one for one in drawn if one.of.name in lives],
         "levels": levels_of(findings),
         "fleets": fleet_table(findings),
         "fleet_notes": fleet_notes(findings),

@@ -17,8 +17,10 @@ from uq.analysis.findings import Findings
 from uq.drawing.catalogue import Subject, drawables
 from uq.drawing.figure import lay_out
 from uq.drawing.style import styled
+from uq.greek import readable
 from uq.literals import plain
 from uq.plots import FIGURES
+from uq.report.paths import shortened
 
 HEAVIEST_SVG = 300_000
 """Longer drawings, of thousands of points, are embedded as images [characters]."""
@@ -48,7 +50,7 @@ def pictures(findings: Findings, section: str, without: Container[str] = ()) -> 
     """
     for one in drawables(FIGURES, findings, section):
         if one.subject.name not in without:
-            yield picture(one.draw(), one.caption)._replace(of=one.subject)
+            yield picture(one.draw(), readable(one.caption))._replace(of=one.subject)
 
 
 @styled
@@ -72,8 +74,8 @@ def picture(figure: Figure, caption: str) -> Picture:
     # Identifiers must be unique within a page.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": caption}):
         FigureCanvasSVG(figure).print_svg(drawn, metadata=_NO_METADATA)
-    if len(drawn.getvalue()) <= HEAVIEST_SVG:
-        return Picture(_embedded(drawn.getvalue(), caption), caption, False)
+    if len(svg := _embedded(drawn.getvalue(), caption)) <= HEAVIEST_SVG:
+        return Picture(svg, caption, False)
     FigureCanvasAgg(figure).print_png(png, metadata={"Software": None})
     data = base64.b64encode(png.getvalue()).decode()
     image = Markup('<img alt="{}" src="data:image/png;base64,{}">').format(caption, data)
@@ -89,7 +91,7 @@ def _embedded(svg: str, caption: str) -> Markup:
         for name in list(element.attrib):
             value = element.attrib.pop(name)
             if name != "id" or value in used:
-                element.set(name.rpartition("}")[2], value)
+                element.set(name.rpartition("}")[2], shortened(value) if name == "d" else value)
     for definitions in root.findall("defs"):
         for style in definitions.findall("style"):
             definitions.remove(style)

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Mask, Model, Output, Status
+from uq.contract import Mask, Model, Output, Status, censored_name
 
 
 class Column(NamedTuple):
@@ -47,11 +47,6 @@ def columns_of(model: Model, settings: Any) -> dict[str, Column]:
 def blank_rows(columns: Mapping[str, Column], rows: int) -> dict[str, NDArray[Any]]:
     """Return every column filled with its blank value."""
     return {name: column.blanks(rows) for name, column in columns.items()}
-
-
-def censored_name(output: str) -> str:
-    """Return the name of the flag beside a lifetime."""
-    return f"{output}_censored"
 
 
 def failed_rows(status: NDArray[np.int8], required: Iterable[tuple[Output, NDArray[Any]]]) -> Mask:

@@ -8,16 +8,17 @@ import xarray as xr
 from uq.clusters import Clusters
 from uq.contract import Floats as Floats
 from uq.contract import Mask as Mask
+from uq.contract import censored_name
 from uq.designs.layouts import CURVES, NOISE
 from uq.designs.registry import DESIGNS
 from uq.errors import InputError, choices, nearest
 from uq.intervals import Replicates
-from uq.rows.columns import censored_name
 from uq.rows.element import Element as Element
 from uq.rows.element import elements_in
 from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed
 from uq.rows.variables import outputs_of
+from uq.rows.weights import row_weights
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 
@@ -144,7 +145,7 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
     InputError
         When the result has no such output.
     """
-    unsound, known = failed(ds), outputs_of(ds)
+    unsound, known, weights = failed(ds), outputs_of(ds), row_weights(ds)
     for output in outputs:
         if output not in known:
             raise InputError(
@@ -155,7 +156,7 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
             censored = ds.variables[flag] if flag in ds else None
             axes = {dim: ds[dim].values for dim in declared.dims}
             values = ds.variables[output]
-            yield from elements_in(output, declared, values, censored, axes, unsound)
+            yield from elements_in(output, declared, values, censored, axes, unsound, weights)
 
 
 def named_elements(ds: xr.Dataset, name: str) -> list[Element]:

@@ -86,9 +86,11 @@ def evaluate(
             status[first] = returned.status
             messages[first] = returned.message
         else:
+            outputs, codes, said = returned
             for name, column in columns.items():
-                column[first:last] = returned[0][name]
-            status[first:last] = returned[1]
+                column[first:last] = outputs[name]
+            status[first:last] = codes
+            messages |= {first + row: text for row, text in said.items()}
     _check_values(model, columns, status, messages)
     lost = ~np.isin(status, _WITH_OUTPUTS)
     for name, column in columns.items():
@@ -121,16 +123,16 @@ def joined(chunks: Sequence[Chunk]) -> Chunk:
 
 def _call(
     model: Model, settings: Any, x: Floats, seed: NDArray[np.uint64], expected: Mapping[str, Column]
-) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8]] | Fault:
+) -> tuple[Mapping[str, NDArray[Any]], NDArray[np.int8], Mapping[int, str]] | Fault:
     try:
         with np.errstate(all="ignore"):
             returned = model.batch(x, seed, settings)
     except Exception as error:
         text = " ".join(str(error).split())
         return Fault(Status.RAISED, f"{type(error).__name__}: {text}" if text else repr(error))
-    if not isinstance(returned, tuple) or len(returned) != 2:
+    if not isinstance(returned, tuple) or len(returned) not in (2, 3):
         raise KernelError(f"model '{model.name}': batch must return (outputs, status)")
-    outputs, status = returned
+    outputs, status, messages = (*returned, {})[:3]
     _check_names(model, outputs, expected)
     for name, column in (*expected.items(), ("status", _STATUS)):
         array = status if name == "status" else outputs[name]
@@ -149,7 +151,7 @@ def _call(
     unknown = np.setdiff1d(status, list(Status))
     if unknown.size:
         raise KernelError(f"model '{model.name}': no such status: {unknown[0]}")
-    return outputs, status
+    return outputs, status, messages
 
 
 _STATUS = Column(np.dtype(np.int8), 0, ())

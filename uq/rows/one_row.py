@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats, Model, Status
+from uq.contract import Floats, Model, Status, censored_name
 from uq.errors import InputError
 from uq.inputs.values import fault_lines, parameter_problem, read_settings
 from uq.interrupts import in_background
-from uq.rows.columns import censored_name, failed_rows
+from uq.rows.columns import failed_rows
 from uq.rows.element import Element, elements_in
 from uq.rows.evaluate import Chunk, evaluate
 

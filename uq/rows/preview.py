@@ -5,8 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uq.contract import Floats
-from uq.rows.columns import censored_name
+from uq.contract import Floats, censored_name
 from uq.rows.workload import Workload
 
 if TYPE_CHECKING:

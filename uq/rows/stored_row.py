@@ -6,9 +6,8 @@ from typing import Any, NoReturn
 
 import xarray as xr
 
-from uq.contract import Model
+from uq.contract import Model, censored_name
 from uq.errors import InputError
-from uq.rows.columns import censored_name
 from uq.rows.one_row import Row
 from uq.rows.variables import outputs_of
 

@@ -9,8 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from uq.contract import Model, Output, Status
-from uq.rows.columns import censored_name
+from uq.contract import Model, Output, Status, censored_name
 from uq.rows.sampling import block_labels
 from uq.study.registry import made_here
 

@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from uq.contract import Status
+from uq.contract import Status, censored_name
 from uq.errors import InputError
 from uq.inputs.values import fault_lines, read_settings
-from uq.rows.columns import censored_name
 from uq.rows.one_row import Row, computed
 from uq.rows.sampling import row_block
 from uq.rows.workload import workload_of
 from uq.running.isolation import isolated
+from uq.running.loading import study_of_text
 from uq.store.merge import by_settings
 from uq.study.changes import what_changed
-from uq.study.definition import Study, study_from_text
+from uq.study.definition import Study
 from uq.study.registry import made_here
 
 
@@ -49,7 +49,7 @@ def study_here(
     InputError
         When there is no such model, or the study does not suit it.
     """
-    study = study_from_text(text, f"{source}: its study", model).with_samples(samples)
+    study = study_of_text(text, f"{source}: its study", model).with_samples(samples)
     return study, "" if study.identity == identity else what_changed(text, version, study)
 
 

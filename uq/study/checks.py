@@ -77,6 +77,8 @@ def _output_faults(
     model: Model, name: str, path: tuple[str, ...], value: Any, no_number: str = ""
 ) -> Iterator[Fault]:
     """Yield whether a model lacks an output, or has it as a category where numbers are needed."""
+    if not model.outputs:  # not known before rows have run
+        return
     if name not in model.outputs:
         yield Fault(path, unknown_name("output", name, model, tuple(model.outputs)), value)
     elif no_number and model.outputs[name].is_category:

@@ -5,18 +5,31 @@ promise; the hash comes from the files.
 """
 
 import importlib
+import json
 import os
+import re
 import sys
 from collections.abc import Mapping
 from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from inspect import isfunction
+from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 from uq.contract import Model
-from uq.errors import InputError, nearest
+from uq.errors import InputError, choices, nearest
+from uq.outside.function import is_machine, model_of
+from uq.outside.returned import Returned, as_plain, from_plain
+from uq.places import node
 from uq.provenance import provenance
 from uq.study.compiled import keep_apart, own_packages
 from uq.study.sources import fingerprint
 
 GROUP = "vibrolife.models"
+
+_FILE = re.compile(r"(.+\.py)(?::(\w+))?")
+_KNOWN_TO_RETURN = "\n"  # what follows it in a reference is what a function returns
 
 
 def model_names() -> tuple[str, ...]:
@@ -30,7 +43,9 @@ def find_model(reference: str) -> Model:
     Parameters
     ----------
     reference : str
-        The name of an installed model, or ``"package.module:ATTRIBUTE"``.
+        The name of an installed model, ``"package.module:ATTRIBUTE"``, or ``"file.py"`` with a
+        model or a function under `uq.outside.function.machine`; ``"file.py:NAME"`` where there are
+        several.
 
     Returns
     -------
@@ -42,7 +57,23 @@ def find_model(reference: str) -> Model:
         There is no such model, or its package cannot be imported. A broken model does not affect
         the others.
     """
-    return _load(_point(reference), f"model '{reference}'")
+    plain, _, known = reference.partition(_KNOWN_TO_RETURN)
+    returned = from_plain(json.loads(known)) if known else None
+    return _load(_point(plain), f"model '{plain}'", returned)
+
+
+def with_returns(reference: str, returned: Mapping[str, Returned]) -> str:
+    """Return the reference of a function of which it is known what it returns."""
+    plain = reference.partition(_KNOWN_TO_RETURN)[0]
+    return f"{plain}{_KNOWN_TO_RETURN}{json.dumps(as_plain(returned))}"
+
+
+def located(reference: str) -> str:
+    """Return a reference that holds in any folder of this computer."""
+    found = _FILE.fullmatch(reference)
+    if not found:
+        return reference
+    return str(Path(found[1]).absolute()) + (f":{found[2]}" if found[2] else "")
 
 
 def module_of(reference: str) -> str:
@@ -52,6 +83,9 @@ def module_of(reference: str) -> str:
 
 def _point(reference: str) -> EntryPoint:
     """Return the place of a model, from which it can be imported."""
+    reference = reference.partition(_KNOWN_TO_RETURN)[0]
+    if in_file := _FILE.fullmatch(reference):
+        return EntryPoint(reference, f"{_module_in(Path(in_file[1]))}:{in_file[2] or ''}", GROUP)
     if ":" in reference:
         # A model under development is usually in the working folder, which an installed command
         # does not search.
@@ -67,17 +101,40 @@ def _point(reference: str) -> EntryPoint:
     return installed[reference]
 
 
+def _module_in(file: Path) -> str:
+    """Return the name by which the module in a file can be imported."""
+    if what := node(file):
+        raise InputError(f"{file}: is {what}, not a file")
+    if not file.is_file():
+        there = [one.name for one in file.parent.glob("*.py")] if file.parent.is_dir() else []
+        raise InputError(f"{file}: no such file{nearest(file.name, there)}")
+    folder, name = str(file.absolute().parent), file.stem
+    if folder not in sys.path:
+        sys.path.append(folder)
+    importlib.invalidate_caches()
+    spec = find_spec(name) if name.isidentifier() else None
+    if not (spec and spec.origin and Path(spec.origin).samefile(file)):
+        raise InputError(
+            f"{file}: cannot be imported as '{name}', the name of another module or of none;"
+            " rename the file"
+        )
+    return name
+
+
 def _entry_points() -> dict[str, EntryPoint]:
     return {point.name: point for point in entry_points(group=GROUP)}
 
 
-def _load(point: EntryPoint, label: str) -> Model:
+def _load(point: EntryPoint, label: str, returned: Mapping[str, Returned] | None) -> Model:
     module_name, _, attribute = point.value.partition(":")
-    if not module_name or not attribute:
+    if not module_name or not (attribute or _FILE.fullmatch(point.name)):
         raise InputError(f"{label}: write it as package.module:ATTRIBUTE")
     keep_apart(module_name)
     try:
-        found = getattr(importlib.import_module(module_name), attribute)
+        module = importlib.import_module(module_name)
+        found = getattr(module, attribute or _only_model(module, label))
+    except InputError:
+        raise
     except (Exception, SystemExit) as error:
         problem = f"{type(error).__name__}: {' '.join(str(error).split())}"
         if isinstance(error, ModuleNotFoundError):
@@ -85,12 +142,29 @@ def _load(point: EntryPoint, label: str) -> Model:
         raise InputError(f"{label} cannot be imported from {point.value}: {problem}") from error
     if module_name.partition(".")[0] not in own_packages():
         fingerprint(module_name)  # now, before anything is edited
+    if is_machine(found):
+        found = model_of(found, returned)
     if not isinstance(found, Model):
+        remedy = "; write @uq.machine above it" if isfunction(found) else ""
         raise InputError(
-            f"{label}: {point.value} is a {type(found).__name__}, not a uq.contract.Model"
+            f"{label}: {point.value} is a {type(found).__name__}, not a uq.contract.Model{remedy}"
         )
     _check(found, label)
     return found
+
+
+def _only_model(module: ModuleType, label: str) -> str:
+    """Return the name of the only model of a module, or of its only machine."""
+
+    def is_own(one: Any) -> bool:
+        return isinstance(one, Model) or (is_machine(one) and one.__module__ == module.__name__)
+
+    names = [name for name, one in vars(module).items() if is_own(one)]
+    if len(names) == 1:
+        return names[0]
+    if names:
+        raise InputError(f"{label}: has several models; name one, {label}:NAME ({choices(names)})")
+    raise InputError(f"{label}: has no model and no function under @uq.machine")
 
 
 def _check(model: Model, label: str) -> None:

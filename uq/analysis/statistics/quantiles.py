@@ -13,9 +13,7 @@ from uq.estimate import NOTHING, Estimate
 from uq.population.functionals import Population
 from uq.rows.elements import Element
 
-_LIVES = Listing(
-    "B-lives: B10 is the time by which 10 % have ended", first="lifetime", of_lives=True
-)
+_LIVES = Listing("B-lives: B10 is the time by which 10 % have ended", first="lifetime")
 LIFE = Kind(name="B-lives", listing=_LIVES, readers=~Reader.RUNNING)
 _BY = (order_statistics.quantile, order_statistics.quantile_interval)
 _BY_KAPLAN_MEIER = (life_quantiles, kaplan_meier)

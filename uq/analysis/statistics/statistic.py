@@ -68,8 +68,6 @@ class Listing:
         Heading of the column that distinguishes several lines of an output (`Statistic.at`).
     keeps_empty : bool
         Whether columns without a number are kept.
-    of_lives : bool
-        Whether it is shown with the figures of lifetimes.
     """
 
     caption: str = "Statistics, with 95 % intervals"
@@ -77,7 +75,6 @@ class Listing:
     first: str = "output"
     by: str = ""
     keeps_empty: bool = False
-    of_lives: bool = False
 
 
 def entry(one: "Statistic") -> dict[str, Any]:

@@ -21,13 +21,13 @@ def models(
     """List the models, or show what one of them declares."""
     from uq.cli import catalogue
     from uq.cli.printing import print_json
-    from uq.study.registry import find_model
+    from uq.running.loading import load_model
 
     if name is None:
         listed = catalogue.list_models()
         print_json(listed) if json else catalogue.show_list(listed)
     else:
-        model = find_model(name)
+        model = load_model(name)
         print_json(catalogue.as_json(model)) if json else catalogue.show(model)
 
 
@@ -55,10 +55,10 @@ def simulate(
 
 def init(model: given.ModelName) -> None:
     """Print a commented study file to edit."""
-    from uq.study.registry import find_model
+    from uq.running.loading import load_model
     from uq.study.template import template
 
-    print(template(find_model(model)), end="")
+    print(template(load_model(model)), end="")
 
 
 def check(study: given.StudyFile, model: given.ModelReference = None) -> None:
@@ -146,7 +146,7 @@ def rare_event(
     """Estimate the probability of a rare event."""
     from uq.cli.rare_event import limit, show
     from uq.exploring import rare_events
-    from uq.study.definition import load_study
+    from uq.running.loading import load_study
 
     loaded = load_study(study, model)
     threshold, is_below = limit(loaded, output, above, below)

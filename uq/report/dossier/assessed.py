@@ -94,7 +94,7 @@ def software(findings: Findings, file: str) -> Iterator[Item]:
 def models(findings: Findings, file: str) -> Iterator[Item]:
     """Yield what is known of the model."""
     attrs = findings.ds.attrs
-    named = ("model", "model_version", "code", "title")
+    named = ("model", "model_version", "code")
     facts = [(name.replace("_", " "), str(attrs[name])) for name in named if name in attrs]
     yield Item("Model", facts=facts)
     yield Item("Sources", text=references(findings.ds) or ())

@@ -80,13 +80,11 @@ def sensitivities(findings: Findings, file: str) -> Iterator[Item]:
 
 
 def _indices(method: Method) -> Item:
-    refused = [f"No indices of {one.name}: {one.refused}" for one in method.subjects if one.refused]
     notes = [f"{note} ({one.name})" for one in method.subjects for note in one.notes]
     return Item(
         f"Indices by {method.name}",
         tables=[table for one in method.subjects for table in one.tables],
-        pictures=[picture for one in method.subjects for picture in one.pictures],
-        notes=[*filter(None, [method.refused or method.used]), *refused, *notes],
+        notes=[method.refused or method.used, *notes],
     )
 
 
@@ -102,10 +100,9 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
             " % to the 95 % quantile, and cover variability and lack of knowledge together."
         ],
     )
-    tables = [*result_tables(found), *result_tables(found, of_lives=True)]
     yield Item(
         "Statistics with their intervals",
-        tables=tables,
+        tables=list(result_tables(found)),
         pictures=list(pictures(findings, "results", without=findings.absent)),
         notes=findings.summary.notes,
     )

@@ -1,0 +1,126 @@
+"""The dossier: the contents of a report along published outlines, and what is missing in them."""
+
+import html
+import re
+
+import numpy as np
+import pytest
+from computed import computed, kinds, linear, with_status
+from nested_studies import nested
+
+from uq.contract import Status
+from uq.report.dossier import dossier
+from uq.report.dossier.chapters import CONTENTS, chapters
+from uq.report.dossier.outline import DOCUMENTS, OUTLINE
+from uq.store.files import write_result
+from uq.tracing.tracing import traced
+
+HOSTILE = "<script>alert(1)</script>"
+
+
+def crossed():
+    ds = linear("saltelli", 16, 4, analysis={"thresholds": {"y": 5.0}})
+    ds = with_status(ds.assign(y=ds["y"].copy()), [0], Status.RAISED)
+    ds["y"][0] = np.nan
+    return ds
+
+
+@pytest.fixture
+def plain(no_other_figures):
+    """Return the dossier of a result as words."""
+
+    def text(ds, name="out.nc"):
+        drawn = re.sub(r"<(style|script)>.*?</\1>", " ", dossier(ds, name), flags=re.DOTALL)
+        return " ".join(html.unescape(re.sub(r"<[^>]+>", " ", drawn)).split())
+
+    return text
+
+
+def found_in(ds):
+    """Return what a result provides: heading -> title of an item -> item."""
+    return {
+        one.heading.name: {item.title: item for item in one.items} for one in chapters(ds, "out.nc")
+    }
+
+
+def test_each_heading_names_the_document_that_it_follows(plain):
+    words = plain(crossed())
+    assert list(CONTENTS) == [one.name for one in OUTLINE]
+    for one in OUTLINE:
+        assert all(any(name.startswith(known) for known in DOCUMENTS) for name in one.after)
+        assert words.count(f"{one.title} After {'; '.join(one.after)}.") == 1
+    assert all(document in words for document in DOCUMENTS.values())
+
+
+def test_it_claims_no_compliance(plain):
+    words = plain(crossed())
+    assert "Their use is no claim of compliance with any of them" in words
+    assert len(re.findall("compl(?:y|ian|ies)", words)) == 2  # both in this sentence
+
+
+@pytest.mark.parametrize("make", [crossed, lambda: kinds(samples=64), lambda: computed(nested())])
+def test_what_a_result_lacks_is_said(make, plain):
+    ds = make()
+    found, words = found_in(ds), plain(ds)
+    for chapter, title in (
+        ("context", "Decision that it supports, and the rules that apply to it"),
+        ("quantities", "Acceptance criteria"),
+        ("software", "Quality assurance programme"),
+        ("software", "Validation against observations"),
+        ("models", "Uncertainty of the form of the model"),
+        ("conclusions", "Comparison with the acceptance criteria"),
+    ):
+        assert not found[chapter][title].is_provided
+        assert f"{title} Not provided." in words
+    levels = found["inputs"]["Variability between units, and what all units share"]
+    assert levels.is_provided == ("world" in ds)
+    for chapter, title in (
+        ("inputs", "Laws and their sources"),
+        ("propagation", "Design"),
+        ("uncertainty", "Estimate, standard uncertainty and coverage interval"),
+        ("conclusions", "The answer"),
+    ):
+        assert found[chapter][title].is_provided
+
+
+def test_its_numbers_are_those_of_the_result(no_other_figures):
+    ds = crossed()
+    found = found_in(ds)
+    (table,) = found["uncertainty"]["Estimate, standard uncertainty and coverage interval"].tables
+    (row,) = table.rows
+    values = {name: cell.key for name, cell in zip(table.header, row, strict=True)}
+    sound = ds["y"].values[(ds["status"].values == 0) & np.isin(ds["block"].values, [0, 5])]
+    assert values["estimate (mean)"] == pytest.approx(sound.mean())
+    assert values["standard uncertainty"] == pytest.approx(sound.std(ddof=1), rel=0.02)
+    assert values["from"] == pytest.approx(np.quantile(sound, 0.05), rel=0.02)
+    assert values["to"] == pytest.approx(np.quantile(sound, 0.95), rel=0.02)
+    assert (
+        "1 of 384 rows failed; the study allows 10 %."
+        in found["propagation"]["Rows that could not be computed"].text[0]
+    )
+    keys = set(re.findall(r'data-trace="(.*?)"', dossier(ds, "out.nc")))
+    assert {"outputs/y/mean", "status/ok", "outputs/y/thresholds/5.0/above"} <= keys
+    assert all(traced(ds, html.unescape(key)).equal for key in sorted(keys)[::5])
+
+
+def test_a_design_without_statistics_says_what_it_lacks(plain):
+    found = found_in(linear("morris", 8))
+    uncertainty = found["uncertainty"]["Estimate, standard uncertainty and coverage interval"]
+    assert not uncertainty.is_provided
+    assert found["sensitivities"]["Indices by morris"].is_provided
+    assert "Not provided" in plain(linear("morris", 8))
+
+
+def test_it_is_one_file_in_which_nothing_acts(uq, folder, no_other_figures):
+    ds = linear(samples=32).assign_attrs(title=HOSTILE, cpu=HOSTILE)
+    write_result(ds, folder / "out.nc")
+    ended = uq("report", "out.nc", "--dossier")
+    assert (ended.code, ended.out, ended.err) == (0, "out-dossier.html\n", "")
+    text = (folder / "out-dossier.html").read_text()
+    assert text == dossier(ds, "out.nc") and HOSTILE not in text
+    assert "://" not in text.replace("http://www.w3.org/2000/svg", "")
+    assert "default-src 'none'" in text
+    ids, links = re.findall(r' id="(.*?)"', text), re.findall(r'href="#(.*?)"', text)
+    assert set(links) <= set(ids) and len(ids) == len(set(ids))
+    refused = uq("report", "out.nc", "--dossier", "-o", "out.nc")
+    assert refused.code == 2 and "is the result itself" in refused.err

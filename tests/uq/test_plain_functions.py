@@ -1,0 +1,148 @@
+"""A plain function as a machine: what a study makes of it, and what goes wrong."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import uq as package
+from uq.contract import Status
+
+STUDY = """
+[study]
+name = "own"
+model = "wear"
+[design]
+method = "monte-carlo"
+samples = 100
+seed = 1
+[uncertain.load]
+distribution = "uniform"
+lower = 0.0
+upper = 2.0
+source = "assumed"
+"""
+
+WEAR = '''
+import math
+from typing import Annotated
+import uq
+
+@uq.machine
+def wear(load: Annotated[float, "N", (0.0, 10.0), "force on the pad"] = 1.0, depth: float = 3.0):
+    """Wear of a pad."""
+    if load > 1.9:
+        raise ValueError("too heavy")
+    life = math.inf if load < 0.1 else uq.censored(20.0) if load < 0.2 else depth / load
+    return {"life": life, "profile": [load, 2 * load]}
+'''
+
+_numbers = itertools.count()
+
+
+@pytest.fixture
+def write(folder):
+    """Return a function that writes a module of its own, and returns the name of its file."""
+
+    def write(text, study=STUDY):
+        name = f"own_machine_{next(_numbers)}.py"
+        (folder / name).write_text(text)
+        (folder / "own.toml").write_text(study)
+        return name
+
+    return write
+
+
+def test_a_function_becomes_a_machine_with_units_bounds_lives_and_arrays(uq, write):
+    file = write(WEAR)
+    assert uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet").err == ""
+    ds = package.open_result("own.nc")
+    load = ds["load"].values
+    assert "ValueError: too heavy" in ds["status"].attrs["example_raised"]
+    heavy = load > 1.9
+    assert (ds["status"].values == np.where(heavy, Status.RAISED, Status.OK)).all() and heavy.any()
+    known = ~heavy
+    expected = np.where(load < 0.1, np.inf, np.where(load < 0.2, 20.0, 3.0 / load))
+    assert (ds["life"].values[known] == expected[known]).all()
+    cut = (load >= 0.1) & (load < 0.2)
+    assert (ds["life_censored"].values[known] == cut[known]).all() and cut.any()
+    assert (ds["profile"].values[known] == np.stack([load, 2 * load], axis=1)[known]).all()
+    assert ds["load"].attrs["units"] == "N" and ds["load"].attrs["long_name"] == "force on the pad"
+
+
+def test_rows_are_equal_to_the_bit_in_processes_of_their_own(uq, write):
+    file = write(WEAR)
+    uq("run", "own.toml", "--model", file, "-o", "here.nc", "--quiet", "--workers", "0")
+    uq("run", "own.toml", "--model", file, "-o", "there.nc", "--quiet", "--workers", "2")
+    assert package.open_result("here.nc").equals(package.open_result("there.nc"))
+    assert "equal to the bit" in uq("verify", "there.nc", "--model", file).out
+
+
+def test_a_life_that_ends_in_all_rows_seen_is_named_when_one_does_not(uq, write):
+    study = STUDY.replace("samples = 100", "samples = 1000").replace("lower = 0.0", "lower = 0.2")
+    file = write(WEAR.replace("load < 0.1", "0.900 < load < 0.903"), study)
+    uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet")
+    ds = package.open_result("own.nc")
+    lost = ds["status"].values == Status.BAD_SHAPE
+    assert lost.any() and not lost[:64].any()
+    assert "returns={'life': uq.Returned(life=True)}" in ds["status"].attrs["example_bad_shape"]
+
+
+def test_what_is_declared_is_not_looked_for(uq, write):
+    text = WEAR.replace(
+        "@uq.machine", '@uq.machine(returns={"life": uq.Returned("s", life=True), "profile": "m"})'
+    )
+    ended = uq("check", "own.toml", "--model", write(text))
+    assert ended.code == 0
+    uq("run", "own.toml", "--model", write(text), "-o", "own.nc", "--quiet")
+    ds = package.open_result("own.nc")
+    assert ds["life"].attrs["units"] == "s"
+    said = ds["status"].attrs["example_bad_shape"]
+    assert "returned 'profile' with shape (2,), expected ()" in said
+
+
+def test_a_seed_is_that_of_the_row(uq, write):
+    file = write(
+        "import uq\n@uq.machine\n"
+        "def wear(seed, load: float = 1.0):\n    return {'y': load + seed % 7}\n"
+    )
+    uq("run", "own.toml", "--model", file, "-o", "own.nc", "--quiet")
+    noise = package.open_result("own.nc")
+    assert len(np.unique(np.round(noise["y"].values - noise["load"].values))) == 7
+    assert noise.attrs["random"] == 1
+
+
+MISTAKES = {
+    "x = 1\n": "has no model and no function under @uq.machine",
+    "def wear(load=1.0): return {}\n": "has no model and no function under @uq.machine",
+    "import uq\n@uq.machine\ndef a(x=1.0): ...\n@uq.machine\ndef b(x=1.0): ...\n": "name one, ",
+    "import uq\n@uq.machine\ndef wear(load): return {}\n": "its nominal value is needed",
+    "import uq\n@uq.machine\ndef wear(*load): return {}\n": "only named floats can be parameters",
+    "import uq\n@uq.machine\ndef wear(): return {}\n": "has no arguments",
+    "import uq\n@uq.machine\ndef wear(load=1.0): return load\n": "returned float, not a dict",
+    "import uq\n@uq.machine\ndef wear(load=1.0): return {'y': 'a'}\n": "returned 'y' as str",
+    "import uq\n@uq.machine\ndef wear(load=1.0): 1 / 0\n": "raised ZeroDivisionError",
+    "import os, uq\n@uq.machine\ndef wear(load=1.0): os._exit(3)\n": "killed its process",
+    "import uq\n@uq.machine(returns={'y': 3})\ndef wear(load=1.0): ...\n": "must be a unit or",
+    "import uq\n@uq.machine(returns={})\ndef wear(load=1.0): ...\n": "name at least one output",
+    "import uq\nuq.machine(\n": "SyntaxError",
+}
+
+
+@pytest.mark.parametrize("text", MISTAKES)
+def test_a_mistake_in_the_file_is_one_line(uq, write, text):
+    ended = uq("check", "own.toml", "--model", write(text))
+    assert (ended.code, ended.out) == (2, "")
+    assert ended.err.count("\n") == 1 and MISTAKES[text] in ended.err
+
+
+def test_a_file_that_is_not_there_or_has_the_name_of_another_module_is_one_line(uq, write, folder):
+    file = write(WEAR)
+    assert f"no such file; did you mean '{file}'?" in uq("models", file.replace("own", "owm")).err
+    (folder / "random.py").write_text(WEAR)
+    assert "rename the file" in uq("models", "random.py").err
+
+
+def test_a_study_names_no_code(uq, write):
+    file = write(WEAR, STUDY.replace('"wear"', '"own_machine.py"'))
+    assert file and "must consist of letters" in uq("check", "own.toml").err

@@ -1,0 +1,222 @@
+"""A plain function as a machine: its arguments are parameters, its dict are outputs."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_type_hints, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Floats, Model, Parameter, Status, censored_name
+from uq.errors import InputError
+from uq.outside.returned import Returned, WrongReturnError, checked, dimensions, read_returns
+
+SEED = "seed"
+"""The argument that gets the seed of its row."""
+
+_MARK = "_uq_machine"
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True)
+class Declared:
+    """What the decorator says of a function."""
+
+    returns: Mapping[str, Returned | str] | None = None
+    title: str = ""
+    version: str = "1"
+
+
+@overload
+def machine(function: F) -> F: ...
+@overload
+def machine(
+    *, returns: Mapping[str, Returned | str] | None = None, title: str = "", version: str = "1"
+) -> Callable[[F], F]: ...
+def machine(
+    function: Any = None,
+    *,
+    returns: Mapping[str, Returned | str] | None = None,
+    title: str = "",
+    version: str = "1",
+) -> Any:
+    """Make a plain function a machine that studies can run.
+
+    Parameters
+    ----------
+    function : callable
+        Its arguments are named floats, whose defaults are the nominal values; annotations
+        ``Annotated[float, "m", (0.0, 1.0), "a width"]`` add unit, bounds and meaning. An argument
+        ``seed`` gets the seed of the row. It returns a dict of numbers and arrays; a life that
+        never ends is ``inf``, one that is not followed to its end `uq.censored`.
+    returns : dict of str to str or Returned, optional
+        Output -> its unit, or more about it. Without it, the nominal row and the first 64 rows of a
+        study tell.
+    title : str
+        One line; by default the first line of the docstring.
+    version : str
+        To be changed whenever the same input may give different numbers for reasons that are not
+        in its source.
+
+    Returns
+    -------
+    callable
+        The function itself.
+
+    Examples
+    --------
+    >>> @uq.machine
+    ... def spring(stiffness: float = 2.0, force: float = 1.0):
+    ...     return {"deflection": force / stiffness}
+    """
+
+    def mark(function: F) -> F:
+        setattr(function, _MARK, Declared(returns, title, version))
+        return function
+
+    return mark if function is None else mark(function)
+
+
+def is_machine(found: object) -> bool:
+    """Whether something was declared by `machine`."""
+    return isinstance(getattr(found, _MARK, None), Declared)
+
+
+def model_of(function: Callable[..., Any], returned: Mapping[str, Returned] | None = None) -> Model:
+    """Return the model of a function under `machine`.
+
+    Parameters
+    ----------
+    function : callable
+    returned : dict of str to Returned, optional
+        What it returns, where it does not declare it. Without either, the model has no outputs.
+
+    Raises
+    ------
+    InputError
+        When its arguments or declarations cannot be used.
+    """
+    declared: Declared = getattr(function, _MARK)
+    plain = inspect.unwrap(getattr(function, "py_func", function))
+    name = plain.__name__
+    label = f"machine '{name}'"
+    parameters, wants_seed = _parameters(plain, label)
+    outputs = read_returns(label, declared.returns) or dict(returned or {})
+    title = declared.title or next(iter((plain.__doc__ or "").strip().splitlines()), name)
+    axes: dict[str, list[int]] = {}
+    for output, one in outputs.items():
+        axes |= dimensions(output, one.shape)
+    return Model(
+        name,
+        title,
+        declared.version,
+        parameters,
+        _NoSettings,
+        {output: one.output(output) for output, one in outputs.items()},
+        _Batch(function, parameters._fields, outputs, wants_seed),
+        coordinates=lambda settings: axes,
+        random=wants_seed,
+    )
+
+
+@dataclass(frozen=True)
+class _NoSettings:
+    """A function has no settings."""
+
+
+def _parameters(function: Callable[..., Any], label: str) -> tuple[Any, bool]:
+    """Return the class of its parameters, and whether it wants the seed."""
+    faults, fields, nominal = [], [], {}
+    try:
+        hints = get_type_hints(function, include_extras=True)
+    except NameError as error:
+        raise InputError(f"{label}: annotations: {error}") from None
+    signature = inspect.signature(function)
+    for name, argument in signature.parameters.items():
+        if name == SEED:
+            continue
+        if argument.kind not in (argument.POSITIONAL_OR_KEYWORD, argument.KEYWORD_ONLY):
+            faults.append(f"{label}: argument '{argument}': only named floats can be parameters")
+            continue
+        if not isinstance(argument.default, int | float):
+            was = "no default" if argument.default is argument.empty else f"{argument.default!r}"
+            faults.append(f"{label}: argument '{name}' has {was}; its nominal value is needed")
+            continue
+        nominal[name] = float(argument.default)
+        try:
+            parameter = _parameter(name, hints.get(name, float))
+        except InputError as error:
+            faults += [f"{label}: argument '{name}': {error}"]
+            continue
+        fields.append((name, Annotated[float, parameter]))
+    if not fields and not faults:
+        faults.append(f"{label}: has no arguments, so nothing to study")
+    if faults:
+        raise InputError(*faults)
+    made: Any = NamedTuple("Parameters", fields)  # type: ignore[misc]
+    made._field_defaults.update(nominal)
+    return made, SEED in signature.parameters
+
+
+def _parameter(name: str, hint: Any) -> Parameter:
+    unit, bounds, meaning = "1", (-inf, inf), name.replace("_", " ")
+    words = iter(("unit", "meaning"))
+    for extra in get_args(hint)[1:] if hint is not float else ():
+        if isinstance(extra, Parameter):
+            return extra
+        if isinstance(extra, tuple) and len(extra) == 2:
+            bounds = (float(extra[0]), float(extra[1]))
+        elif isinstance(extra, str):
+            if next(words, "") == "unit":
+                unit = extra
+            else:
+                meaning = extra
+        else:
+            raise InputError(
+                f"annotation {extra!r}: a unit, a pair of bounds or a meaning is expected"
+            )
+    return Parameter(name, unit, meaning, bounds, "assumed: the default of the function")
+
+
+@dataclass(frozen=True)
+class _Batch:
+    """The batch of a function: its rows one after the other, each with its own end."""
+
+    function: Callable[..., Any]
+    names: tuple[str, ...]
+    returned: Mapping[str, Returned]
+    wants_seed: bool
+
+    def __call__(
+        self, x: Floats, seed: NDArray[np.uint64], settings: object
+    ) -> tuple[dict[str, NDArray[Any]], NDArray[np.int8], dict[int, str]]:
+        n = len(x)
+        columns: dict[str, NDArray[Any]] = {}
+        for name, one in self.returned.items():
+            columns[name] = np.full((n, *one.shape), np.nan)
+            if one.life:
+                columns[censored_name(name)] = np.zeros((n, *one.shape), dtype=bool)
+        status, messages = np.zeros(n, np.int8), dict[int, str]()
+        for i, row in enumerate(x.tolist()):
+            try:
+                for name, numbers, cut in checked(self.row(row, int(seed[i])), self.returned):
+                    columns[name][i] = numbers
+                    if self.returned[name].life:
+                        columns[censored_name(name)][i] = cut
+            except WrongReturnError as error:
+                status[i], messages[i] = Status.BAD_SHAPE, str(error)
+            except Exception as error:
+                text = " ".join(str(error).split())
+                status[i] = Status.RAISED
+                messages[i] = f"{type(error).__name__}: {text}" if text else repr(error)
+        return columns, status, messages
+
+    def row(self, row: list[float], seed: int) -> Any:
+        """Return what the function returns on a row."""
+        given: dict[str, Any] = dict(zip(self.names, row, strict=True))
+        if self.wants_seed:
+            given[SEED] = seed
+        return self.function(**given)

@@ -1,0 +1,189 @@
+"""What a function returns: numbers, arrays and lives, declared or found from rows."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uq.contract import Output
+from uq.errors import InputError
+
+
+@dataclass(frozen=True)
+class Censored:
+    """A life of which only a lower bound is known; see `censored`."""
+
+    time: float
+
+
+def censored(time: float) -> Censored:
+    """Return a life that had not ended by a time, for a machine to return.
+
+    Parameters
+    ----------
+    time : float
+        How long it is known to last at least.
+
+    Examples
+    --------
+    >>> @uq.machine(returns={"life": uq.Returned("s", life=True)})
+    ... def machine(rate: float = 1e-9, depth: float = 2.5e-4):
+    ...     return {"life": depth / rate if rate > 1e-12 else uq.censored(1e9)}
+    """
+    return Censored(float(time))
+
+
+@dataclass(frozen=True)
+class Returned:
+    """One thing that a machine returns.
+
+    Attributes
+    ----------
+    unit : str
+        CF unit string, ``"1"`` for a pure number.
+    meaning : str
+    life : bool
+        Whether it is a life: ``inf`` where it never ends, `censored` where only a bound is known.
+    shape : tuple of int
+        Of an array; () for a number.
+    may_be_undefined : bool
+        Whether NaN is legitimate.
+    """
+
+    unit: str = "1"
+    meaning: str = ""
+    life: bool = False
+    shape: tuple[int, ...] = ()
+    may_be_undefined: bool = False
+
+    def output(self, name: str) -> Output:
+        """Return its declaration under a name."""
+        return Output(
+            self.unit,
+            self.meaning or name.replace("_", " "),
+            "lifetime" if self.life else "value",
+            tuple(dimensions(name, self.shape)),
+            may_be_undefined=self.may_be_undefined,
+        )
+
+
+def dimensions(name: str, shape: Sequence[int]) -> dict[str, list[int]]:
+    """Return the dimensions of an array, with their coordinates, counted from 0."""
+    one = len(shape) == 1
+    return {f"{name}_{'index' if one else i}": list(range(n)) for i, n in enumerate(shape)}
+
+
+def read_returns(label: str, returns: Mapping[str, Returned | str] | None) -> dict[str, Returned]:
+    """Return what a machine declares that it returns, units as strings.
+
+    Raises
+    ------
+    InputError
+    """
+    if returns is None:
+        return {}
+    wrong = [
+        f"{label}: returns: {name!r} must be a unit or a uq.Returned, not {one!r}"
+        for name, one in returns.items()
+        if not (isinstance(one, str | Returned) and isinstance(name, str) and name.isidentifier())
+    ]
+    if wrong or not returns:
+        raise InputError(*(wrong or [f"{label}: returns: name at least one output"]))
+    return {n: Returned(one) if isinstance(one, str) else one for n, one in returns.items()}
+
+
+class WrongReturnError(Exception):
+    """A value that a machine must not return, in a sentence."""
+
+
+def numbers_of(value: Any, name: str) -> NDArray[np.float64]:
+    """Return a value as an array of floats.
+
+    Raises
+    ------
+    WrongReturnError
+    """
+    if isinstance(value, Censored):
+        value = value.time
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "fiub":
+            raise TypeError
+        return array.astype(float)
+    except (TypeError, ValueError):
+        kind = type(value).__name__
+        raise WrongReturnError(f"returned '{name}' as {kind}, not as a number or array") from None
+
+
+def seen_in(row: Any) -> dict[str, Returned]:
+    """Return what a row shows: names, shapes, and lives that are ``inf`` or `censored`.
+
+    Raises
+    ------
+    WrongReturnError
+        When it is not a dict of numbers.
+    """
+    if not isinstance(row, Mapping):
+        raise WrongReturnError(f"returned {type(row).__name__}, not a dict")
+    found = {}
+    for name, value in row.items():
+        if not (isinstance(name, str) and name.isidentifier()):
+            raise WrongReturnError(f"returned {name!r}, which cannot be the name of an output")
+        numbers = numbers_of(value, name)
+        life = isinstance(value, Censored) or bool(np.isposinf(numbers).any())
+        found[name] = Returned(life=life, shape=numbers.shape)
+    return found
+
+
+def joined(rows: Sequence[Mapping[str, Returned]]) -> dict[str, Returned]:
+    """Return what rows show together: names and shapes of the first, lives of any."""
+    return {
+        name: replace(first, life=any(name in row and row[name].life for row in rows))
+        for name, first in rows[0].items()
+    }
+
+
+def as_plain(returned: Mapping[str, Returned]) -> dict[str, dict[str, Any]]:
+    """Return declarations as plain data, for `from_plain`."""
+    return {name: asdict(one) for name, one in returned.items()}
+
+
+def from_plain(data: Mapping[str, Mapping[str, Any]]) -> dict[str, Returned]:
+    """Return what `as_plain` was given."""
+    return {
+        name: Returned(**{**entry, "shape": tuple(entry["shape"])}) for name, entry in data.items()
+    }
+
+
+def checked(
+    returned: Any, expected: Mapping[str, Returned]
+) -> Iterator[tuple[str, NDArray[np.float64], bool]]:
+    """Yield name, numbers and whether it is censored, of each output of a row.
+
+    Raises
+    ------
+    WrongReturnError
+        When the row returns anything else than `expected`.
+    """
+    if not isinstance(returned, Mapping):
+        raise WrongReturnError(f"returned {type(returned).__name__}, not a dict")
+    for name in expected:
+        if name not in returned:
+            raise WrongReturnError(f"returned no '{name}'")
+    for name in returned:
+        if name not in expected:
+            raise WrongReturnError(f"returned '{name}', which 'returns' does not name")
+    for name, one in expected.items():
+        numbers = numbers_of(returned[name], name)
+        if numbers.shape != one.shape:
+            shape = f"shape {numbers.shape}, expected {one.shape}"
+            raise WrongReturnError(f"returned '{name}' with {shape}")
+        is_censored = isinstance(returned[name], Censored)
+        if not one.life and (is_censored or bool(np.isposinf(numbers).any())):
+            raise WrongReturnError(
+                f"returned '{name}' as a life that has not ended; declare it in the decorator:"
+                f" returns={{'{name}': uq.Returned(life=True)}}"
+            )
+        yield name, numbers, is_censored

@@ -1,0 +1,42 @@
+"""A process that runs a few rows of a function to see what it returns: ``... HANDLE``."""
+
+import sys
+from multiprocessing.connection import Connection
+from typing import Any
+
+from uq.errors import InputError
+from uq.outside.returned import WrongReturnError, as_plain, seen_in
+from uq.running.child import end_with_parent
+from uq.study.registry import find_model
+
+RETURNED, RAISED, REFUSED = "returned", "raised", "refused"
+"""What a row did, with what it returned as plain data, or with a sentence."""
+
+
+def main(handle: str) -> None:
+    """Run rows as they come, each with its seed, until the connection closes."""
+    end_with_parent()
+    connection = Connection(int(handle))
+    reference = connection.recv()
+    try:
+        batch: Any = find_model(reference).batch
+    except InputError as error:
+        connection.send((REFUSED, error))
+        return
+    while True:
+        row, seed = connection.recv()
+        try:
+            answer: tuple[str, Any] = RETURNED, as_plain(seen_in(batch.row(row, seed)))
+        except WrongReturnError as error:
+            answer = RAISED, str(error)
+        except Exception as error:
+            text = " ".join(str(error).split())
+            answer = RAISED, f"raised {type(error).__name__}: {text}"
+        connection.send(answer)
+
+
+if __name__ == "__main__":
+    try:
+        main(sys.argv[1])
+    except (EOFError, OSError):  # the connection closed: no answer is wanted
+        sys.exit(0)
