@@ -1,9 +1,10 @@
 """What commands take before and beside their arithmetic: ``python -m benchmarks.startup``.
 
-CPU time, user and system, of complete commands in fresh processes with everything compiled: the
-median of five, each beside the import of numba and xarray.
+CPU time, user and system, of complete commands in fresh processes with everything compiled, the
+sources of Python too: the median of five, each beside the import of numba and xarray.
 """
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -55,6 +56,7 @@ def commands(folder: Path) -> dict[str, tuple[str, ...]]:
 
 
 def main() -> None:
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # as where users work
     with tempfile.TemporaryDirectory() as folder:
         rivals = commands(Path(folder))
         taken: dict[str, list[float]] = {name: [] for name in rivals}

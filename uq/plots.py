@@ -43,7 +43,12 @@ FIGURES: dict[str, Entry] = {
     "quantiles": Entry(
         quantile_table, of.outputs, "Quantiles of {name}", section="", needs=("summary",)
     ),
-    "scatter": Entry(scatter, of.outputs, "{name} against its most influential inputs"),
+    "scatter": Entry(
+        scatter,
+        of.outputs,
+        "{name} against its most influential inputs",
+        applies=(of.has_plain_rows,),
+    ),
     "convergence": Entry(
         convergence,
         of.outputs,
@@ -57,7 +62,7 @@ FIGURES: dict[str, Entry] = {
         of.the_result,
         "Rows by regime, against the inputs that best separate the regimes",
         section="rows",
-        applies=(of.in_regimes, of.has_several_inputs),
+        applies=(of.in_regimes, of.has_several_inputs, of.has_plain_rows),
     ),
     "events": Entry(
         event_probability,

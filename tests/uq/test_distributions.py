@@ -137,3 +137,28 @@ def test_arguments_that_make_no_law_are_refused(name, arguments):
 
 def test_the_ends_of_a_triangle_may_carry_its_mode():
     assert law("triangular", lower=1.0, mode=1.0, upper=4.0).frozen().mean() == pytest.approx(2.0)
+
+
+ELEMENTARY = {
+    "uniform": [{"lower": -2.0, "upper": 5.0}, {"lower": 1e-9, "upper": 3e-9}],
+    "loguniform": [{"lower": 0.3, "upper": 7.7}, {"lower": 1e-17, "upper": 4e-12}],
+    "normal": [{"mean": 3.1, "sd": 0.7}, {"mean": -1e-12, "sd": 3e-13}],
+    "lognormal": [{"median": 2.5e-10, "sigma": 0.5}, {"mean": 13750.0, "cv": 0.15}],
+}
+
+
+@pytest.mark.parametrize(("name", "arguments"), [(n, a) for n in ELEMENTARY for a in ELEMENTARY[n]])
+def test_the_common_laws_have_the_bits_of_scipy(name, arguments):
+    one = law(name, **arguments)
+    found, expected = one.functions(), one.frozen()
+    rng = np.random.default_rng(5)
+    u = np.concatenate([[2.0**-54, 1 - 2.0**-53], rng.uniform(size=3000)])
+    u = np.concatenate([u, np.exp2(-rng.uniform(1, 1000, 500))])
+    values = expected.ppf(u)
+    outside = [-np.inf, -1e9, -1.0, 0.0, 1e9, np.inf]
+    x = np.concatenate([values, outside, np.nextafter(values[:2], np.inf)])
+    with np.errstate(all="ignore"):
+        for method, at in (("ppf", u), ("isf", u), ("cdf", x), ("sf", x), ("logpdf", x)):
+            own, known = getattr(found, method), getattr(expected, method)
+            assert np.array_equal(own(at), known(at), equal_nan=True), method
+            assert own(at[7]) == known(at[7]), method

@@ -3,6 +3,7 @@
 import base64
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ from computed import kinds, linear, with_output
 from explored import cells
 
 from uq.analysis.findings import Findings
+from uq.analysis.life_quantiles import ended_by, life_quantiles, quantile_estimate
 from uq.intervals import share_interval
 from uq.report.embedded import MOST_ROWS, rows_inside
-from uq.rows.elements import replicates_of
+from uq.rows.elements import elements_of, replicates_of
 
 ASKED = {"thresholds": {"y": 6.0}}
 
@@ -73,6 +75,11 @@ def test_a_brush_gives_what_python_finds_for_its_rows(shown, design):
     assert among == pytest.approx(expected, rel=1e-9, nan_ok=True)
     assert everywhere == pytest.approx((hits.mean(), *share_interval(hits, part)), nan_ok=True)
     assert np.isnan(among[1]) == (design == "one replicate")
+    element = next(elements_of(ds, ["y"]))
+    for rows, found in zip((chosen, hits | True), cells(browser)["quantile/0.1"], strict=True):
+        some = replace(element, values=element.values[rows], censored=element.censored[rows])
+        expected = quantile_estimate(some, 0.1, None if part is None else part[rows])
+        assert found == pytest.approx(expected.numbers, rel=1e-9, nan_ok=True)
     said = browser.value("document.querySelector('.said').textContent")
     assert said.startswith(f"{chosen.sum()} of {len(x4)} rows, chosen after the fact")
 
@@ -110,6 +117,19 @@ def test_lives_that_never_end_or_are_censored_lie_beyond_the_brush(shown):
     (low, high) = ranges(browser)[1]
     ended = known & ~censored & (life >= low) & (life <= high)
     assert ended.sum() == browser.value(count)
+
+
+def test_censored_lives_have_the_numbers_of_python(shown):
+    ds = kinds(samples=400, analysis={"thresholds": {"life": [1.4, 9.0]}})
+    found = cells(shown(ds))
+    first = next(elements_of(ds, ["life"]))
+    for time in (1.4, 9.0):
+        assert first.unknown_sides(time).any()
+        (here,) = found[f"{first.name}/{time:g}"]
+        assert here == pytest.approx(ended_by(first, time, None)[1].numbers, nan_ok=True)
+    for name, one in life_quantiles(first, {"0.1": 0.1, "0.5": 0.5}, None).items():
+        (here,) = found[f"quantile/{name}"]
+        assert here == pytest.approx(one.numbers, nan_ok=True)
 
 
 def test_chips_leave_out_a_regime(shown):

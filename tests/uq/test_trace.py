@@ -91,10 +91,31 @@ def test_options_are_part_of_a_key():
     check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
 
 
+def keys_in(text):
+    """Return the keys that a page shows; a sentence may have several."""
+    found = re.findall(r'data-trace="(.*?)"', text, re.DOTALL)
+    return [key for several in found for key in html.unescape(several).split("\n")]
+
+
+def test_the_numbers_of_each_sentence_lead_to_themselves():
+    ds = kinds(samples=400, analysis=ASKED)
+    found = api.answer(ds)
+    text = found._repr_html_()
+    keys = keys_in(text)
+    assert {f"answer/quantities/{found.lead.name}/{part}" for part in ("promise", "range")} < {
+        *keys
+    }
+    assert any("/share" in key for key in keys) and any("/contributions/" in key for key in keys)
+    for key in keys:
+        assert traced(ds, key).equal, key
+    rest = re.sub(r"<span data-trace=.*?</span>|<style>.*?</style>", "", text, flags=re.DOTALL)
+    assert " %" in text and " %" not in rest
+
+
 def test_every_number_of_a_report_leads_to_itself(no_other_figures):
     ds = crossed()
     text = page(ds, "out.nc")
-    keys = [html.unescape(key) for key in re.findall(r'data-trace="(.*?)"', text)]
+    keys = keys_in(text)
     assert len(keys) == len(set(keys)) > 15
     for key in keys:
         assert traced(ds, key).equal, key
@@ -149,6 +170,14 @@ def test_names_with_a_slash_have_keys_of_their_own():
     assert found.equal and found.numbers["value"] == linear()["y"].values.mean()
     with pytest.raises(InputError, match="no such key 'outputs/a/b/mean'; did you mean"):
         traced(ds, "outputs/a/b/mean")
+
+
+def test_a_key_as_long_as_a_book_is_refused_in_a_line():
+    for key in ("outputs/" + "a" * 9999, "sensitivity[a=" + "b" * 9999 + "]/x", "outputs/\ny/\n"):
+        with pytest.raises(InputError) as refusal:
+            traced(linear(), key)
+        assert len(str(refusal.value)) < 600 and "\n" not in str(refusal.value)
+    assert traced(linear(), "  outputs/y/mean\n").equal  # as copied
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from uq.analysis.life_fit import Fit
 from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import EMPTY, JSON_ORDER
 from uq.analysis.summary import Described, Summary, regime_json
+from uq.population.smoothing import Smoothed
 
 if TYPE_CHECKING:
     from uq.analysis.converging import Converging
@@ -32,9 +33,10 @@ def summary_json(summary: Summary) -> dict[str, Any]:
         A number that does not exist or is not finite is None; beside it ``never``,
         ``low_censored`` and the like state why. Where rows failed, ``failed_low`` and
         ``failed_high`` bound an estimate (`uq.analysis.failed_rows`). ``fits``, if asked for: the
-        laws fitted to a lifetime.
+        laws fitted to a lifetime. Where inspections have weighted the rows: ``effective_rows`` and
+        ``pareto_k``.
     """
-    return {
+    return quality_json(summary.weights) | {
         "samples": summary.samples,
         "rows_used": summary.rows_used,
         "status": summary.status,
@@ -42,6 +44,13 @@ def summary_json(summary: Summary) -> dict[str, Any]:
         "outputs": {name: _described(one) for name, one in summary.outputs.items()},
         "notes": summary.notes,
     }
+
+
+def quality_json(weights: Smoothed | None) -> dict[str, Any]:
+    """Return how many rows of equal weight rows are worth, and the shape of their weights."""
+    if weights is None:
+        return {}
+    return {"effective_rows": weights.effective, "pareto_k": json_form.number(weights.k)}
 
 
 def _described(one: Described) -> dict[str, Any]:

@@ -12,7 +12,8 @@ from uq.estimate import Estimate
 from uq.intervals import Replicates, replicates_of_some
 from uq.population import worlds
 from uq.population.fleets import Units
-from uq.population.functionals import first_step, root
+from uq.population.functionals import first_step
+from uq.roots import root
 
 LOW, HIGH = 0.05, 0.95
 """Of worlds, at the ends of a band."""

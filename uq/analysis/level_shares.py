@@ -35,6 +35,7 @@ from uq.rows.nesting import (
     size_in_words,
 )
 from uq.rows.variables import error_name
+from uq.rows.weights import refuse_weights
 from uq.tails import lacks_variance
 
 SOLVER = "solver"
@@ -152,6 +153,7 @@ def by_level(ds: xr.Dataset, output: str | None = None, *, plain: bool = False) 
     InputError
         When the rows do not follow the laws of the inputs, or there is no such output.
     """
+    refuse_weights(ds, "shares of levels")
     if why := why_no_statistics(ds):
         raise InputError(f"no shares: the rows of a '{ds.attrs['design']}' design {why}")
     rows = independent_rows(ds)

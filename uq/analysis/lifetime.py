@@ -90,7 +90,7 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
     coords = places if dims else chosen[0].place
     axis = ("time", time, {"long_name": "time", "units": "s"})
     attrs = {"output": output, "long_name": of.attrs["long_name"]}
-    attrs["band"] = BAND if replicate is None else NO_BAND
+    attrs["band"] = _why_no_band(chosen[0], replicate) or BAND
     if chosen[0].law is not None:
         attrs["integrated"] = " ".join(chosen[0].law.inputs)
     return xr.Dataset(data, {**coords, "time": axis}, attrs)
@@ -101,6 +101,14 @@ BAND = (
     " Wellner's, which ends where fewer than 10 rows are at risk"
 )
 NO_BAND = "none: a simultaneous band needs independent rows"
+NO_WEIGHTED_BAND = "none: a simultaneous band needs rows of equal weight"
+
+
+def _why_no_band(element: Element, replicate: Replicates) -> str:
+    if element.weights is not None:
+        return NO_WEIGHTED_BAND
+    return "" if replicate is None else NO_BAND
+
 
 _MEANINGS = {
     "survival": "probability of a longer life",
@@ -143,9 +151,12 @@ def _variables(
     """Return every variable of `survival` for one element, named and ordered as there."""
     plain = curve(element, time, replicate)
     band_low, band_high = _band(element.plain, time, replicate)
-    rows = int(element.present.sum())
+    kept = element.present
+    rows = int(kept.sum())
+    worth = None if element.weights is None else element.weights[kept]
+    never = np.average(element.never[kept], weights=worth) if rows else np.nan
     found = plain._asdict() | {"band_low": band_low, "band_high": band_high}
-    found |= {"never": element.never.sum() / rows if rows else np.nan, "rows": rows}
+    found |= {"never": never, "rows": rows}
     found |= {name: getattr(element, name).sum() for name in ("censored", "undefined", "failed")}
     if with_failed:
         for end, life in (("low", 0.0), ("high", np.inf)):
@@ -185,7 +196,7 @@ def curve(element: Element, time: Floats, replicate: Replicates) -> Curve:
 def _band(element: Element, time: Floats, replicate: Replicates) -> Ends:
     """Return the simultaneous 95 % band of `survival` for one element; NaN for replicates."""
     values, censored = element.at_least, element.censored[element.present]
-    if len(values) == 0 or replicate is not None:
+    if len(values) == 0 or _why_no_band(element, replicate):
         return np.full(len(time), np.nan), np.full(len(time), np.nan)
     found = outliving(values, censored, time, known_at_once=element.declared.never_known_at_once)
     among = found.among or found

@@ -24,6 +24,7 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.nesting import one_of_each_sample
+from uq.rows.weights import refuse_weights
 
 PROBABILITIES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
@@ -56,6 +57,7 @@ def regimes(ds: xr.Dataset) -> xr.Dataset:
     """
     if "regime" not in ds:
         raise InputError("this result has no regimes to compare")
+    refuse_weights(ds, "a comparison of regimes")
     rows = independent_rows(ds)
     shares = {name: one for name, one in regime_shares(rows).items() if one.facts["count"]}
     codes = {name: code for code, name in flags(rows["regime"]) if name in shares}

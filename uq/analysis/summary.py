@@ -20,7 +20,7 @@ from uq.intervals import replicates_of_some, share_interval
 from uq.population.means import weighted_share
 from uq.population.reweighting import Weighting
 from uq.population.scaling import population
-from uq.population.smoothing import Smoothed
+from uq.population.smoothing import Smoothed, weights_of
 from uq.rows import stopping
 from uq.rows.elements import (
     Element,
@@ -37,6 +37,7 @@ from uq.rows.elements import (
 )
 from uq.rows.in_regime import within_regime
 from uq.rows.nesting import is_nested, nesting_of, size_in_words
+from uq.rows.weights import has_weights, refuse_weights
 from uq.study.file import AnalysisTable
 
 NO_INTERVALS = (
@@ -120,6 +121,8 @@ class Summary:
         The largest number of rows that lack an element because they failed.
     notes : list of str
         Sentences on what could not be estimated.
+    weights : Smoothed, optional
+        Of the rows, where inspections have weighted them.
     """
 
     samples: int
@@ -129,6 +132,7 @@ class Summary:
     outputs: Mapping[str, Described]
     most_failed: int
     notes: list[str]
+    weights: Smoothed | None = None
 
 
 def summarise(
@@ -162,11 +166,13 @@ def summarise(
     Summary
     """
     analysis = analysis or analysis_of(ds)
+    if fits:
+        refuse_weights(ds, "laws fitted to lives")
     notes = _notes(ds)
     if regime is not None:
         ds = within_regime(ds, regime)
     rows = independent_rows(ds)
-    of_all = None if weighting is None else weighting.all_inputs
+    of_all = weights_of(rows) if weighting is None else weighting.all_inputs
     context = Context(rows, analysis, replicates_of(rows), of_all)
     outputs, most = dict[str, Described](), 0
     plain = plain or regime is not None  # within a regime, inputs have another law
@@ -185,6 +191,7 @@ def summarise(
         outputs=outputs,
         most_failed=most,
         notes=notes,
+        weights=of_all if weighting is None else None,
     )
 
 
@@ -234,7 +241,7 @@ def _notes(ds: xr.Dataset) -> list[str]:
         return [NO_STATISTICS.format(design=ds.attrs["design"], why=why)]
     design = study_file_of(ds).design
     notes = []
-    if design.until is not None:
+    if design.until is not None and not has_weights(ds):
         notes.append(stopping.sentence(design, ds))
     if is_nested(ds):
         place = nesting_of(ds)

@@ -26,6 +26,7 @@ VERBS = (
     results.convergence,
     results.compare,
     results.what_if,
+    results.update,
     results.twin,
     results.trace,
     studies.rare_event,

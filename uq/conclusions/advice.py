@@ -12,12 +12,13 @@ from uq.conclusions.tightening import changes_of, tightened
 from uq.conclusions.words import called_together, rows_in_words
 from uq.rows.elements import analysis_of
 from uq.rows.results import failed
+from uq.rows.weights import has_weights
 
 
 def advise(
     findings: Findings, answered: Sequence[Quantity], weighed: bool = True
 ) -> Iterator[Advice]:
-    """Yield what to do, the most urgent first.
+    """Yield what to do, the most urgent first; nothing where inspections have weighted the rows.
 
     Parameters
     ----------
@@ -28,6 +29,8 @@ def advise(
         Whether the rows are weighed to say what a tighter tolerance would change; otherwise a
         command says it.
     """
+    if has_weights(findings.ds):
+        return
     tighten = _tighten if weighed else _ask
     found = [
         *_mend(findings),

@@ -149,6 +149,8 @@ class Tightened:
     reason : str
         Why the rows cannot show it, or "".
     effective_rows : float
+    key : str
+        Of `after`, for ``uq trace``; "" where it is not known.
     """
 
     inputs: tuple[str, ...]
@@ -159,6 +161,7 @@ class Tightened:
     unit: Unit = field(default_factory=Unit)
     reason: str = ""
     effective_rows: float = float("nan")
+    key: str = ""
 
     @property
     def is_seen(self) -> bool:
@@ -258,12 +261,12 @@ class Answer:
         return f"{', '.join(shares)}." if shares else ""
 
     @property
-    def regime_lines(self) -> list[str]:
-        """The shares of the main regimes, and what decides them; that of the first is the rest."""
+    def told_regimes(self) -> list[tuple[Event, bool]]:
+        """The main regimes, and whether to say what decides each; the first is the rest."""
         found = []
         for place, one in enumerate(self.main_regimes):
             known = one.ranking is not None and one.ranking.leader is not None
-            found.append(one.with_cause if known and place else one.sentence)
+            found.append((one, known and place > 0))
         return found
 
     @property

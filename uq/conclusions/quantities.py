@@ -25,6 +25,7 @@ from uq.indices.chosen import chosen
 from uq.indices.independent_inputs import independent_inputs
 from uq.indices.targets import lightened, number_of, split_name
 from uq.methods.registry import METHODS
+from uq.population.smoothing import weights_of
 from uq.rows.elements import (
     Element,
     analysis_of,
@@ -35,6 +36,7 @@ from uq.rows.elements import (
 )
 from uq.rows.nesting import is_nested
 from uq.rows.variables import outputs_of
+from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
 from uq.wording import threshold
 
@@ -69,7 +71,8 @@ def quantities(findings: Findings, only: str | None = None) -> list[Quantity]:
         shown_outputs(ds, asked),
         key=lambda name: (name not in asked.thresholds, not declared[name].is_lifetime),
     )
-    context = Context(findings.rows, wanted, replicates_of(findings.rows))
+    part = replicates_of(findings.rows)
+    context = Context(findings.rows, wanted, part, weights_of(findings.rows))
     return [
         _quantity(findings, summary, context, one)
         for one in elements_of(findings.rows, names)  # one at a time in memory
@@ -190,6 +193,8 @@ def _why_no_bound(ds: xr.Dataset, both: list[Statistic | None], bounds: list[flo
         return f"it needs {needed} rows"
     if any(not isnan(one) for one in bounds):
         return "too few lives end"
+    if has_weights(ds):
+        return "inspections have weighted the rows"
     if is_nested(ds):
         return "the rows of one sample are not independent"
     return f"the rows of a '{ds.attrs['design']}' design are not independent"

@@ -15,6 +15,7 @@ from uq.rows.one_row import Row
 from uq.rows.results import open_result
 from uq.rows.row_choice import Choice, lowest_row, near_quantile_row
 from uq.rows.stored_row import place_of, stored_row
+from uq.rows.weights import refuse_weights
 from uq.running.again import computed_again, differing, other_versions, settings_by_row, study_here
 
 PLACES = ("world", "unit", "repeat", "replicate", "group", "block")
@@ -134,6 +135,7 @@ def row_again(
     """Find a row of a result and compute it again; see `row`."""
     if sum(given is not None for given in (number, lowest, near_quantile)) != 1:
         raise InputError("give one of: the number of a row, --lowest, --near-quantile")
+    refuse_weights(ds, "a row computed again")
     choice = None
     if lowest is not None:
         choice = lowest_row(ds, lowest)

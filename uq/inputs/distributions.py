@@ -1,6 +1,7 @@
 """The laws of an uncertain parameter: names and arguments; scipy.stats does the rest.
 
-Each law is a small frozen table, as in a study file, with its `scipy.stats` counterpart.
+Each law is a small frozen table, as in a study file, with its `scipy.stats` counterpart. The most
+common ones are computed without it (`uq.inputs.elementary`).
 `uq.inputs.observed` has the laws of listed values, `uq.inputs.registry` all laws.
 """
 
@@ -10,6 +11,7 @@ from typing import Any, Literal
 import scipy  # which imports scipy.stats when it is first used
 from pydantic import ConfigDict, Field
 
+from uq.inputs.elementary import LogNormalLaw, LogUniformLaw, NormalLaw, UniformLaw
 from uq.inputs.law import Law, Positive
 
 
@@ -25,6 +27,9 @@ class Uniform(Law):
     def frozen(self) -> Any:
         return scipy.stats.uniform(loc=self.lower, scale=self.upper - self.lower)
 
+    def functions(self) -> Any:
+        return UniformLaw(self.lower, self.upper - self.lower)
+
 
 class LogUniform(Law):
     """Uniform in the logarithm between two positive ends."""
@@ -38,6 +43,9 @@ class LogUniform(Law):
     def frozen(self) -> Any:
         return scipy.stats.loguniform(a=self.lower, b=self.upper)
 
+    def functions(self) -> Any:
+        return LogUniformLaw(self.lower, self.upper)
+
 
 class Normal(Law):
     """Normal law of a mean and a standard deviation."""
@@ -48,6 +56,9 @@ class Normal(Law):
 
     def frozen(self) -> Any:
         return scipy.stats.norm(loc=self.mean, scale=self.sd)
+
+    def functions(self) -> Any:
+        return NormalLaw(self.mean, self.sd)
 
 
 class TruncatedNormal(Law):
@@ -72,7 +83,7 @@ class TruncatedNormal(Law):
     def parent(self) -> tuple[Any, float, float]:
         """Return the normal law before truncation, and the ends of the truncation."""
         lower, upper = self.truncate or (self.lower, self.upper)
-        return scipy.stats.norm(self.mean, self.sd), max(lower, self.lower), min(upper, self.upper)
+        return NormalLaw(self.mean, self.sd), max(lower, self.lower), min(upper, self.upper)
 
 
 class LogNormal(Law):
@@ -93,11 +104,18 @@ class LogNormal(Law):
     sigma: Positive | None = Field(None, description="standard deviation of the logarithm")
 
     def frozen(self) -> Any:
+        median, sigma = self._median_and_sigma()
+        return scipy.stats.lognorm(s=sigma, scale=median)
+
+    def functions(self) -> Any:
+        return LogNormalLaw(*self._median_and_sigma())
+
+    def _median_and_sigma(self) -> tuple[float, float]:
         if self.mean is not None and self.cv is not None:
             variance = log1p(self.cv * self.cv)
-            return scipy.stats.lognorm(s=sqrt(variance), scale=exp(log(self.mean) - variance / 2))
+            return exp(log(self.mean) - variance / 2), sqrt(variance)
         assert self.median is not None and self.sigma is not None
-        return scipy.stats.lognorm(s=self.sigma, scale=self.median)
+        return self.median, self.sigma
 
 
 class Triangular(Law):

@@ -52,13 +52,17 @@ class Law(BaseModel):
     def frozen(self) -> Any:
         """Return the law, before `truncate`, as a frozen `scipy.stats` distribution."""
 
+    def functions(self) -> Any:
+        """Return the law, before `truncate`, with its `cdf`, `sf`, `ppf`, `isf` and `logpdf`."""
+        return self.frozen()
+
     def parent(self) -> tuple[Any, float, float]:
-        """Return the frozen law before any truncation, and the ends of the truncation.
+        """Return the functions of the law before any truncation, and the ends of the truncation.
 
         Quantiles of a truncated law are best computed from those of its parent: that is faster,
         and accurate in both tails.
         """
-        return (self.frozen(), *(self.truncate or (-inf, inf)))
+        return (self.functions(), *(self.truncate or (-inf, inf)))
 
     def kinks(self) -> tuple[float, ...]:
         """Return the places, ends apart, where the density is not smooth."""

@@ -10,6 +10,7 @@ from uq.contract import Floats, Mask
 from uq.estimate import Estimate
 from uq.intervals import ROUNDING, Replicates, is_constant, replicates_of_some
 from uq.population.means import pulls, rests_on_few, trusted, weighted_share
+from uq.roots import root
 from uq.rows.element import Element
 
 _TOLERANCE = 1e-12
@@ -17,6 +18,7 @@ _FARTHEST = 60  # steps of growing length from a quantile to the end of its inte
 _SHOW_VARIANCE = 30  # independent parts, at least
 _LATEST = 1e300
 _FEW = "too few rows for this end of the interval"
+_CENSORED = "rows were censored before that time"
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,9 @@ class Population:
         return self._share(self.element.above(threshold), ~self.element.failed)
 
     def outliving(self, time: float) -> Estimate:
-        """Estimate P(T > time) among the rows that have a life."""
+        """Estimate P(T > time) among the rows that have a life; unknown once rows were censored."""
+        if self.element.unknown_sides(time).any():
+            return Estimate(reason=_CENSORED)
         return self._share(self.element.above(time), self.element.present)
 
     def quantile(self, probability: float) -> Estimate:
@@ -69,6 +73,8 @@ class Population:
         NaN where it is exact, or where too few independent parts show it.
         """
         kept = ~self.element.failed
+        if not kept.any():
+            return nan
         part = replicates_of_some(self.part, kept)
         worth = np.ones(int(kept.sum()))
         own, plain = (
@@ -143,7 +149,7 @@ class Population:
         there = first_step(start, side * unit, lambda at: (reached(at) >= 0) == (side > 0))
         if there is None:
             return np.inf if side > 0 else nan
-        return exp(root(reached, there))
+        return exp(root(reached, there, _TOLERANCE))
 
     @property
     def _never(self) -> float:
@@ -179,7 +185,7 @@ class Population:
             there = first_step(start, step, lambda x: (excess(x) >= 0) == below)
             if there is None:
                 return self._never if below else nan
-            return exp(root(excess, there))
+            return exp(root(excess, there, _TOLERANCE))
 
         if value == np.inf:
             start, unit = place
@@ -209,19 +215,10 @@ class Population:
         value = least(lambda y: Estimate(self._average(y)), "value")
         cut = self.element.values[self.element.censored]
         if len(cut) and value >= cut.min():
-            return Estimate(reason="rows were censored before that time")
+            return Estimate(reason=_CENSORED)
         beside = float(after[np.searchsorted(values, value)]) if isfinite(value) else np.inf
         share = self._near(beside)
         return Estimate(value, least(share, "high"), least(share, "low"))
-
-
-def root(
-    of: Callable[[float], float], ends: tuple[float, float], tolerance: float = _TOLERANCE
-) -> float:
-    """Return where a function changes its sign between two places."""
-    from scipy.optimize import brentq  # which takes longer to import than most summaries
-
-    return float(brentq(of, min(ends), max(ends), xtol=tolerance))
 
 
 def first_step(

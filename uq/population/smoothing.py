@@ -4,10 +4,13 @@ from math import ceil, inf
 from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.intervals import Replicates, is_constant
+from uq.rows.elements import replicates_of
+from uq.rows.weights import row_weights
 from uq.tails import generalised_pareto, shrunk
 
 _FEWEST = 5  # values in a tail
@@ -78,6 +81,22 @@ def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
     )
 
 
+def weights_of(rows: xr.Dataset) -> Smoothed | None:
+    """Return the weights that inspections have given the rows of a result, None if none have.
+
+    Parameters
+    ----------
+    rows : xarray.Dataset
+        The independent rows of a result, or samples of several rows.
+    """
+    weights = row_weights(rows)
+    if weights is None:
+        return None
+    of_samples = per_sample(weights, replicates_of(rows))
+    k, effective = tail_shape(of_samples), effective_rows(of_samples)
+    return Smoothed(weights, k, len(of_samples), effective)
+
+
 def tail_shape(numbers: Floats) -> float:
     """Return the shape of the law of the largest of some numbers, not negative.
 
@@ -104,7 +123,13 @@ def largest_shape(rows: int) -> float:
     return min(_HOPELESS, 1 - 1 / np.log10(rows)) if rows > 10 else -inf
 
 
-def refusal(k: float, rows: int) -> str:
+HOPELESS = (
+    "the rows hardly visit what the other laws would; no moderate number of rows helps, so run it"
+    " as a study of its own"
+)
+
+
+def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
     """Return why weights with this shape cannot be trusted, or ""."""
     most = largest_shape(rows)
     if k <= most or k == -inf:
@@ -114,10 +139,7 @@ def refusal(k: float, rows: int) -> str:
         return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
     if k == inf:
         return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"
-    return (
-        f"Pareto k = {k:.2f}: the rows hardly visit what the other laws would; no moderate number"
-        " of rows helps, so run it as a study of its own"
-    )
+    return f"Pareto k = {k:.2f}: {hopeless}"
 
 
 def per_sample(numbers: Floats, part: Replicates) -> Floats:

@@ -34,6 +34,7 @@ from uq.rows.elements import (
     shown_outputs,
 )
 from uq.rows.results import failed
+from uq.rows.weights import has_weights
 from uq.study.file import AnalysisTable
 from uq.wording import threshold
 
@@ -60,8 +61,10 @@ def rows_inside(findings: Findings, file: str) -> dict[str, Any] | None:
     Returns
     -------
     dict or None
-        None if no row follows the laws of the inputs, or no output has numbers.
+        None if no row follows the laws of the inputs, no output has numbers, or rows have weights.
     """
+    if has_weights(findings.ds):
+        return None
     analysis = analysis_of(findings.ds)
     outputs = [one for one in shown_outputs(findings.ds, analysis) if one not in findings.absent]
     whole = findings.rows
@@ -205,6 +208,7 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         "replicate": None,
         "sample": None,
         "samples": None,
+        "parts": "rows",
     }
     if part is None:
         words = (
@@ -217,7 +221,7 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
     elif isinstance(part, Clusters):
         several = "samples" if has_independent_samples(rows) else "replicates"
         words = f"95 % intervals of shares rest on the scatter between {count} {several}."
-        found |= {"sample": encoded(part, "<i4"), "samples": part.samples}
+        found |= {"sample": encoded(part, "<i4"), "samples": part.samples, "parts": several}
     else:
         words = f"95 % intervals of shares rest on the scatter between {count} replicates."
         found |= {"replicate": encoded(part, "<i4")}

@@ -1,10 +1,12 @@
 """The inputs in a report: laws, sources, and how well each number is known."""
 
 from collections.abc import Iterator
+from math import floor, log10
 
+import numpy as np
 import xarray as xr
 
-from uq.analysis.sampled_inputs import compare, laws_and_values
+from uq.analysis.sampled_inputs import compare, laws_and_values, weights_of_samples
 from uq.conclusions.sources import mark
 from uq.conclusions.words import unit_for
 from uq.contract import Floats
@@ -63,13 +65,13 @@ def _fixed(ds: xr.Dataset, name: str, by_study: bool) -> tuple[Cell, ...]:
 
 
 def _uncertain(ds: xr.Dataset) -> Table:
-    given = laws_and_values(ds)
+    given, weights = laws_and_values(ds), weights_of_samples(ds)
     rows = []
     for name, entry in study_file_of(ds).uncertain.items():
         quantiles = [Cell("")] * 3
         if name in given:
             law_of, _ = given[name]
-            found = compare(*given[name]).sampled
+            found = compare(*given[name], weights).sampled
             units = "1" if law_of.times is not None else str(ds[name].attrs["units"])
             quantiles = _quantiles(units, found)
         rows.append((_name(ds, name), Cell(_law(ds, name, entry)), *quantiles, *_source(ds, name)))
@@ -78,9 +80,15 @@ def _uncertain(ds: xr.Dataset) -> Table:
 
 
 def _quantiles(units: str, found: Floats) -> list[Cell]:
-    """Return quantiles to three digits, in the unit of the median."""
+    """Return quantiles in the unit of the median, to the digits that tell them apart."""
     unit = unit_for(units, abs(found[1]))
-    return [Cell(unit.text(float(one)).replace(" ", "\u00a0"), key=float(one)) for one in found]
+    step = np.ptp(found) / unit.per / 30
+    places = max(0, -floor(log10(step))) if step > 0 else 0
+    texts = (f"{float(one) / unit.per:.{places}f}" if places else unit.number(one) for one in found)
+    return [
+        Cell(beside(text, unit.name).replace(" ", "\u00a0"), key=float(one))
+        for text, one in zip(texts, found, strict=True)
+    ]
 
 
 def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:

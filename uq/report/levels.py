@@ -9,6 +9,7 @@ from uq.keys import key_of
 from uq.methods.indices import S1
 from uq.report.cells import SHARE, Cell, Table
 from uq.rows.nesting import is_nested
+from uq.rows.weights import has_weights
 from uq.wording import percent_with_interval
 
 
@@ -29,8 +30,8 @@ class Levels(NamedTuple):
 
 
 def levels_of(findings: Findings) -> Levels | None:
-    """Return the shares of a result; None where no sample has several rows."""
-    if not is_nested(findings.ds):
+    """Return the shares of a result; None where no sample has several rows, or with weights."""
+    if not is_nested(findings.ds) or has_weights(findings.ds):
         return None
     found = findings.levels
     rows, notes = [], []

@@ -47,7 +47,7 @@ class Element:
     law : RowLaw, optional
         Of what scales a life, given all that does not: each row then is the law of a life.
     weights : ndarray, shape (n,), optional
-        Of the rows, where they stand for another study.
+        Of the rows, where they stand for another study or for what inspections left of theirs.
     """
 
     name: str
@@ -170,6 +170,7 @@ def elements_in(
     censored: Any,
     coordinates: Mapping[str, Any],
     failed: Mask,
+    weights: Floats | None = None,
 ) -> Iterator[Element]:
     """Yield the elements of one output, in order.
 
@@ -186,6 +187,8 @@ def elements_in(
         Of each dimension.
     failed : ndarray of bool, shape (n,)
         The rows that failed.
+    weights : ndarray, shape (n,), optional
+        Of the rows.
 
     Yields
     ------
@@ -205,4 +208,5 @@ def elements_in(
             np.where(absent, np.nan, column),
             cut,
             absent & failed,
+            weights=weights,
         )

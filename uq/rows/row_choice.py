@@ -11,6 +11,7 @@ from uq.errors import InputError
 from uq.order_statistics import quantile, rows_to_reach
 from uq.rows.elements import Element, independent_rows, named_elements, why_no_statistics
 from uq.rows.results import failed
+from uq.rows.weights import refuse_weights
 
 
 class Choice(NamedTuple):
@@ -83,6 +84,7 @@ def near_quantile_row(ds: xr.Dataset, probability: float, name: str) -> Choice:
         raise InputError(
             f"--near-quantile {probability:g}: must lie between 0 and 1; write 0.05 for 5 %"
         )
+    refuse_weights(ds, "--near-quantile")
     if why := why_no_statistics(ds):
         raise InputError(
             f"no quantiles: the rows of a '{ds.attrs['design']}' design {why}; choose a row by its"

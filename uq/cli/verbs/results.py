@@ -216,6 +216,51 @@ def what_if(
     question.what_if(result, set_, json)
 
 
+def update(
+    source: Annotated[
+        Path, typer.Argument(metavar="STUDY|OUT.nc", help="A study (TOML), or a result.")
+    ],
+    inspections: Annotated[
+        Path, typer.Argument(metavar="INSPECTIONS.csv", help="What was measured.")
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="POSTERIOR.nc", help="Where to write it.")
+    ],
+    rows: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Rows of a study, not its own number.")
+    ] = None,
+    model_error: Annotated[
+        float | None,
+        typer.Option(min=0.0, metavar="CV", help="Scatter of reality about the model."),
+    ] = None,
+    by: Annotated[
+        list[float] | None,
+        typer.Option(metavar="T", help="A time [s], such as that of the next outage."),
+    ] = None,
+    workers: given.Workers = None,
+    scheduler: given.Scheduler = None,
+    model: given.ModelReference = None,
+    quiet: given.Quiet = False,
+    json: given.Json = False,
+) -> int:
+    """Learn from inspections: inputs, units, and lives to come."""
+    from uq.cli import learning
+
+    options = RunOptions(workers, scheduler)
+    return learning.update(
+        source,
+        inspections,
+        output,
+        rows,
+        model_error,
+        by or [],
+        model,
+        options,
+        quiet or json,
+        json,
+    )
+
+
 def twin(
     result: given.ResultFile, model: given.ModelReference = None, json: given.Json = False
 ) -> None:

@@ -31,7 +31,7 @@ class Scatter {
     this.px = Float32Array.from(this.rows.numbers, (_, row) => this.x.pixelOf(row));
     this.py = Float32Array.from(this.rows.numbers, (_, row) => this.y.pixelOf(row));
     this.orders = null;
-    this.draw();
+    this.redraw();
   }
 
   redraw() {
@@ -130,7 +130,7 @@ class Scatter {
       const right = this.px[row] > this.width / 2;
       this.tip.style.left = right ? "" : `${this.px[row] + 12}px`;
       this.tip.style.right = right ? `${this.width - this.px[row] + 12}px` : "";
-      this.tip.style.top = `${Math.max(0, Math.min(this.py[row] - 20, this.height - 80))}px`;
+      this.tip.style.top = `${Math.max(0, Math.min(this.py[row] - 20, this.height - this.tip.offsetHeight))}px`;
     }
     this.draw();
   }

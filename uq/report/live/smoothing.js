@@ -1,13 +1,7 @@
 // Weights of rows, smoothed, and whether they can be trusted: as uq/population/smoothing.py.
 // A. Vehtari et al., "Pareto smoothed importance sampling", J. Mach. Learn. Res. 25, 72 (2024).
 
-const FEWEST = 5, HOPELESS = 0.7, NEGLIGIBLE = 1e-3, ROUNDING = 64 * Number.EPSILON;
-
-function total(numbers) {
-  let sum = 0;
-  for (const one of numbers) sum += one;
-  return sum;
-}
+const FEWEST = 5, HOPELESS = 0.7, NEGLIGIBLE = 1e-3;
 
 // The number of rows of equal weight that are worth as much (L. Kish).
 function effectiveRows(numbers) {

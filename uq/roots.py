@@ -1,0 +1,61 @@
+"""Where a function of one variable changes its sign."""
+
+from collections.abc import Callable
+from math import sqrt
+
+
+def root(of: Callable[[float], float], ends: tuple[float, float], tolerance: float) -> float:
+    """Return where a function changes its sign between two places.
+
+    By Chandrupatla's method, as `scipy.optimize.elementwise.find_root` does, whose import takes
+    longer than most summaries.
+
+    Parameters
+    ----------
+    of : callable
+    ends : tuple of float
+        At which its signs differ, or one of its values is zero.
+    tolerance : float
+        Largest error.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ValueError
+        The function has one sign at both ends, or is not a number there.
+
+    References
+    ----------
+    Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear
+    function without using derivatives", Advances in Engineering Software 28 (1997) 145-149.
+    """
+    a, b = ends
+    at_a, at_b = of(a), of(b)
+    if at_a == 0 or at_b == 0:
+        return a if at_a == 0 else b
+    if not at_a * at_b < 0:
+        raise ValueError(f"no change of sign: {at_a!r} at {a!r}, {at_b!r} at {b!r}")
+    share = 0.5
+    while True:
+        x = a + share * (b - a)
+        at_x = of(x)
+        # The root lies between a, the newest place, and b; c is the place before.
+        if (at_x > 0) == (at_a > 0):
+            c, at_c = a, at_a
+        else:
+            c, at_c, b, at_b = b, at_b, a, at_a
+        a, at_a = x, at_x
+        best, value = (a, at_a) if abs(at_a) < abs(at_b) else (b, at_b)
+        least = tolerance / abs(b - a) if a != b else 1.0
+        if value == 0 or least > 0.5:
+            return best
+        xi, phi = (a - b) / (c - b), (at_a - at_b) / (at_c - at_b)
+        if 1 - sqrt(1 - xi) < phi < sqrt(xi):  # inverse quadratic interpolation is safe
+            share = at_a / (at_b - at_a) * at_c / (at_b - at_c)
+            share += (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b)
+        else:
+            share = 0.5
+        share = min(1 - least, max(least, share))
