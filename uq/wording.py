@@ -192,10 +192,11 @@ def listed(labels: Sequence[str], most: int = 8) -> str:
 
 
 def law(stated: Any) -> str:
-    """Return the law of an input: ``normal(mean = 1.0, sd = 0.1)``."""
+    """Return the law of an input, numbers to six digits: ``normal(mean = 1.0, sd = 0.1)``."""
     without = {"distribution", "source", "times", "level"}
     given = stated.model_dump(exclude=without, exclude_none=True)
     if given.get("file") is not None:
         given.pop("values", None)  # a result keeps the file's name alone
+    given |= {n: float(f"{one:.6g}") for n, one in given.items() if isinstance(one, float)}
     arguments = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
     return f"{stated.distribution}({arguments})"

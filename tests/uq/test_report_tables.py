@@ -23,7 +23,7 @@ from uq.estimate import Estimate
 from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.report.convergence import convergence_of
 from uq.report.indices import sensitivity_of
-from uq.report.inputs import fixed_inputs, input_tables
+from uq.report.inputs import _quantiles, fixed_inputs, input_tables
 from uq.report.outcomes import category_table, outcomes, result_tables, status_table
 
 DAY = 86400.0
@@ -151,6 +151,20 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
     assert found["x2"]["law"] == "equals x1" and found["x2"]["50 %"] == ""
     assert found["x4"]["law"] == "x1 times uniform(lower = 0.4, upper = 0.6)"
     assert float(found["x4"]["50 %"]) == pytest.approx(0.5, abs=2e-3)  # of the factor
+
+
+@pytest.mark.parametrize(
+    ("units", "found", "texts"),
+    [
+        ("rad s-1", [156.742, 157.0, 157.258], ["156.74 rad s⁻¹", "157.00 rad s⁻¹"]),
+        ("m", [2.09e-4, 2.5e-4, 2.91e-4], ["209 µm", "250 µm"]),
+        ("1", [0.2467, 0.295, 0.3435], ["0.247", "0.295"]),
+        ("N", [5.0, 5.0, 5.0], ["5 N", "5 N"]),
+    ],
+)
+def test_quantiles_of_an_input_can_be_told_apart(units, found, texts):
+    cells = _quantiles(units, np.array(found))
+    assert [cell.text.replace("\u00a0", " ") for cell in cells][:2] == texts
 
 
 def test_fixed_inputs_have_units_and_correlations_a_source():
