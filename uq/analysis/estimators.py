@@ -57,6 +57,8 @@ class Estimator:
         Whether it is a share of rows, or the value beyond which such a share lies.
     counts_hits : bool
         Whether the numbers of the rows are 0 and 1.
+    averages : bool
+        Whether the estimate is the mean of the rows' numbers, probabilities between 0 and 1.
     is_scale : bool
         Whether two of them are also compared by their ratio.
     """
@@ -66,6 +68,7 @@ class Estimator:
     sample: Callable[[Element], Sample | None] = with_value
     is_share: bool = False
     counts_hits: bool = False
+    averages: bool = False
     is_scale: bool = False
 
 

@@ -99,7 +99,11 @@ def _probabilities(
             falls=side == "below",
             at=threshold,
             facts={"undefined": undefined},
-            estimator=replace(share(_hits(threshold, place)), counts_hits=element.is_plain),
+            estimator=replace(
+                share(_hits(threshold, place)),
+                counts_hits=element.is_plain,
+                averages=not element.is_plain,
+            ),
             by=(share_of, share_interval) if element.is_plain else (Population,),
         )
         if not element.is_plain and sides is None:
