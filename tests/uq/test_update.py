@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from command_line import everything, strict_json
 from learnt_studies import exactly, measured, wear
-from scipy.stats import lognorm
+from scipy.stats import lognorm, norm
 
 from uq.errors import InputError, RunError
 from uq.exploring.updating import update
@@ -170,3 +170,23 @@ def test_rows_as_those_of_one_unit(result):
     assert lives == pytest.approx(5e5, rel=0.05)
     with pytest.raises(InputError, match="unit 'B' was not inspected.*allowed: A"):
         as_unit(update(result, measured(5e5)), "B")
+
+
+def test_what_an_inspection_taught_and_how_strange_it_was(result):
+    found = learnt(update(result, measured(5e5)))
+    mean, cov = exactly([5e5])
+    before, start = np.diag([0.5**2, 0.3**2]), np.log([2.5e-10, 2.5e-4])
+    far = (mean - start) @ np.linalg.solve(before, mean - start)
+    volume = np.log(np.linalg.det(before) / np.linalg.det(cov))
+    bits = (np.trace(np.linalg.solve(before, cov)) + far - 2 + volume) / 2 / np.log(2)
+    assert [one.bits for one in found.taught] == [pytest.approx(bits, rel=0.03)]
+    deviation = (0.5**2 + 0.3**2 + np.log1p(0.1**2)) ** 0.5
+    assert found.strangeness == pytest.approx(2 * norm.sf(np.log(2) / deviation), abs=0.03)
+    assert found.notes == []
+
+
+def test_strange_inspections_come_with_a_warning():
+    ds = wear(rate="own", depth="shared", samples=2000, units=3)
+    found = learnt(update(ds, measured(3e5, 4.5e6, 2.5e5, cv=0.2)))
+    assert found.strangeness < 0.01
+    assert any(note.startswith("Warning: inspections as strange as these") for note in found.notes)
