@@ -18,4 +18,5 @@ Reading order; a module imports only those above it:
     taught            how much each inspection taught
     strangeness       how strange the inspections are before anything is learnt
     answer            all that the inspections say
+    next_inspection   what the next one is worth
 """
