@@ -51,7 +51,8 @@ class Event:
     def sentence(self) -> str:
         """Its probability, and what decides it; "" where that is not known."""
         if isnan(self.share.value):
-            return sentence(self.share.reason) if self.share.reason else ""
+            why = self.share.reason
+            return sentence(f"how many {self.said} is not known: {why}") if why else ""
         text = f"{share_text(self.share)} {self.said}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_interval(self.failed.low, self.failed.high)

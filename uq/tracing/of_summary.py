@@ -11,12 +11,16 @@ from uq.analysis.statistics.statistic import Reader, Statistic
 from uq.analysis.statistics.table import STATISTICS
 from uq.analysis.summary import Described, Summary, status_counts, summarise
 from uq.keys import Json, Options, Path
+from uq.population.smoothing import effective_rows, tail_shape
 from uq.rows.elements import Element, analysis_of, independent_rows, named_elements, output_names
 from uq.rows.in_regime import within_regime
 from uq.tracing.citations import cited
 from uq.tracing.origin import Origin
 
 COUNTED = ("failed", "undefined", "censored", "never")
+
+WEIGHTS = {"effective_rows": effective_rows, "pareto_k": tail_shape}
+"""What is said of weighted rows -> what computes it."""
 
 Functions = tuple[Callable[..., Any], ...]
 
@@ -55,6 +59,8 @@ def origin(ds: xr.Dataset, options: Options, path: Path, said: Json) -> Origin:
     rows = independent_rows(ds)
     if path[0] == "rows_used":
         return Origin((cited(independent_rows),), rows)
+    if path[0] in WEIGHTS:
+        return Origin((cited(WEIGHTS[path[0]]),), rows)
     found = _found(ds, {}, path)
     if path[0] == "regime":
         return Origin(tuple(map(cited, found.regimes[path[1]].by)), rows)
