@@ -53,4 +53,4 @@ def expanded(page: str) -> str:
         function = _OTHERS.get(name) or getattr(generated, name)
         return str(function(argument) if argument else function())
 
-    return _DIRECTIVE.sub(replacement, page)
+    return _DIRECTIVE.sub(replacement, page).replace("](../../notebooks/", "](../notebooks/")

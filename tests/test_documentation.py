@@ -240,6 +240,16 @@ def test_the_answer_that_the_readme_quotes_has_the_numbers_that_are_printed():
     assert quoted == pytest.approx(printed, rel=2e-3), "run: python docs/first_answer.py"
 
 
+def test_the_study_that_the_readme_shows_is_the_one_that_it_runs():
+    shown = tomllib.loads(blocks("README.md", "toml")[0])
+    study = tomllib.loads((HOUSE / first_answer.STUDY).read_text())
+    for law in study["uncertain"].values():
+        del law["source"]
+    for key in ("description", "seed"):
+        study["study"].pop(key, None), study["design"].pop(key, None)
+    assert shown == study
+
+
 def numbers(text):
     return [float(one) for one in re.findall(r"\d+(?:\.\d+)?", text)]
 

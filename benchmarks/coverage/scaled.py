@@ -5,8 +5,10 @@ from scipy import special, stats
 
 from benchmarks.coverage.tally import Tally
 from uq.contract import Output
+from uq.estimate import Estimate
 from uq.inputs.registry import law_of
 from uq.population.functionals import Population
+from uq.population.means import share_to_compare
 from uq.population.scale_laws import IndependentScale
 from uq.population.scaling import EVERYWHERE
 from uq.population.smoothing import smoothed
@@ -83,18 +85,21 @@ def what_if(repetitions):
                 )
                 for p in (0.05, 0.5, 0.95):
                     time = np.exp(new[1] + np.hypot(new[0], integrated) * special.ndtri(p))
+                    alone = Population(weighted, None).below(time)
+                    tally.estimate(f"P(T < t) = {p:g}", p, alone)
                     one, other = (
-                        Population(rows_of, None).below(time) for rows_of in (weighted, fresh)
+                        share_to_compare(rows_of.below(time), rows_of.weights)
+                        for rows_of in (weighted, fresh)
                     )
-                    tally.add(f"P(T < t) = {p:g}", p, one.low, one.high)
-                    name = f"difference from a fresh run, P(T < t) = {p:g}"
-                    tally.estimate(name, 0.0, difference(one, other, 0.0))
+                    apart = Estimate() if alone.reason else difference(one, other, 0.0)
+                    tally.estimate(f"difference from a fresh run, P(T < t) = {p:g}", 0.0, apart)
             lines += tally.lines()
     return lines
 
 
 REASONS = {
-    f"{what}P(T < t) = {p}": CAUTIOUS
-    for what in ("", "difference from a fresh run, ")
-    for p in (0.05, 0.95)
+    "P(T < t) = 0.05": CAUTIOUS,
+    "P(T < t) = 0.95": CAUTIOUS,
+    "difference from a fresh run, P(T < t) = 0.95": "300 rows: fewer than 20 effective ones carry"
+    " the complement, so that the interval is no narrower than that of a share of hits",
 }

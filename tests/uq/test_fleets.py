@@ -1,5 +1,6 @@
 """Fleets of units that share a world, against closed forms and brute force."""
 
+import re
 from itertools import combinations
 
 import numpy as np
@@ -230,6 +231,20 @@ def test_a_shared_input_that_depends_on_another_is_integrated():
         kept = found.by[1.0][1].estimate
         assert kept.low < truth < kept.high
         assert kept.high - kept.low < 0.12
+
+
+def test_what_is_not_integrated_says_why():
+    for inputs, tables, words in (
+        ({"b": B_SHARED, "a": lognormal(0.005, 1.0)}, {}, "b not integrated: it scatters .* a"),
+        (
+            {"b": LISTED | {"values": [0.5, 1.0, 2.0], "level": "shared"}},
+            {},
+            "b not integrated: its law is one of listed",
+        ),
+        ({"b": B_SHARED}, {"settings": {"horizon": 1.5}}, "b not integrated: .* are censored"),
+    ):
+        notes = fleet_of(scaled_fleet({"z": NORMAL} | inputs, **tables), 2, [0.1]).notes
+        assert any(re.match(words, note) for note in notes), notes
 
 
 def test_points_over_what_is_shared_state_what_they_assume():

@@ -7,6 +7,7 @@ from drawn import words
 from wordings import sentence
 
 from uq import plots
+from uq.drawing.scatter_plot import _fragments
 from uq.errors import InputError
 
 
@@ -135,6 +136,12 @@ def test_histograms_by_regime_add_up():
     assert len(plots.histogram_by_regime(ds, "life").axes) == 4
     part = with_output(ds, "part", np.where(ds["regime"] == 0, ds["x1"], np.nan))
     assert "fast" not in words(plots.histogram_by_regime(part, "part"))
+
+
+def test_a_line_has_no_pieces_too_short_to_be_one():
+    there = np.array([1, 1, 0, 1, 1, 1, 0, 0, 1], dtype=bool)
+    assert _fragments(there).nonzero()[0].tolist() == [0, 1, 8]
+    assert not _fragments(np.ones(3, dtype=bool)).any()
 
 
 def test_scatter_leads_with_what_matters_and_shows_conditional_means():

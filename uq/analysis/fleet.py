@@ -179,6 +179,7 @@ def fleet_of(
         notes.append(f"{place.samples - enough} samples have too few units with a life")
     if lost := int(element.failed.sum()):
         notes.append(f"{lost} of {len(element.values)} rows failed")
+    notes += filter(None, [units.why_not_more])
     assumed = {one.assumes for both in of.ends for one in both if one.assumes}
     notes += [f"the 5 and 95 % points assume {one.removeprefix('that ')}" for one in assumed]
     design = size_in_words(place.samples, place.units, place.repeats)
@@ -203,8 +204,9 @@ def the_life(rows: xr.Dataset, output: str | None) -> Element:
 def _refuse(units: Units, size: int) -> None:
     if size > units.place.units and not units.are_alike:
         names = ", ".join(units.varying)
+        verb = "is" if len(units.varying) == 1 else "are"
         raise InputError(
             f"uq fleet: a fleet of {size} needs samples of as many units: set units = {size} in"
             f" [design], now {units.place.units}; more than that only where all that differs"
-            f" between units is integrated exactly, and {names} is not"
+            f" between units is integrated exactly, and {names} {verb} not"
         )

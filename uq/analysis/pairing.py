@@ -16,6 +16,7 @@ from uq import intervals, two_samples
 from uq.analysis.estimators import MEAN, SD, Estimator, Sample
 from uq.designs.registry import DESIGNS
 from uq.estimate import Estimate
+from uq.population.means import share_to_compare
 from uq.rows.elements import (
     Floats,
     are_independent,
@@ -167,6 +168,8 @@ class Pair:
             return two_samples.difference(known[0], known[1], self.unpaired)
         if estimator.counts_hits and all(one is None for one in self._replicate):
             known = [_newcombe(sample) for sample in samples]
+        elif estimator.averages:
+            known = [self._averaged(i, sample) for i, sample in enumerate(samples)]
         found = two_samples.difference(known[0], known[1], self._correlation(estimator, samples))
         wide = sum(one.high - one.low for one in known)
         if self._paired and found.high - found.low <= _ROUNDING * wide < np.inf:
@@ -211,6 +214,11 @@ class Pair:
         if not all(np.isfinite(one).all() and not intervals.is_constant(one) for one in means):
             return np.nan
         return float(np.asarray(np.corrcoef(means))[0, 1])
+
+    def _averaged(self, i: int, sample: Sample) -> Estimate:
+        """Return a mean of probabilities with the interval from which a difference is built."""
+        part = intervals.replicates_of_some(self._replicate[i], sample.kept)
+        return share_to_compare(sample.numbers[sample.kept], part=part)
 
     def _by_replicate(self, estimator: Estimator, i: int, sample: Sample) -> Floats:
         of, count = self._replicate[i], int(self.rows[i].attrs["replicates"])

@@ -31,10 +31,19 @@ def lay_out(figure: Figure) -> None:
     figure.set_dpi(DOTS_PER_INCH)
     FigureCanvasAgg(figure)
     if engine := figure.get_layout_engine():
+        before = _ticks(figure)
         engine.execute(figure)
-        _keep_ticks(figure)  # those of the new size, which may call for longer numbers
-        engine.execute(figure)
+        changed = _ticks(figure) != before  # those of the new size may call for longer numbers
+        _keep_ticks(figure)
+        if changed:
+            engine.execute(figure)
         figure.set_layout_engine("none")  # or else each file would repeat it
+
+
+def _ticks(figure: Figure) -> list[list[float]]:
+    """Return the places of all ticks."""
+    both = (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis))
+    return [list(axis.get_majorticklocs()) for axis in both]
 
 
 def _keep_ticks(figure: Figure) -> None:

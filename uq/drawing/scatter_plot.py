@@ -40,6 +40,7 @@ _MOST_INPUTS = 3
 _MOST_POINTS = 3000
 _IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
 _EMPTY = 0.05  # around a mean without a row, over the height of the panel, that interrupts a line
+_SHORTEST = 3  # slices that make a line
 _GAP = 0.1  # between neighbouring rows, over the width of the panel, that interrupts a line
 
 
@@ -155,7 +156,9 @@ def _conditional(
         for rows, at in zip(slices, line, strict=True)
     ]
     empty = np.array(apart) > _EMPTY * np.ptp(axes.get_ylim())
-    line = np.where(np.isfinite(line) & ~empty, line, np.nan)
+    empty |= _fragments(~empty)
+    seen = np.isfinite(line) & ~empty
+    line = np.where(seen & ~_fragments(seen), line, np.nan)
     low, high = np.where(empty, np.nan, np.array(ends, dtype=float).T)
     # A gap between neighbouring rows interrupts the line: nothing is known in between.
     inside = np.sort(x)
@@ -171,6 +174,12 @@ def _conditional(
         top = ended.max()  # an infinite end would hide all others
         band: Any = {"facecolor": (colour, 0.25), "edgecolor": (colour, 0.8), "lw": 0.4}
         axes.fill_between(middle, low, np.minimum(high, top), **band)
+
+
+def _fragments(there: Mask) -> Mask:
+    """Return which places belong to runs too short for a line."""
+    run = np.cumsum(np.diff(there, prepend=False))
+    return there & (np.bincount(run)[run] < _SHORTEST)
 
 
 def leading(inputs: dict[str, Floats], element: Element) -> list[str]:

@@ -73,6 +73,8 @@ class Population:
         NaN where it is exact, or where too few independent parts show it.
         """
         kept = ~self.element.failed
+        if not kept.any():
+            return nan
         part = replicates_of_some(self.part, kept)
         worth = np.ones(int(kept.sum()))
         own, plain = (

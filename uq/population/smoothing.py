@@ -19,7 +19,12 @@ _NEGLIGIBLE = 1e-3
 
 
 def effective_rows(numbers: Floats) -> float:
-    """Return Kish's number of rows of equal weight that are worth as much."""
+    """Return the number of rows of equal weight that are worth as much [1]_.
+
+    References
+    ----------
+    .. [1] L. Kish, Survey Sampling, Wiley, New York, 1965.
+    """
     largest = numbers.max(initial=0.0)
     relative = numbers / largest if largest > 0 else numbers
     return float(relative.sum() ** 2 / (relative**2).sum()) if largest > 0 else 0.0
@@ -52,7 +57,7 @@ class Smoothed(NamedTuple):
 
 
 def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
-    """Return Pareto-smoothed weights.
+    """Return Pareto-smoothed weights [1]_.
 
     Parameters
     ----------
@@ -67,8 +72,8 @@ def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
 
     References
     ----------
-    A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance sampling", J.
-    Mach. Learn. Res. 25, 72 (2024).
+    .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
+       sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
     raw = np.exp(log_weights - log_weights.max())
     of_samples = per_sample(raw, part)
@@ -98,10 +103,15 @@ def weights_of(rows: xr.Dataset) -> Smoothed | None:
 
 
 def tail_shape(numbers: Floats) -> float:
-    """Return the shape of the law of the largest of some numbers, not negative.
+    """Return the shape of the law of the largest of some numbers [1]_, not negative.
 
     Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
     where all others are equal, infinite where there are too few.
+
+    References
+    ----------
+    .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
+       sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
     ascending = np.sort(numbers)
     counted = ascending[ascending > _NEGLIGIBLE * ascending[-1]]
@@ -134,8 +144,12 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
     most = largest_shape(rows)
     if k <= most or k == -inf:
         return ""
+    if most == -inf:
+        return f"weights rest on {rows} independent parts, and more than 10 are needed"
     if k < _HOPELESS:
         more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
+        if rows <= 10:
+            return f"{rows} samples are too few: add {more}"
         return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
     if k == inf:
         return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"

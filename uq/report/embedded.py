@@ -208,6 +208,7 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         "replicate": None,
         "sample": None,
         "samples": None,
+        "parts": "rows",
     }
     if part is None:
         words = (
@@ -220,7 +221,7 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
     elif isinstance(part, Clusters):
         several = "samples" if has_independent_samples(rows) else "replicates"
         words = f"95 % intervals of shares rest on the scatter between {count} {several}."
-        found |= {"sample": encoded(part, "<i4"), "samples": part.samples}
+        found |= {"sample": encoded(part, "<i4"), "samples": part.samples, "parts": several}
     else:
         words = f"95 % intervals of shares rest on the scatter between {count} replicates."
         found |= {"replicate": encoded(part, "<i4")}

@@ -1,7 +1,9 @@
 """The inputs in a report: laws, sources, and how well each number is known."""
 
 from collections.abc import Iterator
+from math import floor, log10
 
+import numpy as np
 import xarray as xr
 
 from uq.analysis.sampled_inputs import compare, laws_and_values, weights_of_samples
@@ -78,9 +80,15 @@ def _uncertain(ds: xr.Dataset) -> Table:
 
 
 def _quantiles(units: str, found: Floats) -> list[Cell]:
-    """Return quantiles to three digits, in the unit of the median."""
+    """Return quantiles in the unit of the median, to the digits that tell them apart."""
     unit = unit_for(units, abs(found[1]))
-    return [Cell(unit.text(float(one)).replace(" ", "\u00a0"), key=float(one)) for one in found]
+    step = np.ptp(found) / unit.per / 30
+    places = max(0, -floor(log10(step))) if step > 0 else 0
+    texts = (f"{float(one) / unit.per:.{places}f}" if places else unit.number(one) for one in found)
+    return [
+        Cell(beside(text, unit.name).replace(" ", "\u00a0"), key=float(one))
+        for text, one in zip(texts, found, strict=True)
+    ]
 
 
 def _law(ds: xr.Dataset, name: str, entry: Law | Tied) -> str:

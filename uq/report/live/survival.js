@@ -14,34 +14,55 @@ function outliving(column, mask) {
   const times = Float64Array.from(ended).sort(), until = Float64Array.from(cut).sort();
   const count = times.length + until.length + never;
   const ending = column.neverKnownAtOnce ? 1 - never / count : 1;
-  let atRisk = count - (column.neverKnownAtOnce ? never : 0), censored = 0, among = 1;
-  const at = [], share = [];
+  let atRisk = count - (column.neverKnownAtOnce ? never : 0), censored = 0, among = 1, spread = 0;
+  const at = [], share = [], variance = [];
   for (let i = 0; i < times.length;) {
     const time = times[i];
     let ends = 0;
     while (censored < until.length && until[censored] < time) { censored++; atRisk--; }
     while (i < times.length && times[i] === time) { i++; ends++; }
     among *= (atRisk - ends) / atRisk;
+    spread += ends / (atRisk * (atRisk - ends));
     atRisk -= ends;
     at.push(time);
     share.push(1 - ending + ending * among);
+    const ofAmong = among > 0 ? among ** 2 * spread : until.length ? NaN : 0;
+    variance.push((1 - among) ** 2 * ending * (1 - ending) / count + ending ** 2 * ofAmong);
   }
-  return {at, share, count, censored: until.length, never};
+  return {at, share, variance, count, censored: until.length, never, last: Math.max(times.at(-1) ?? 0, until.at(-1) ?? 0)};
 }
 
-function shareAbove(curve, value) {
-  let low = 0, high = curve.at.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (curve.at[middle] <= value) low = middle + 1; else high = middle;
-  }
-  return low ? curve.share[low - 1] : 1;
+const FEW_ENDS = 4;
+
+// The interval of each share of independent rows, by the exponential Greenwood formula, exact where few have
+// ended or are left: as uq/analysis/lifetime.py.
+function greenwood({share, variance}) {
+  const ends = share.map((one, i) => {
+    if (!(one > 0 && one < 1)) return NONE;
+    const worth = one * (1 - one) / variance[i];
+    if (areFew(one, worth, FEW_ENDS)) return exact(one, worth);
+    const middle = Math.log(-Math.log(one)), half = NORMAL * Math.sqrt(variance[i]) / (one * -Math.log(one));
+    return [Math.exp(-Math.exp(middle + half)), Math.exp(-Math.exp(middle - half))];
+  });
+  return {low: ends.map(one => one[0]), high: ends.map(one => one[1])};
 }
 
-// The value that a share of the rows lies below; infinite where the curve does not fall so far.
-function quantile(curve, probability) {
-  const place = curve.share.findIndex(share => share <= 1 - probability + 1e-12);
-  return place < 0 ? (curve.count ? Infinity : NaN) : curve.at[place];
+// The share that has ended by a time, assuming that censoring is non-informative.
+function endedBy(rows, column, mask, time) {
+  const curve = outliving(column, mask), place = curve.at.findLastIndex(one => one < time);
+  if (time > curve.last) return {share: NaN, low: NaN, high: NaN, more: "it is after the last observation"};
+  const {low, high} = rows.independent && place >= 0 ? greenwood(curve) : {low: [], high: []};
+  return {share: place < 0 ? 0 : 1 - curve.share[place], low: 1 - (high[place] ?? NaN), high: 1 - (low[place] ?? NaN),
+    more: KAPLAN_MEIER};
+}
+
+// The time by which a share has ended, likewise.
+function lifeBy(rows, column, mask, probability) {
+  const curve = outliving(column, mask), {low, high} = rows.independent ? greenwood(curve) : {low: [], high: []};
+  const first = shares => curve.at[shares.findIndex(one => one <= 1 - probability)] ?? NaN;
+  const value = first(curve.share), least = first(low);
+  if (isNaN(value)) return {value, low: NaN, high: NaN, more: "beyond the horizon"};
+  return {value, low: least === curve.at[0] ? NaN : least, high: first(high), more: KAPLAN_MEIER};
 }
 
 // Half the width of Kolmogorov's 95 % band of the whole curve (M. A. Stephens, J. R. Stat. Soc. B 32,

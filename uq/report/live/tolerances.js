@@ -43,7 +43,7 @@ function tolerancesOf(rows) {
     const least = used.reduce((a, b) => b.effective < a.effective ? b : a, used[0]);
     const most = used.reduce((a, b) => b.k > a ? b.k : a, -Infinity);
     said.replaceChildren(...(problem ? [problem] : !changed ? ["The laws of the study."] : !least ? [all[0].refusal]
-      : ["These weights are worth ", data(least.effective, number(least.effective, 3)), ` of ${rows.count} rows`,
+      : ["These weights are worth ", data(least.effective, number(least.effective, 3)), ` of ${least.rows} ${rows.parts}`,
         isFinite(most) ? ` (Pareto k = ${number(most, 2)}).` : "."]));
   }
 
