@@ -18,7 +18,7 @@ from uq.report.dossier.items import Item
 from uq.report.fleets import fleet_table
 from uq.report.indices import Method, sensitivity_of
 from uq.report.levels import levels_of
-from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
+from uq.report.outcomes import category_table, outcomes, result_tables, status_table
 from uq.report.pictures import pictures
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested, nesting_of, size_in_words
@@ -109,7 +109,7 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
     if findings.summary.regimes:
         yield Item(
             "Regimes",
-            tables=[regime_table(findings.summary)],
+            tables=[category_table("regime", findings.summary.regimes)],
             pictures=list(pictures(findings, "rows")),
         )
     yield Item("Estimators and their sources", tables=_estimators(findings))
