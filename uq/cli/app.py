@@ -12,6 +12,7 @@ VERBS = (
     studies.init,
     studies.check,
     studies.schema,
+    studies.serve,
     studies.plan,
     studies.run,
     results.status,

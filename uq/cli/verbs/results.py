@@ -114,17 +114,18 @@ def summary(
     from uq.rows.results import open_result
 
     ds = open_result(result)
-    if not (fits or json or plain) and regime is None:
-        tables.show_findings(Findings(ds))
+    findings = Findings(ds)
+    answered = regime is None and not plain  # the answer is that of all rows
+    if answered and not (fits or json):
+        tables.show_findings(findings)
         return
-    found = summarise(ds, regime=regime, fits=fits, plain=plain)
+    asked = regime is not None or fits or plain
+    found = summarise(ds, regime=regime, fits=fits, plain=plain) if asked else findings.summary
     if not json:
         tables.show_summary(ds, found)
         return
-    whole = summary_json(found)
-    if regime is None and not plain:
-        whole["answer"] = answer_json(conclude(Findings(ds), weighed=False))
-    print_json(whole)
+    answer = {"answer": answer_json(conclude(findings, weighed=False))} if answered else {}
+    print_json(summary_json(found) | answer)
 
 
 def sensitivity(

@@ -20,7 +20,7 @@ from uq.report.fleets import fleet_notes, fleet_table
 from uq.report.groups import REGIME
 from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.levels import levels_of
-from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
+from uq.report.outcomes import category_table, outcomes, result_tables, status_table
 from uq.report.pictures import pictures
 from uq.rows.elements import analysis_of
 from uq.rows.nesting import is_nested, nesting_of, size_in_words
@@ -108,13 +108,15 @@ def uncertainty(findings: Findings, file: str) -> Iterator[Item]:
             tables=list(result_tables([one for one in found if one.output == name])),
             pictures=[one for one in drawn if name in (one.of.name, output_of(one.of.name))],
         )
+    for name, shares in findings.summary.categories.items():
+        yield Item(f"Statistics of {name}", tables=[category_table(name, shares)])
     if findings.summary.notes:
         yield Item("What the rows cannot show", text=findings.summary.notes)
     if findings.summary.regimes:
         about = [one for one in drawn if output_of(one.of.name) == REGIME]
         yield Item(
             "Regimes",
-            tables=[regime_table(findings.summary)],
+            tables=[category_table("regime", findings.summary.regimes)],
             pictures=[*about, *pictures(findings, "rows")],
         )
     yield Item("Estimators and their sources", tables=_estimators(findings))
