@@ -280,6 +280,25 @@ def test_nothing_is_said_of_an_event_without_rows():
     assert Ranking("y", "sobol").sentence == ""
 
 
+def test_undefined_rows_are_named_beside_a_probability():
+    turn = np.random.default_rng(1).uniform(-0.5, 0.5, 200)
+    turn[:50] = np.nan
+    ds = with_output(linear(samples=200), "turn", turn, "angle")
+    ds["turn"].attrs |= {"units": "rad", "may_be_undefined": 1}
+    ds = asking(ds, outputs=["turn"], thresholds={"turn": "20 degrees"})
+    (event,) = answer(ds).lead.events
+    share, _, _, undefined = numbers(
+        r"# % \(# to # %\) exceed 20° in magnitude; # % are undefined\.", event.sentence
+    )
+    known = summarised(ds)["outputs"]["turn"]["thresholds"][repr(event_at(event))]
+    assert share == pytest.approx(100 * known["above"]["value"], abs=0.05)
+    assert undefined == 100 * known["undefined"] == 25
+
+
+def event_at(event):
+    return float(event.name.partition(">")[2].rstrip(")"))
+
+
 def test_a_notebook_shows_the_same_sentences():
     found = uq.answer(linear("saltelli", samples=64, replicates=4))
     html = found._repr_html_()

@@ -40,10 +40,11 @@ def _show(found: Comparison, first: Path, second: Path) -> None:
         grid([("A", change.first), ("B", change.second)], indent=4)
     if not found.changed:
         paragraph("none", indent=2)
-    if found.regimes:
-        heading("\nregime")
-        lines = [(label, *_cells(one)) for label, one in found.regimes.items()]
-        grid(lines, header=_HEADER)
+    for name, shares in found.shares.items():
+        if not shares:
+            continue
+        heading(f"\n{name}")
+        grid([(label, *_cells(one)) for label, one in shares.items()], header=_HEADER)
     for name, output in found.outputs.items():
         unit = _unit(output)
         heading(f"\n{name}{in_brackets(unit)}")

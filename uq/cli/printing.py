@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.padding import Padding
 from rich.table import Table
@@ -48,8 +49,12 @@ def _finite(value: Any) -> Any:
 
 
 def heading(text: str, more: str = "") -> None:
-    """Print a bold heading, followed by an explanation."""
-    console.print(Text.assemble((plain(text), "bold"), plain(f"  {more}") if more else ""))
+    """Print a bold heading, followed by an explanation: below it where the line is too short."""
+    text, more = plain(text), plain(more)
+    fits = cell_len(text.lstrip("\n")) + 2 + cell_len(more) <= console.width
+    console.print(Text.assemble((text, "bold"), f"  {more}" if more and fits else ""))
+    if more and not fits:
+        paragraph(more, indent=2)
 
 
 def paragraph(text: str, indent: int = 4) -> None:

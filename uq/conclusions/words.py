@@ -131,7 +131,12 @@ def sentence(text: str) -> str:
 def rows_in_words(rows: float) -> str:
     """Return a number of rows, rounded up to two digits."""
     digit = 10 ** max(floor(log10(rows)) - 1, 0)
-    return f"{ceil(rows / digit) * digit:,}".replace(",", " ")
+    return grouped(ceil(rows / digit) * digit)
+
+
+def grouped(rows: int) -> str:
+    """Return a number of rows with its thousands apart."""
+    return f"{rows:,}".replace(",", " ")
 
 
 def share_text(one: Estimate) -> str:
