@@ -8,6 +8,7 @@ import typer
 
 from uq.cli import options as given
 from uq.cli import say_when_interrupted
+from uq.errors import InputError
 from uq.running.options import RunOptions
 
 
@@ -66,6 +67,28 @@ def check(study: given.StudyFile, model: given.ModelReference = None) -> None:
     from uq.cli.check import check as show_check
 
     show_check(study, model)
+
+
+def serve(
+    model: given.ModelName,
+    port: Annotated[int, typer.Option(min=0, max=65535, help="0: any that is free.")] = 4242,
+    host: Annotated[
+        str, typer.Option(metavar="HOST", help="Who reaches it can have rows computed.")
+    ] = "127.0.0.1",
+) -> None:
+    """Offer a model to other programs, by the protocol of UM-Bridge."""
+    from uq.outside.serving import server_of
+    from uq.running.loading import load_model
+
+    found = load_model(model)
+    try:
+        server = server_of(found, host, port)
+    except OSError as error:
+        raise InputError(f"uq: {host}:{port}: {error.strerror or error}") from None
+    say_when_interrupted("stopped")
+    with server:
+        print(f"http://{host}:{server.server_address[1]}/{found.name}", flush=True)
+        server.serve_forever()
 
 
 def schema() -> None:
