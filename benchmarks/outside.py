@@ -1,8 +1,8 @@
 """What a row of a machine from outside costs beside the least that it could cost.
 
 ``python -m benchmarks.outside``: a plain function, a program beside a bare loop of subprocesses
-that write and read the same files, and a UM-Bridge server beside the package's own client. One row after
-the other in one process, by turns, the median of several.
+that write and read the same files, and a UM-Bridge server beside the package's own client. One
+row after the other in one process, by turns, the median of several.
 """
 
 import socket
