@@ -28,6 +28,7 @@ VERBS = (
     results.compare,
     results.what_if,
     results.update,
+    results.next_inspection,
     results.twin,
     results.trace,
     studies.rare_event,

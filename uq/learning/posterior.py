@@ -57,6 +57,8 @@ class Posterior:
     evidence : Evidence
     likelihoods : UnitLikelihoods
         Of the inspected units, in their order.
+    world : ndarray of int, shape (n,)
+        Of each row.
     looks : dict of Inspection to Look
     """
 
@@ -66,6 +68,7 @@ class Posterior:
     evidence: Evidence
     likelihoods: UnitLikelihoods
     looks: Mapping[Inspection, Look]
+    world: Rows
 
     @property
     def weights(self) -> list[Smoothed]:
@@ -122,7 +125,7 @@ def posterior(
         for unit, label in enumerate(labels)
     }
     everyone = _uninspected(found, world, place, scale, replicates_of(rows))
-    return Posterior(everyone, units, scale, found, likelihoods, looks)
+    return Posterior(everyone, units, scale, found, likelihoods, looks, world)
 
 
 def _looks(rows: xr.Dataset, inspections: Sequence[Inspection]) -> dict[Inspection, Look]:
@@ -215,6 +218,6 @@ def _drawn(grid: Grid, worth: Floats, scale: Scale) -> Floats:
     here = np.arange(len(worth)), node
     with np.errstate(divide="ignore", invalid="ignore"):
         within = (wanted - (above[here] - worth[here])) / worth[here]
-    width = (grid.high - grid.low) / worth.shape[1]
-    places = grid.low + (node + np.clip(within, 0.0, 1.0)) * width
+    edges = grid.edges
+    places = edges[node] + np.clip(within, 0.0, 1.0) * (edges[node + 1] - edges[node])
     return scale.quantiles(np.where(above[:, -1] > 0, places, at))
