@@ -10,4 +10,7 @@ Reading order; a module imports only those above it:
     folders         a folder for each row, kept when it failed
     descendants     processes that a program leaves behind
     program         a program as a machine, and its model
+    um_bridge       the protocol by which servers of models are asked
+    server          a model on a server as a machine
+    serving         a model offered to others
 """

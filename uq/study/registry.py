@@ -29,6 +29,7 @@ from uq.study.sources import fingerprint
 GROUP = "vibrolife.models"
 
 _PROGRAM = ".toml"
+_SERVERS = ("http://", "https://")
 _FILE = re.compile(r"(.+\.py)(?::(\w+))?")
 _KNOWN_TO_RETURN = "\n"  # what follows it in a reference is what a function returns
 
@@ -46,7 +47,7 @@ def find_model(reference: str) -> Model:
     reference : str
         The name of an installed model, ``"package.module:ATTRIBUTE"``, or ``"file.py"`` with a
         model or a function under `uq.outside.function.machine` (``"file.py:NAME"`` where there are
-        several), or ``"file.toml"`` that describes a program.
+        several), ``"file.toml"`` that describes a program, or ``"http://host:port/NAME"``.
 
     Returns
     -------
@@ -64,6 +65,10 @@ def find_model(reference: str) -> Model:
         return program_of(Path(reference))
     plain, _, known = reference.partition(_KNOWN_TO_RETURN)
     returned = from_plain(json.loads(known)) if known else None
+    if plain.startswith(_SERVERS):
+        from uq.outside.server import server_model
+
+        return server_model(plain, returned)
     return _load(_point(plain), f"model '{plain}'", returned)
 
 
@@ -75,6 +80,8 @@ def with_returns(reference: str, returned: Mapping[str, Returned]) -> str:
 
 def located(reference: str) -> str:
     """Return a reference that holds in any folder of this computer."""
+    if reference.startswith(_SERVERS):
+        return reference
     if reference.endswith(_PROGRAM):
         return str(Path(reference).absolute())
     found = _FILE.fullmatch(reference)
@@ -238,6 +245,10 @@ def code_of(reference: str) -> str:
         from uq.outside.program import code_of_program
 
         return code_of_program(Path(reference))
+    if reference.startswith(_SERVERS):
+        from uq.outside.server import code_of_server
+
+        return code_of_server(reference.partition(_KNOWN_TO_RETURN)[0])
     module = module_of(reference)
     if not (found := fingerprint(module)):
         raise InputError(

@@ -262,6 +262,25 @@ def update(
     )
 
 
+def next_inspection(
+    result: given.ResultFile,
+    inspect: Annotated[
+        str, typer.Option(metavar="OUTPUT", help="What to inspect, such as 'depth'.")
+    ],
+    at: Annotated[list[float] | None, typer.Option(metavar="T", help="When [s].")] = None,
+    units: Annotated[
+        list[int] | None, typer.Option(min=1, metavar="N", help="How many more units.")
+    ] = None,
+    cv: Annotated[float, typer.Option(min=0.0, help="Error of the measurement.")] = 0.1,
+    life: Annotated[str | None, typer.Option(metavar="NAME", help="The life to narrow.")] = None,
+    json: given.Json = False,
+) -> None:
+    """Show what inspecting more units would be worth."""
+    from uq.cli import next_inspection as question
+
+    question.next_inspection(result, inspect, at or [], units or [1, 5, 20], cv, life, json)
+
+
 def twin(
     result: given.ResultFile, model: given.ModelReference = None, json: given.Json = False
 ) -> None:
