@@ -61,7 +61,6 @@ function lifeBy(rows, column, mask, probability) {
   const curve = outliving(column, mask), {low, high} = rows.independent ? greenwood(curve) : {low: [], high: []};
   const first = shares => curve.at[shares.findIndex(one => one <= 1 - probability)] ?? NaN;
   const value = first(curve.share), least = first(low);
-  if (isNaN(value)) return {value, low: NaN, high: NaN, more: "beyond the horizon"};
   return {value, low: least === curve.at[0] ? NaN : least, high: first(high), more: KAPLAN_MEIER};
 }
 
