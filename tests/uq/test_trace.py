@@ -4,6 +4,7 @@ import html
 import json
 import re
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,9 +15,11 @@ from nested_studies import nested
 
 import uq as api
 from uq.errors import InputError
+from uq.exploring.row_again import row
 from uq.exploring.updating import update
 from uq.keys import key_of, paths_of_numbers, value_at
 from uq.report import page
+from uq.store.files import write_result
 from uq.tracing.tracing import trace_json, traced
 from uq.tracing.verbs import VERBS
 
@@ -173,6 +176,27 @@ def test_numbers_of_weighted_rows_are_traced_too():
     assert traced(ds, "effective_rows").estimators[0].code.endswith("effective_rows")
     with pytest.raises(InputError, match="not with rows that inspections have weighted"):
         traced(ds, "sensitivity/rows_used")
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # their squares are 0 or infinite
+@pytest.mark.parametrize("size", [5e-324, 1e308])
+def test_numbers_at_the_ends_of_the_range_are_traced(size, no_other_figures):
+    ds = with_output(linear(), "v", np.random.default_rng(0).uniform(-1, 1, 64) * size)
+    check(ds, "summary", every=7)
+    check(ds, "answer", every=13)
+    assert "outputs/v/quantiles/0.5" in page(ds, "out.nc")
+    assert row(ds, lowest="v")["v"].item() == ds["v"].min().item()
+
+
+def test_neither_the_model_nor_its_code_is_needed(uq, write_study):
+    kind = "sample_models:KINDS"
+    uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")
+    ds = api.open_result("out.nc").assign_attrs(model="gone", code="0", numpy="0.9")
+    for key in ("outputs/angle/mean", "answer/quantities/angle/range", "status/ok"):
+        found = trace_json(traced(ds, key))
+        assert found["equal"] and found["code"] == "0" and "numpy" in found["versions_here"]
+    write_result(ds, Path("gone.nc"))
+    assert uq("report", "gone.nc", "--dossier").code == uq("report", "gone.nc").code == 0
 
 
 @pytest.mark.slow
