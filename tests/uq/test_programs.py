@@ -193,4 +193,5 @@ def test_folders_of_killed_processes_are_removed(folder):
         dead.mkdir()
         with Folders(folder / "rows").row([2.0]) as second:
             assert first.is_dir() and second.is_dir() and not dead.exists()
+    folders.leave()
     assert not (folder / "rows").exists()

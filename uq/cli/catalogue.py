@@ -6,6 +6,7 @@ from typing import Any
 from uq.cli.printing import console, grid, heading, number, paragraph
 from uq.contract import Model, Setting
 from uq.errors import InputError
+from uq.greek import readable
 from uq.study.registry import find_model, model_names
 from uq.units import powers
 from uq.wording import listed
@@ -67,7 +68,7 @@ def show(model: Model) -> None:
         else:
             heading(name, symbol)
             paragraph(f"{nominal}, admissible: {bounds}")
-        paragraph(model.parameter(name).meaning)
+        paragraph(readable(model.parameter(name).meaning))
         paragraph(model.parameter(name).source)
     if model.setting_names:
         heading("\nSettings")
@@ -82,7 +83,7 @@ def show(model: Model) -> None:
         dims = f"({', '.join(output.dims)})" if output.dims else ""
         unit = "" if output.unit == "1" else f" [{powers(output.unit)}]"
         heading(f"  {name}{dims}", f"{output.kind}{unit}")
-        paragraph(output.meaning)
+        paragraph(readable(output.meaning))
         if output.categories:
             paragraph(listed(output.categories))
     if model.references:

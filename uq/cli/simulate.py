@@ -11,6 +11,7 @@ from uq.cli.progress import say_compiling
 from uq.compilation import compilation
 from uq.contract import Model, Status
 from uq.errors import InputError
+from uq.greek import readable
 from uq.literals import read_number, read_toml
 from uq.places import file_behind
 from uq.rows.one_row import Row, run_row
@@ -148,12 +149,12 @@ def show_outputs(row: Row) -> None:
     """Print every output of a row, with its unit and meaning."""
     for name, output in row.model.outputs.items():
         if output.is_category:
-            heading(f"\n{name}", output.meaning)
+            heading(f"\n{name}", readable(output.meaning))
             grid([("", _plain(row.model, name, row.columns[name][0]) or "none")])
             continue
         states = list(_states(row, name))
         unit = unit_of(output.unit, typical(value for _, value, _ in states))
-        heading(f"\n{name}{in_brackets(unit)}", output.meaning)
+        heading(f"\n{name}{in_brackets(unit)}", readable(output.meaning))
         grid(
             [
                 (

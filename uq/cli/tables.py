@@ -16,6 +16,7 @@ from uq.cli.printing import console, grid, heading, note, paragraph
 from uq.conclusions.answer import conclude
 from uq.conclusions.parts import Answer
 from uq.estimate import Estimate
+from uq.greek import readable
 from uq.indices.targets import split_name
 from uq.rows.variables import outputs_of
 from uq.units import Unit, typical, unit_of
@@ -54,7 +55,7 @@ def show_summary(ds: xr.Dataset, summary: Summary) -> None:
         lines = [_share(one) for one in shares.values()]
         grid(lines, header=("", "share", "95 % interval", "rows", "with failed rows"))
     for name, output in summary.outputs.items():
-        meaning = ds[name.partition("[")[0]].attrs["long_name"]
+        meaning = readable(ds[name.partition("[")[0]].attrs["long_name"])
         block = _block(ds, name, output)
         heading(f"\n{name}{in_brackets(block.unit)}", meaning)
         grid(_lines(output, block), header=("", "value", "95 % interval", ""))

@@ -60,8 +60,11 @@ class Folders:
             raise
         finally:
             shutil.rmtree(folder, ignore_errors=True)
-            with suppress(OSError):  # unless it holds others
-                self.root.rmdir()
+
+    def leave(self) -> None:
+        """Remove the folder of the folders, if it holds none."""
+        with suppress(OSError):
+            self.root.rmdir()
 
     def kept(self, numbers: Sequence[float | int]) -> Path:
         """Return the folder in which a row is kept that failed."""

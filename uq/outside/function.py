@@ -48,8 +48,9 @@ def machine(
         ``seed`` gets the seed of the row. It returns a dict of numbers and arrays; a life that
         never ends is ``inf``, one that is not followed to its end `uq.censored`.
     returns : dict of str to str or Returned, optional
-        Output -> its unit, or more about it. Without it, the nominal row and the first 64 rows of a
-        study tell.
+        Output -> its unit, or more about it; the function may then return a tuple in this order,
+        as functions compiled by numba do. Without it, the nominal row and the first 64 rows of a
+        study show what is returned.
     title : str
         One line; by default the first line of the docstring.
     version : str

@@ -93,6 +93,14 @@ class MachineFile(_Table):
     outputs: Annotated[dict[_NAME, OutputTable], Field(min_length=1)]
 
 
+def machine_schema() -> dict[str, Any]:
+    """Return the JSON Schema of machine files (draft 7)."""
+    schema = MachineFile.model_json_schema(ref_template="#/definitions/{model}")
+    schema["definitions"] = schema.pop("$defs")
+    head = {"$schema": "http://json-schema.org/draft-07/schema#"}
+    return head | schema | {"title": "Program as a machine of vibrolife"}
+
+
 def read_machine(path: Path) -> MachineFile:
     """Read a machine file.
 

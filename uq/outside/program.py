@@ -47,7 +47,7 @@ def program_of(path: Path) -> Model:
     texts = [*read.machine.command, _template(read, folder)]
     random = any(f"{{{SEED}" in text for text in texts)
     machine = read.machine
-    batch = RowByRow(runner, tuple(fields), returned, True)
+    batch = RowByRow(runner, tuple(fields), returned, True, runner.folders.leave)
     title = machine.title or machine.name
     return model_from(machine.name, title, machine.version, fields, returned, batch, random)
 

@@ -165,11 +165,15 @@ def checked(
 ) -> Iterator[tuple[str, NDArray[np.float64], NDArray[np.bool_]]]:
     """Yield name, numbers and which of them are censored, of each output of a row.
 
+    A tuple has the outputs in the order of `expected`, for compiled functions without dicts.
+
     Raises
     ------
     WrongReturnError
         When the row returns anything else than `expected`.
     """
+    if isinstance(returned, tuple) and len(returned) == len(expected):
+        returned = dict(zip(expected, returned, strict=True))
     if not isinstance(returned, Mapping):
         raise WrongReturnError(f"returned {type(returned).__name__}, not a dict")
     for name in expected:

@@ -64,12 +64,15 @@ class RowByRow:
     returned : dict of str to Returned
     wants_seed : bool
         Whether the function takes the seed of the row too.
+    leave : callable
+        Called after some rows.
     """
 
     function: Callable[..., Any]
     names: tuple[str, ...]
     returned: Mapping[str, Returned]
     wants_seed: bool
+    leave: Callable[[], object] = lambda: None
 
     def __call__(
         self, x: Floats, seed: NDArray[np.uint64], settings: object
@@ -94,6 +97,7 @@ class RowByRow:
                 text = " ".join(str(error).split())
                 status[i] = Status.RAISED
                 messages[i] = f"{type(error).__name__}: {text}" if text else repr(error)
+        self.leave()
         return columns, status, messages
 
     def row(self, row: list[float], seed: int) -> Any:

@@ -54,8 +54,25 @@ def simulate(
     return single.simulate(model, set_ or [], setting or [], json, output, plot)
 
 
-def init(model: given.ModelName) -> None:
-    """Print a commented study file to edit."""
+def init(
+    model: Annotated[
+        str | None,
+        typer.Argument(metavar="MODEL", help="A model.", autocompletion=given.complete_model),
+    ] = None,
+    machine: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Write a folder with a machine of your own instead."),
+    ] = None,
+) -> None:
+    """Print a commented study file to edit, or write a machine of your own to start from."""
+    if (model is None) == (machine is None):
+        raise InputError("uq: give one of MODEL and --machine NAME")
+    if machine is not None:
+        from uq.cli.new_machine import write_machine
+
+        write_machine(machine)
+        return
+    assert model is not None
     from uq.running.loading import load_model
     from uq.study.template import template
 
@@ -91,12 +108,15 @@ def serve(
         server.serve_forever()
 
 
-def schema() -> None:
+def schema(
+    machine: Annotated[bool, typer.Option("--machine", help="Of machine files.")] = False,
+) -> None:
     """Print the JSON Schema of study files, for an editor."""
     from uq.cli.printing import print_json
+    from uq.outside.machine_file import machine_schema
     from uq.study.schema import json_schema
 
-    print_json(json_schema())
+    print_json(machine_schema() if machine else json_schema())
 
 
 def plan(
