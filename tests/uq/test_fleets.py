@@ -106,6 +106,17 @@ def test_units_and_the_exact_law_agree():
     assert exact.by[5e5][0].estimate.value == pytest.approx(5 * p.mean(), abs=0.1)
 
 
+def test_lives_as_computed_where_nothing_is_to_be_integrated():
+    ds = fleet_result(units=20)
+    found = fleet_of(ds, 5, [5e5], allow=1, plain=True)
+    assert found.integrated == ()
+    element = next(elements_of(ds, ["life"]))
+    ended = (element.values < 5e5).astype(float).reshape(200, 20, 1)
+    assert found.by[5e5][1].estimate.value == pytest.approx(at_most(ended, 5, 1).mean())
+    with pytest.raises(InputError, match="set units = 21 in .* depth is not"):
+        fleet_of(ds, 21, plain=True)
+
+
 def test_no_power_of_the_mean():
     """Units of a sample agree: the mean of powers is not the power of the mean."""
     found = fleet_of(fleet_result(), 50, [5e5]).by[5e5]

@@ -72,6 +72,8 @@ def fleet(
     by: float | Sequence[float] = (),
     allow: int = 0,
     output: str | None = None,
+    *,
+    plain: bool = False,
 ) -> "pd.DataFrame":
     """Estimate when the first unit of a fleet ends, and how many have ended by a time.
 
@@ -88,6 +90,8 @@ def fleet(
         Number of units that may have ended.
     output : str, optional
         A life, or one element of it; needed where the study shows several.
+    plain : bool, optional
+        Whether to take lives as computed; by default what only scales them is integrated.
 
     Returns
     -------
@@ -113,7 +117,7 @@ def fleet(
     ['first', 'failed', 'at_most_allowed']
     """
     times = [float(by)] if isinstance(by, int | float) else [float(one) for one in by]
-    found = fleet_of(ds, size, times, allow, output)
+    found = fleet_of(ds, size, times, allow, output, plain=plain)
     lines = [("first", p, one) for p, one in found.first.items()]
     for time, (failed, at_most) in found.by.items():
         lines += [("failed", time, failed), ("at_most_allowed", time, at_most)]
@@ -147,6 +151,8 @@ def fleet_of(
     by: Sequence[float] = (),
     allow: int = 0,
     output: str | None = None,
+    *,
+    plain: bool = False,
 ) -> Fleet:
     """Return what `fleet` tabulates."""
     refuse_weights(ds, "fleets")
@@ -158,7 +164,7 @@ def fleet_of(
         raise InputError(f"uq fleet: {bad[0]!r} is not a time after the start")
     rows = independent_rows(ds)
     element = the_life(rows, output)
-    units = units_of(rows, element)
+    units = units_of(rows, element, plain=plain)
     _refuse(units, size)
     analysis = analysis_of(ds)
     times = list(by) or list(analysis.thresholds.get(element.output, ()))
