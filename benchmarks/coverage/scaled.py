@@ -23,8 +23,8 @@ SPREADS = (0.2, 0.5, 1.0, 2.0, 5.0)
 """Standard deviations of the logarithm of what is not integrated, over that of what is."""
 
 CAUTIOUS = (
-    "where fewer than 20 effective rows carry a probability, the interval is at least as wide as"
-    " that of a share of hits; the rows that matter may be missing"
+    "allows for two more rows as extreme as the farthest outlier and, where fewer than 20 effective"
+    " rows carry the probability, is no narrower than the interval of a share of hits"
 )
 
 

@@ -382,6 +382,11 @@ def test_python_terminal_json_and_report_agree(uq, tmp_path):
 
 
 @pytest.mark.slow
+def test_intervals_of_fleets_with_a_shared_scale_hold_the_truth():
+    assert [line for line in counted.shared_scale(1000) if line.unexplained] == []
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("name", list(counted.CASES))
 def test_intervals_of_fleets_hold_the_truth(name):
     assert [line for line in counted.fleets(name, 200) if line.unexplained] == []
