@@ -302,6 +302,7 @@ def test_more_units_than_there_are_is_refused():
         ({"size": 0}, "at least 1"),
         ({"size": 1, "allow": -1}, "at least 0"),
         ({"size": 1, "by": [-1.0]}, "not a time"),
+        ({"size": 1, "by": [np.inf]}, "not a time"),
         ({"size": 1, "output": "rate"}, "no such output"),
     ],
 )

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 import xarray as xr
@@ -160,7 +161,7 @@ def fleet_of(
         raise InputError(f"no fleet: the rows of a '{ds.attrs['design']}' design {why}")
     if size < 1 or allow < 0:
         raise InputError("uq fleet: the size must be at least 1, and what is allowed at least 0")
-    if bad := [time for time in by if not time > 0]:
+    if bad := [time for time in by if not 0 < time < inf]:
         raise InputError(f"uq fleet: {bad[0]!r} is not a time after the start")
     rows = independent_rows(ds)
     element = the_life(rows, output)
