@@ -116,6 +116,7 @@ def _packages() -> Iterator[tuple[str, Box]]:
         runners = [name for name in names if name in RUNNERS]
         others = [name for name in names if name not in (*READERS, *RUNNERS)]
         end = UQ if number else WIDTH - 2 * MARGIN  # what machines import, too
+        end -= LANE * (names == ("outside",))  # which leaves the arrow to `methods` a way
         spans = {
             **_shared(readers, 0, LEFT + (LANE - GAP / 2) * (names == ("report",))),
             **_shared(others, LEFT + GAP / 2 if readers else 0, end),

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from matplotlib import pyplot
 
 import uq as public
 from uq import plots
@@ -41,6 +42,8 @@ SOURCES["docs/gallery.md"] = pages.expanded(SOURCES["docs/gallery.md"])
 every_source = pytest.mark.parametrize("name", SOURCES)
 
 ROOT_OPTIONS = ("--help", "--version", "--install-completion", "--show-completion")
+ELSEWHERE = ("docs/clusters.md", "docs/gallery.md")
+"""Pages whose Python needs a cluster, or is run by a test of its own."""
 EXAMPLES = sorted(
     {found.__module__ for name in public.__all__ if isfunction(found := getattr(public, name))}
 )
@@ -104,6 +107,8 @@ def test_commands_and_their_options_exist(name):
 @every_source
 def test_studies_shown_are_accepted(name):
     for block in blocks(name, "toml"):
+        if "machine" in tomllib.loads(block):
+            continue  # a machine file
         refusals = {model: refusal(block, model) for model in models_of(block)}
         assert not all(refusals.values()), (block, refusals)
 
@@ -141,6 +146,25 @@ def test_python_shown_compiles_and_names_what_there_is(name):
         for module, names in re.findall(r"^from ((?:uq|models)\.\S+) import (.*)$", block, re.M):
             found = vars(importlib.import_module(module))
             assert set(re.split(r", *", names)) <= found.keys()
+
+
+RUN = [name for name in SOURCES if blocks(name, "python") and name not in ELSEWHERE]
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+@pytest.mark.parametrize("name", RUN)
+def test_python_shown_runs(name, folder):
+    (folder / "studies").mkdir()
+    for path in (HOUSE / "studies").glob("*.toml"):
+        fewer = re.sub(r"^samples = \d+", "samples = 128", path.read_text(), flags=re.MULTILINE)
+        (folder / "studies" / path.name).write_text(fewer)
+    names = {"__name__": "shown"}
+    for block in blocks(name, "python"):
+        for result in re.findall(r'open_result\("(.+?)"\)', block):
+            public.run("studies/beam-lifetime.toml", result)
+        exec(compile(block.replace(", 200)", ", 5)"), name, "exec"), names)
+    pyplot.close("all")
 
 
 @every_source
@@ -238,6 +262,16 @@ def test_the_answer_that_the_readme_quotes_has_the_numbers_that_are_printed():
     quoted, printed = map(numbers, (first_answer.quoted(), first_answer.printed()))
     assert len(quoted) > 10
     assert quoted == pytest.approx(printed, rel=2e-3), "run: python docs/first_answer.py"
+
+
+def test_the_study_that_the_readme_shows_is_the_one_that_it_runs():
+    shown = tomllib.loads(blocks("README.md", "toml")[0])
+    study = tomllib.loads((HOUSE / first_answer.STUDY).read_text())
+    for law in study["uncertain"].values():
+        del law["source"]
+    for key in ("description", "seed"):
+        study["study"].pop(key, None), study["design"].pop(key, None)
+    assert shown == study
 
 
 def numbers(text):

@@ -1,7 +1,7 @@
 """Numbers, intervals and laws as text, for tables on a terminal and in a report."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import floor, inf, isfinite, isnan, log10
 from typing import Any
 
@@ -183,6 +183,12 @@ def percent_with_interval(estimate: Estimate, failed: Estimate | None = None) ->
 def percent_interval(low: float, high: float) -> str:
     """Return the ends of the interval of a share in per cent."""
     return f"{percent(low).removesuffix(' %')} to {percent(high)}"
+
+
+def listed(labels: Sequence[str], most: int = 8) -> str:
+    """Return the labels of a category; of many, the first and the last."""
+    some = labels if len(labels) <= most else (*labels[:3], "...", labels[-1])
+    return ", ".join(some)
 
 
 def law(stated: Any) -> str:

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 from command_line import strict_json
-from computed import computed, once, study_of, with_output
+from computed import asking, computed, linear, once, study_of, with_output
 from scipy import special, stats
 
 import uq as api
@@ -19,6 +19,7 @@ from uq.population.counting import at_most
 from uq.population.fleets import units_of
 from uq.population.worlds import ONE_UNIT, Noisy
 from uq.rows.elements import elements_of
+from uq.store.files import write_result
 
 OWN, SHARED = 0.4, 0.3
 
@@ -391,3 +392,15 @@ def test_intervals_of_fleets_with_a_shared_scale_hold_the_truth():
 @pytest.mark.parametrize("name", list(counted.CASES))
 def test_intervals_of_fleets_hold_the_truth(name):
     assert [line for line in counted.fleets(name, 200) if line.unexplained] == []
+
+
+def test_units_whose_life_ends_in_success_have_succeeded(uq, folder):
+    ds = with_output(linear(samples=64), "start", np.linspace(1.0, 5.0, 64), "lifetime")
+    ds["start"].attrs["success"] = "the motors have locked"
+    write_result(asking(ds, outputs=["start"]), folder / "out.nc")
+    shown = uq("fleet", "out.nc", "--size", "1", "--by", "3000 ms").out
+    assert "the first of 1 has succeeded" in shown and "by 3000 ms" in shown
+    assert "have succeeded" in shown and "ended" not in shown
+    refused = uq("fleet", "out.nc", "--size", "1", "--by", "3 kg")
+    assert (refused.code, refused.out) == (2, "")
+    assert refused.err.startswith("--by 3 kg: the unit 'kg' does not fit 'a life'")

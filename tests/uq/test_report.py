@@ -201,7 +201,7 @@ def test_where_all_rows_failed_the_report_says_why():
 def test_what_is_missing_is_left_out_or_said(ds):
     found = read(ds)
     assert found.tags.count("section") >= 8
-    assert ("Regimes, with" in found.plain_words) == ("regime" in ds)
+    assert ("Regime, with" in found.plain_words) == ("regime" in ds)
     for strange in ("nan", "None", "[]", "inf "):
         assert not re.search(
             rf"(?<![a-z]){re.escape(strange)}(?![a-z])", found.words.split("cpu")[0]

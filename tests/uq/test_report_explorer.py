@@ -40,7 +40,8 @@ def drag_handle(browser, name, end, steps):
 def place_of_a_point(browser):
     """Return a place of the page where a point is drawn, in the colour of rows."""
     return browser.value(
-        "(() => { const c = document.querySelector('.scatter canvas'); c.scrollIntoView();"
+        "(() => { const c = document.querySelector('.scatter canvas');"
+        " c.scrollIntoView({behavior: 'instant'});"
         " const box = c.getBoundingClientRect();"
         " const p = c.getContext('2d').getImageData(100, 20, c.width - 140, c.height - 60);"
         " for (let i = 0; i < p.data.length; i += 4) if (p.data[i] === 160 && p.data[i + 1] === 166"
@@ -192,3 +193,48 @@ def test_a_page_of_many_rows_is_small_and_says_which_part_it_holds(shown):
     assert len(inside["columns"]) == 12 and inside["total"] == 100_000
     assert len(numbers) == MOST_ROWS and 45_000 < numbers.mean() < 55_000
     assert len(json.dumps(inside)) < 4e6
+
+
+EVERYTHING = """(async () => {
+  const found = [], frame = requestAnimationFrame, sliders = ".tolerance input";
+  const painted = () => new Promise(f => frame(() => frame(f)));
+  const set = async (element, value, event) => {
+    element.value = value;
+    element.dispatchEvent(new Event(event));
+    await painted();
+    const words = document.body.innerText.match(/NaN|Infinity|undefined/);
+    if (words) found.push(words[0]);
+    if (document.querySelector('svg [d*=NaN], svg [x*=NaN], svg [x1*=NaN]')) found.push("path");
+    if (document.documentElement.scrollWidth > innerWidth) found.push("too wide");
+  };
+  for (const select of document.querySelectorAll("select"))
+    for (const option of select.options) await set(select, option.value, "change");
+  for (const handle of document.querySelectorAll(".range input")) await set(handle, 250, "input");
+  for (const chip of document.querySelectorAll(".chip")) chip.click();
+  for (const value of [0.2, 1.5, 0.9])
+    for (const slider of document.querySelectorAll(sliders)) await set(slider, value, "input");
+  await new Promise(f => setTimeout(f, 300));
+  return found })()"""
+
+
+def odd_results():
+    """Yield results that leave little to show, or too much."""
+    asked = {"thresholds": {"y": 6.0}}
+    yield linear(samples=1, analysis=asked)
+    yield linear(samples=2, units=2, analysis=asked)
+    yield kinds(samples=7, analysis={"thresholds": {"life": 1.0}})
+    ds = linear(samples=50)
+    for values in (np.full(50, 3.0), np.full(50, np.nan), 10.0 ** np.linspace(-200, 200, 50)):
+        ds = with_output(ds, f"y{len(ds)}", values)
+    ds["y"].attrs["long_name"] = "</script> " + 60 * "long" + " \u202e \U0001f600 \"'&"
+    yield ds
+
+
+def test_odd_results_are_shown_without_a_fault(shown):
+    for ds in odd_results():
+        browser = shown(ds, width=400)
+        answer = browser.do(
+            "Runtime.evaluate", expression=EVERYTHING, awaitPromise=True, returnByValue=True
+        )
+        assert answer["result"].get("value") == [], answer
+        assert browser.complaints() == []

@@ -24,7 +24,7 @@ from uq.report.cells import Cell, Table, cell, without_empty_columns
 from uq.report.convergence import convergence_of
 from uq.report.indices import sensitivity_of
 from uq.report.inputs import _quantiles, fixed_inputs, input_tables
-from uq.report.outcomes import outcomes, regime_table, result_tables, status_table
+from uq.report.outcomes import category_table, outcomes, result_tables, status_table
 
 DAY = 86400.0
 
@@ -85,6 +85,17 @@ def test_probabilities_stand_on_their_side_of_the_threshold():
     assert float(below.text) == pytest.approx(11 / 64, abs=1e-4)
 
 
+def test_undefined_rows_have_a_column_beside_both_probabilities():
+    ds = kinds(samples=100, analysis={"outputs": ["angle"], "thresholds": {"angle": "30 degrees"}})
+    table = results_of(ds, "Probabilities")
+    line = lines(table)["angle"]
+    share = float(np.isnan(ds["angle"].values).mean())
+    assert line["undefined"] == f"{100 * share:.1f} %" and line["threshold"] == "magnitude 30°"
+    assert float(line["P(above)"]) + float(line["P(below)"]) + share == pytest.approx(1, abs=1e-3)
+    whole = results_of(lives(thresholds={"life": [7 * DAY]}), "Probabilities")
+    assert "undefined" not in whole.header
+
+
 def test_a_probability_that_assumes_something_says_so():
     ds = lives(censored=30, thresholds={"life": [14 * DAY]})
     entry = summarised(ds)["outputs"]["life"]["thresholds"][f"{14 * DAY!r}"]
@@ -112,7 +123,7 @@ def test_the_status_table_is_of_all_rows():
 def test_shares_of_regimes_have_their_interval():
     ds = kinds(samples=50)
     summary = summarise(ds)
-    label, rows, share = regime_table(summary).rows[0]
+    label, rows, share = category_table("regime", summary.regimes).rows[0]
     low, high = (100 * getattr(summary.regimes["slow"].estimate, end) for end in ("low", "high"))
     assert (label.text, rows.text) == ("slow", "25")
     assert (share.text, share.more) == ("50.0 %", f"{low:.1f} to {high:.1f} %")

@@ -46,6 +46,9 @@ def test_an_angle_is_in_degrees_and_its_probability_of_the_magnitude(printed):
     lines = printed("summary", asking(ds, outputs=["psi"], thresholds={"psi": np.radians(12)}))
     assert cells(lines, "psi [°]")
     assert float(cells(lines, "P(|psi| > 12°)")[0]) == pytest.approx(0.4, abs=0.03)
+    ds["psi"][:16] = np.nan
+    lines = printed("summary", asking(ds, outputs=["psi"], thresholds={"psi": "12 degrees"}))
+    assert cells(lines, "P(|psi| > 12°)")[-1] == "25.0 % undefined"
 
 
 def test_tolerance_bounds_that_few_rows_cannot_give_say_how_many_can(printed):

@@ -3,17 +3,23 @@
 import html
 import json
 import re
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 from command_line import strict_json
 from computed import computed, kinds, linear, with_output
+from learnt_studies import measured, wear
 from nested_studies import nested
 
 import uq as api
 from uq.errors import InputError
+from uq.exploring.row_again import row
+from uq.exploring.updating import update
 from uq.keys import key_of, paths_of_numbers, value_at
 from uq.report import page
+from uq.store.files import write_result
 from uq.tracing.tracing import trace_json, traced
 from uq.tracing.verbs import VERBS
 
@@ -161,6 +167,64 @@ def test_a_trace_says_who_estimates_and_who_made_the_rows(uq, write_study):
 
 
 LAW = 'distribution = "uniform", lower = 1e-10, upper = 9e-10'
+
+
+def test_numbers_of_weighted_rows_are_traced_too():
+    ds = update(wear(samples=2000, analysis={"thresholds": {"life": [5.2e5]}}), measured(5e5))
+    check(ds, "summary", every=4)
+    check(ds, "answer", every=11)
+    assert traced(ds, "effective_rows").estimators[0].code.endswith("effective_rows")
+    with pytest.raises(InputError, match="not with rows that inspections have weighted"):
+        traced(ds, "sensitivity/rows_used")
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # their squares are 0 or infinite
+@pytest.mark.parametrize("size", [5e-324, 1e308])
+def test_numbers_at_the_ends_of_the_range_are_traced(size, no_other_figures):
+    ds = with_output(linear(), "v", np.random.default_rng(0).uniform(-1, 1, 64) * size)
+    check(ds, "summary", every=7)
+    check(ds, "answer", every=13)
+    assert "outputs/v/quantiles/0.5" in page(ds, "out.nc")
+    assert row(ds, lowest="v")["v"].item() == ds["v"].min().item()
+
+
+def test_neither_the_model_nor_its_code_is_needed(uq, write_study):
+    kind = "sample_models:KINDS"
+    uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")
+    ds = api.open_result("out.nc").assign_attrs(model="gone", code="0", numpy="0.9")
+    for key in ("outputs/angle/mean", "answer/quantities/angle/range", "status/ok"):
+        found = trace_json(traced(ds, key))
+        assert found["equal"] and found["code"] == "0" and "numpy" in found["versions_here"]
+    write_result(ds, Path("gone.nc"))
+    assert uq("report", "gone.nc", "--dossier").code == uq("report", "gone.nc").code == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "key",
+    [
+        "outputs/life/quantiles/0.05",
+        "sensitivity/outputs/y/S1/x1",
+        "convergence/outputs/y/estimates/mean/0",
+        "what-if[uncertain.x1.upper=0.9]/outputs/y/mean",
+        "answer/quantities/y/promise",
+        "answer/quantities/y/ranking/contributions/0/inputs/x4",
+        "outputs/mistyped",
+    ],
+)
+def test_a_number_of_a_large_result_is_traced_in_seconds(key):
+    ds = linear(samples=100_000)
+    for name in "abcdefghij":
+        ds = with_output(ds, name, ds["y"].values + ord(name))
+    life = np.where(ds["x1"] < 0.02, np.inf, np.exp(ds["y"].values))
+    ds = with_output(ds, "life", life, "lifetime", np.zeros(100_000, bool))
+    start = time.process_time()
+    if key.endswith("mistyped"):
+        with pytest.raises(InputError, match="no such key"):
+            traced(ds, key)
+    else:
+        assert traced(ds, key).equal
+    assert time.process_time() - start < 10.0
 
 
 def test_names_with_a_slash_have_keys_of_their_own():

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from command_line import everything, strict_json
 from learnt_studies import exactly, measured, wear
-from scipy.stats import lognorm
+from scipy.stats import lognorm, norm
 
 from uq.errors import InputError, RunError
 from uq.exploring.updating import update
 from uq.learning.answer import learnt, learnt_json
+from uq.learning.next_inspection import worth
 from uq.learning.result import as_unit, prior_of
+from uq.population.smoothing import smoothed
 from uq.rows.results import open_result
 from uq.store.files import write_result
 
@@ -164,9 +166,55 @@ def test_a_study_is_run_first(uq, folder):
     assert json.loads(ended.out)["effective_rows"] == pytest.approx(200)
 
 
+def test_what_the_next_inspection_is_worth(uq, folder):
+    ds = wear(rate="shared", samples=2000, units=5)
+    found = worth(ds, "life", units=(1, 20), cv=0.1)
+    for units in (1, 20):
+        noise = (0.3**2 + np.log1p(0.1**2)) / units
+        exact = 1 - (1 - 0.5**2 / (0.5**2 + noise)) ** 0.5
+        assert found.narrowing[None, units] == pytest.approx(exact, abs=0.015)
+    posterior = update(ds, measured(6e5, 1e6, 1.2e6))
+    assert worth(posterior, "life").narrowing[None, 1] < found.narrowing[None, 1]
+    write_result(posterior, folder / "posterior.nc")
+    ended = uq("next-inspection", "posterior.nc", "--inspect", "life", "--json")
+    assert [one["units"] for one in strict_json(ended.out)["narrowing"]] == [1, 5, 20]
+    assert uq("next-inspection", "posterior.nc", "--inspect", "lif").err.count("\n") == 1
+
+
 def test_rows_as_those_of_one_unit(result):
     unit = as_unit(update(result, measured(5e5)), "A")
     lives = np.average(unit["life"], weights=unit["weight"])
     assert lives == pytest.approx(5e5, rel=0.05)
     with pytest.raises(InputError, match="unit 'B' was not inspected.*allowed: A"):
         as_unit(update(result, measured(5e5)), "B")
+
+
+def test_what_an_inspection_taught_and_how_strange_it_was(result):
+    found = learnt(update(result, measured(5e5)))
+    mean, cov = exactly([5e5])
+    before, start = np.diag([0.5**2, 0.3**2]), np.log([2.5e-10, 2.5e-4])
+    far = (mean - start) @ np.linalg.solve(before, mean - start)
+    volume = np.log(np.linalg.det(before) / np.linalg.det(cov))
+    bits = (np.trace(np.linalg.solve(before, cov)) + far - 2 + volume) / 2 / np.log(2)
+    assert [one.bits for one in found.taught] == [pytest.approx(bits, rel=0.03)]
+    deviation = (0.5**2 + 0.3**2 + np.log1p(0.1**2)) ** 0.5
+    assert found.strangeness == pytest.approx(2 * norm.sf(np.log(2) / deviation), abs=0.03)
+    assert found.notes == []
+
+
+def test_strange_inspections_come_with_a_warning():
+    ds = wear(rate="own", depth="shared", samples=2000, units=3)
+    found = learnt(update(ds, measured(2.8e5, 3.4e6, 2.9e5, cv=0.2)))
+    assert found.strangeness < 0.01
+    assert any(note.startswith("Warning: inspections as strange as these") for note in found.notes)
+
+
+def test_bounded_weights_need_no_light_tail():
+    rng = np.random.default_rng(0)
+    above = np.abs(0.003 * rng.standard_cauchy(300)).clip(0, 0.9)
+    weights = 0.44 + np.concatenate([0.001 * rng.random(5700), above])
+    assert smoothed(np.log(weights)).k > 0.6  # although none is much larger than the others
+    known = smoothed(np.log(weights), most=2.5)
+    assert (known.k, known.refusal) == (0.0, "")
+    np.testing.assert_allclose(known.weights, weights / weights.mean())
+    assert smoothed(np.log(weights), most=100.0).k > 0.6  # a single row may carry too much

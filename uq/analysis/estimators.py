@@ -30,13 +30,13 @@ def whole(element: Element) -> Sample:
     return Sample(element.present, np.column_stack([element.values, element.censored]))
 
 
-def in_regimes(rows: xr.Dataset) -> dict[str, Sample]:
-    """Return which rows are in each regime, of those that did not fail without one."""
-    codes = rows["regime"].values
+def in_categories(rows: xr.Dataset, name: str) -> dict[str, Sample]:
+    """Return which rows are in each category of an output, of those that did not fail without."""
+    codes = rows[name].values
     kept = (codes >= 0) | (rows["status"].values == Status.OK)
     return {
         label: Sample(kept, (codes == code).astype(float))
-        for code, label in flags(rows["regime"])
+        for code, label in flags(rows[name])
         if code >= 0
     }
 

@@ -48,6 +48,8 @@ class Fleet:
     by : dict of float to tuple of Banded
         Time -> number that has ended, probability that at most `allow` have.
     notes : list of str
+    is_success : bool
+        Whether the end of the life is wished for.
     """
 
     output: str
@@ -59,6 +61,12 @@ class Fleet:
     first: dict[float, Banded]
     by: dict[float, tuple[Banded, Banded]]
     notes: list[str]
+    is_success: bool = False
+
+    @property
+    def ended(self) -> str:
+        """What a unit has done at the end of its life, in words."""
+        return "succeeded" if self.is_success else "ended"
 
     @property
     def sentences(self) -> list[str]:
@@ -191,7 +199,8 @@ def fleet_of(
     notes += [f"the 5 and 95 % points assume {one.removeprefix('that ')}" for one in assumed]
     design = size_in_words(place.samples, place.units, place.repeats)
     names = units.integrated
-    return Fleet(element.name, size, allow, enough, design, names, first, ended, notes)
+    is_success = bool(element.declared.success)
+    return Fleet(element.name, size, allow, enough, design, names, first, ended, notes, is_success)
 
 
 def the_life(rows: xr.Dataset, output: str | None) -> Element:

@@ -31,12 +31,12 @@ def fleet(
         return
     heading(str(ds.attrs["title"]), f"{ds.attrs['source']}, {found.design}")
     unit = unit_of("s", typical(one.estimate.value for one in found.first.values()))
-    heading(f"\n{found.output}{in_brackets(unit)}", f"the first of {size} ends")
+    heading(f"\n{found.output}{in_brackets(unit)}", f"the first of {size} has {found.ended}")
     _show([(f"quantile {p!r}", one) for p, one in found.first.items()], unit.size)
     for time, (failed, at_most) in found.by.items():
         heading(f"\nby {threshold(time, 's')}")
-        kept = "none has ended" if allow == 0 else f"at most {allow} have ended"
-        _show([("have ended", failed), (f"P({kept})", at_most)])
+        kept = f"none has {found.ended}" if allow == 0 else f"at most {allow} have {found.ended}"
+        _show([(f"have {found.ended}", failed), (f"P({kept})", at_most)])
     for text in found.sentences:
         note(text)
 

@@ -11,9 +11,10 @@ from uq.cli import say_when_interrupted
 from uq.cli.printing import console, grid, heading, note, paragraph, print_json
 from uq.cli.run import carried_out, loaded
 from uq.estimate import Estimate
-from uq.exploring.updating import is_study, learn, samples_for
+from uq.exploring.updating import check_rows, is_study, learn, samples_for
 from uq.learning.answer import Learnt, learnt, learnt_json
 from uq.learning.inputs_learnt import InputLearnt
+from uq.learning.inspections import Inspection
 from uq.learning.ledger import read
 from uq.learning.remaining import ANY, Remaining
 from uq.rows.results import open_result
@@ -49,6 +50,7 @@ def update(
         ds, _ = carried_out(target, quiet, options, partial(run_study, study, target))
     else:
         ds = open_result(source)
+        check_rows(ds, rows)
     say_when_interrupted("interrupted; nothing was written")
     found = learn(ds, new, output, model_error)
     answer = learnt(found, by)
@@ -72,11 +74,23 @@ def _show(ds: xr.Dataset, found: Learnt) -> None:
     if found.confounded:
         heading("\nConfounded by the inspections", "rank correlation")
         grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in found.confounded[:5]])
+    if found.taught:
+        heading("\nTaught most", "beyond all other inspections [bit]")
+        most = sorted(found.taught, key=lambda one: -one.bits)[:5]
+        grid([(_what(one.inspection), f"{one.bits:.2f}") for one in most])
     for output in dict.fromkeys(one.output for one in found.lives):
         _show_lives([one for one in found.lives if one.output == output])
+    for text in found.notes:
+        note(text)
     worst = found.worst
     text = f"The rows are worth {worst.effective:.0f} of equal weight, or more"
     note(text + (f"; Pareto k = {worst.k:.2f}." if isfinite(worst.k) else "."))
+
+
+def _what(one: Inspection) -> str:
+    when = f" at {number(one.time)} s" if one.time is not None else ""
+    value = f" {number(one.value)}" if one.value is not None else ""
+    return f"{one.unit}: {one.output} {one.kind}{value}{when}"
 
 
 def _inputs(shown: Sequence[InputLearnt]) -> Iterator[tuple[str, ...]]:
@@ -94,9 +108,8 @@ def _show_lives(lives: Sequence[Remaining]) -> None:
     ends = (f"P(by {number(time / unit.seconds)})" for time in times)
     header = ("unit", "from", "median", "5 % ends within", "rows", *ends)
     grid([_line(one, unit.seconds, times) for one in lives if one.life], header=header)
-    for one in lives:
-        if not one.life:
-            paragraph(f"unit {one.unit}: {one.runs.reason}", indent=2)
+    if gone := [one.unit for one in lives if not one.life and one.unit != ANY]:
+        paragraph(f"hardly a row in which it still runs: {', '.join(gone)}", indent=2)
 
 
 def _line(one: Remaining, per: float, times: Sequence[float]) -> tuple[str, ...]:

@@ -71,6 +71,7 @@ def _event(one: Event) -> dict[str, Any]:
     found["share"] = (
         {"sentence": one.sentence} | json_form.whole(one.share) | json_form.failed(one.failed)
     )
+    found["share"] |= {"undefined": one.undefined}
     found["decided_by"] = {"sentence": one.decided_by}
     if one.curve is not None:
         parts = [*_parts(one.curve)]

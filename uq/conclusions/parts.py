@@ -34,8 +34,10 @@ class Event:
         The input that decides most; "" if that is not settled.
     curve : EventCurve or None
         The probability over that input.
-    range_unit : Unit
+    over_unit : Unit
         Of that input.
+    undefined : float
+        Share of the rows in which the output is undefined, so that neither side holds.
     """
 
     name: str
@@ -46,16 +48,20 @@ class Event:
     over: str = ""
     curve: EventCurve | None = None
     over_unit: Unit = field(default_factory=Unit)
+    undefined: float = 0.0
 
     @property
     def sentence(self) -> str:
         """Its probability, and what decides it; "" where that is not known."""
         if isnan(self.share.value):
-            return sentence(self.share.reason) if self.share.reason else ""
+            why = self.share.reason
+            return sentence(f"how many {self.said} is not known: {why}") if why else ""
         text = f"{share_text(self.share)} {self.said}"
         if self.failed is not None and self.failed.has_interval:
             ends = percent_interval(self.failed.low, self.failed.high)
             text += f"; with failed rows {ends}"
+        if self.undefined > 0:
+            text += f"; {percent(self.undefined)} are undefined"
         return f"{text}."
 
     @property
@@ -113,6 +119,14 @@ class Quantity:
     range: Range | None = None
     events: tuple[Event, ...] = ()
     ranking: Ranking | None = None
+
+    @property
+    def ranking_sentence(self) -> str:
+        """What contributes most; "" where there is no ranking, and an event said why already."""
+        said = [event.decided_by for event in self.events]
+        if self.ranking is None or (self.ranking.reason and self.ranking.sentence in said):
+            return ""
+        return self.ranking.with_effect
 
     @property
     def output(self) -> str:
@@ -277,7 +291,7 @@ class Answer:
         found += [] if lead is None else lead.head
         events = (() if lead is None else lead.events) + self.main_regimes
         found += [one.with_cause for one in events]
-        found += [lead.ranking.with_effect] if lead is not None and lead.ranking else []
+        found += [] if lead is None else [lead.ranking_sentence]
         return [*filter(None, found), *(one.text for one in self.advice)]
 
     def __repr__(self) -> str:

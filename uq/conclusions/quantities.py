@@ -153,6 +153,9 @@ def _promise(
     reason = ""
     if not any(map(isfinite, bounds)):
         reason = _why_no_bound(ds, both, bounds)
+    elif isfinite(wrong := _contradicted(bounds, ends)):
+        reason = f"that of the rows, {unit.text(wrong)}, lies beyond the quantile that it bounds"
+        bounds = [nan, nan]
     return Promise(
         coverage,
         confidence,
@@ -165,6 +168,17 @@ def _promise(
         element.is_angle,
         _end_of(element),
     )
+
+
+def _contradicted(bounds: list[float], ends: list[Estimate]) -> float:
+    """Return a bound on the wrong side of the quantile that it bounds; NaN where there is none.
+
+    By chance few rows give one, where the quantile is better known since lives are integrated.
+    """
+    lower, upper = bounds
+    if lower > ends[0].value:
+        return lower
+    return upper if upper < ends[1].value else nan
 
 
 def _end_of(element: Element) -> str:
@@ -240,7 +254,8 @@ def _events(
         said = f"{_end_of(element)} within {at}" if element.is_lifetime else f"exceed {at}"
         said += " in magnitude" * element.is_angle
         target = f"P({element.name}{sign}{one.at!r})"
-        yield event(findings, target, said, one)
+        undefined = one.facts.get("undefined") or 0.0
+        yield replace(event(findings, target, said, one), undefined=undefined)
 
 
 def event(findings: Findings, target: str, said: str, one: Statistic) -> Event:

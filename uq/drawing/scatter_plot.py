@@ -40,6 +40,7 @@ _MOST_INPUTS = 3
 _MOST_POINTS = 3000
 _IN_BIN, _MOST_BINS = 20, 24  # rows at least, bins at most
 _EMPTY = 0.05  # around a mean without a row, over the height of the panel, that interrupts a line
+_RARELY = 3  # times the mean distance of neighbours, which chance leaves empty once in hundreds
 _SHORTEST = 3  # slices that make a line
 _GAP = 0.1  # between neighbouring rows, over the width of the panel, that interrupts a line
 
@@ -151,11 +152,9 @@ def _conditional(
     else:
         line = np.array([values[rows].mean() for rows in slices])
         ends = [intervals.mean_interval(values[rows]) for rows in slices]
-    apart = [
-        np.min(np.abs(values[rows] - at)) if np.isfinite(at) else 0.0
-        for rows, at in zip(slices, line, strict=True)
-    ]
-    empty = np.array(apart) > _EMPTY * np.ptp(axes.get_ylim())
+    empty = np.array(
+        [_is_empty(values[rows], at, axes) for rows, at in zip(slices, line, strict=True)]
+    )
     empty |= _fragments(~empty)
     seen = np.isfinite(line) & ~empty
     line = np.where(seen & ~_fragments(seen), line, np.nan)
@@ -174,6 +173,16 @@ def _conditional(
         top = ended.max()  # an infinite end would hide all others
         band: Any = {"facecolor": (colour, 0.25), "edgecolor": (colour, 0.8), "lw": 0.4}
         axes.fill_between(middle, low, np.minimum(high, top), **band)
+
+
+def _is_empty(values: Floats, at: float, axes: Axes) -> bool:
+    """Whether the rows of a slice leave an empty space around their mean or median."""
+    if not np.isfinite(at):
+        return False
+    ended = values[np.isfinite(values)]
+    by_chance = _RARELY * np.ptp(ended) / len(ended)
+    away = np.min(np.abs(ended - at))
+    return bool(away > max(_EMPTY * np.ptp(axes.get_ylim()), by_chance))
 
 
 def _fragments(there: Mask) -> Mask:

@@ -47,7 +47,7 @@ def update(
     output : path-like, optional
         Where to write the posterior; by default it is not written.
     rows : int, optional
-        Number of rows of a study, instead of its own.
+        Number of rows: of a study, instead of its own; of a result, at least.
     model_error : float, optional
         Coefficient of variation of a lognormal discrepancy between model and reality; default 0,
         or that of the result if it has been updated before.
@@ -106,14 +106,23 @@ def prior(
     model: str | None = None,
 ) -> xr.Dataset:
     """Return the result to update; a study is run first."""
-    if isinstance(source, xr.Dataset):
-        return source
-    if isinstance(source, str | Path) and not is_study(source):
-        return open_result(source)
+    if not isinstance(source, Study) and (isinstance(source, xr.Dataset) or not is_study(source)):
+        ds = source if isinstance(source, xr.Dataset) else open_result(source)
+        check_rows(ds, rows)
+        return ds
     study = source if isinstance(source, Study) else load_study(source, model)
     if rows is not None:
         study = study.with_samples(samples_for(study, rows))
     return run_study(study, output_path(study), options)
+
+
+def check_rows(ds: xr.Dataset, rows: int | None) -> None:
+    """Refuse a result with fewer rows than asked for."""
+    if rows is not None and ds.sizes["sample"] < rows:
+        raise InputError(
+            f"the result has {ds.sizes['sample']} rows, not {rows}: 'uq extend OUT.nc --samples N'"
+            " adds some"
+        )
 
 
 def is_study(path: str | Path) -> bool:

@@ -15,5 +15,8 @@ Reading order; a module imports only those above it:
     ledger            each measurement used once
     inputs_learnt     inputs before and after, and what is confounded
     remaining         lives to come
+    taught            how much each inspection taught
+    strangeness       how strange the inspections are before anything is learnt
     answer            all that the inspections say
+    next_inspection   what the next one is worth
 """

@@ -29,23 +29,26 @@ _PASSES = 6
 
 
 class Grid(NamedTuple):
-    """Values of an integrated input of equal prior probability.
+    """Values of an integrated input.
 
     Attributes
     ----------
     low, high : float
         Its probabilities at the ends.
     values : ndarray, shape (g,)
+    log_share : ndarray, shape (g,)
+        Logarithm of the prior probability of each value.
     """
 
     low: float
     high: float
     values: Floats
+    log_share: Floats
 
     @property
-    def log_share(self) -> float:
-        """Logarithm of the prior probability of each value."""
-        return float(np.log((self.high - self.low) / len(self.values)))
+    def edges(self) -> Floats:
+        """The prior probabilities between which each value lies, shape (g + 1,)."""
+        return self.low + np.append(0.0, np.cumsum(np.exp(self.log_share)))
 
 
 @dataclass(frozen=True)
@@ -98,11 +101,7 @@ def weigh(
     """
     grids = [_grid(0.0, 1.0, quantiles)] * len(likelihoods)
     for _ in range(_PASSES):
-        units = [
-            _mean_likelihood(one(grid.values), world, worlds)
-            for one, world, grid in zip(likelihoods, world_of, grids, strict=True)
-        ]
-        found = (_own if own else _shared)(units, grids, worlds)
+        units, found = weigh_on(grids, likelihoods, world_of, worlds, own)
         if quantiles is None or not np.isfinite(found.log_evidence):
             break
         narrower = [_narrower(*one) for one in zip(grids, units, found.rest, strict=True)]
@@ -114,11 +113,40 @@ def weigh(
     return found
 
 
+def weigh_on(
+    grids: Sequence[Grid],
+    likelihoods: Sequence[Likelihood],
+    world_of: Sequence[NDArray[np.intp]],
+    worlds: int,
+    own: bool,
+) -> tuple[list[Floats], Evidence]:
+    """Return the mean likelihoods of units on given grids, and what they say; see `weigh`."""
+    units = [
+        _mean_likelihood(one(grid.values), world, worlds)
+        for one, world, grid in zip(likelihoods, world_of, grids, strict=True)
+    ]
+    return units, (_own if own else _shared)(units, grids, worlds)
+
+
 def _grid(low: float, high: float, quantiles: Quantiles | None) -> Grid:
     if quantiles is None:
-        return Grid(0.0, 1.0, np.ones(1))
-    middle = low + (high - low) * (np.arange(_NODES) + 0.5) / _NODES
-    return Grid(low, high, quantiles(middle))
+        return Grid(0.0, 1.0, np.ones(1), np.zeros(1))
+    return _joined([np.linspace(low, high, _NODES + 1)], quantiles)
+
+
+def _joined(parts: Sequence[Floats], quantiles: Quantiles) -> Grid:
+    """Return the grid whose values lie in the middle between some probabilities."""
+    edges = np.unique(np.concatenate(parts))
+    middle = (edges[1:] + edges[:-1]) / 2
+    return Grid(edges[0], edges[-1], quantiles(middle), np.log(np.diff(edges)))
+
+
+def wide(grid: Grid, quantiles: Quantiles | None) -> Grid:
+    """Return a grid from end to end of the prior that is as fine as another where that is."""
+    if quantiles is None:
+        return grid
+    outside = np.linspace(0.0, grid.low, _NODES // 2), np.linspace(grid.high, 1.0, _NODES // 2)
+    return _joined([outside[0], grid.edges, outside[1]], quantiles)
 
 
 def _shared(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evidence:
@@ -128,7 +156,7 @@ def _shared(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evid
 
 def _own(units: Sequence[Floats], grids: Sequence[Grid], worlds: int) -> Evidence:
     of_unit = [
-        special.logsumexp(one, axis=1, keepdims=True) + grid.log_share
+        special.logsumexp(one + grid.log_share, axis=1, keepdims=True)
         for one, grid in zip(units, grids, strict=True)
     ]
     log_worlds = np.sum(of_unit, axis=0) - np.log(worlds)
@@ -157,8 +185,7 @@ def _narrower(grid: Grid, log_unit: Floats, rest: Floats) -> tuple[float, float]
     below, above = np.cumsum(share), np.cumsum(share[::-1])
     first = max(int(np.searchsorted(below, FINEST)) - 1, 0)
     last = len(share) - max(int(np.searchsorted(above, FINEST)) - 1, 0)
-    width = (grid.high - grid.low) / len(share)
-    return grid.low + first * width, grid.low + last * width
+    return float(grid.edges[first]), float(grid.edges[last])
 
 
 def _is_much(ends: tuple[float, float], grid: Grid) -> bool:

@@ -78,3 +78,40 @@ def log_outcome(kind: Kind, life: Floats, time: Floats) -> Floats:
     with np.errstate(invalid="ignore"):
         inside = life > time if kind is Kind.SURVIVED else life <= time
     return np.where(inside, 0.0, -np.inf)
+
+
+def drawn_measurement(
+    inspection: Inspection, truth: Floats, rng: np.random.Generator, model_cv: float = 0.0
+) -> Floats:
+    """Draw what a measurement finds.
+
+    Parameters
+    ----------
+    inspection : Inspection
+        Of kind ``measured``.
+    truth : ndarray
+    rng : numpy.random.Generator
+    model_cv : float
+        As for `log_likelihood`.
+
+    Returns
+    -------
+    ndarray
+        Of the same shape, NaN where there is no truth.
+    """
+    noise = rng.standard_normal(truth.shape)
+    if inspection.cv is not None:
+        return np.asarray(truth * np.exp(np.hypot(_sigma(inspection.cv), _sigma(model_cv)) * noise))
+    return np.asarray(truth + np.hypot(inspection.sd or 0.0, np.abs(truth) * model_cv) * noise)
+
+
+def log_most(inspection: Inspection, model_cv: float = 0.0) -> float:
+    """Return a bound of the logarithm of the likelihood of an inspection, whatever the truth."""
+    if inspection.kind is not Kind.MEASURED:
+        return 0.0
+    assert inspection.value is not None
+    if inspection.cv is not None:
+        spread = inspection.value * np.hypot(_sigma(inspection.cv), _sigma(model_cv))
+    else:
+        spread = inspection.sd or 0.0
+    return float(-np.log(spread) - log(2 * np.pi) / 2)

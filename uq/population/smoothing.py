@@ -10,16 +10,22 @@ from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.intervals import Replicates, is_constant
 from uq.rows.elements import replicates_of
-from uq.rows.weights import row_weights
+from uq.rows.weights import largest_weight, row_weights
 from uq.tails import generalised_pareto, shrunk
 
 _FEWEST = 5  # values in a tail
 _HOPELESS = 0.7
 _NEGLIGIBLE = 1e-3
+_LITTLE = 0.01
 
 
 def effective_rows(numbers: Floats) -> float:
-    """Return Kish's number of rows of equal weight that are worth as much."""
+    """Return the number of rows of equal weight that are worth as much [1]_.
+
+    References
+    ----------
+    .. [1] L. Kish, Survey Sampling, Wiley, New York, 1965.
+    """
     largest = numbers.max(initial=0.0)
     relative = numbers / largest if largest > 0 else numbers
     return float(relative.sum() ** 2 / (relative**2).sum()) if largest > 0 else 0.0
@@ -38,12 +44,15 @@ class Smoothed(NamedTuple):
         Number of independent rows, or of samples of several rows.
     effective : float
         Kish's number of equal ones that are worth as much.
+    most : float
+        The largest weight that a row can have.
     """
 
     weights: Floats
     k: float
     rows: int
     effective: float
+    most: float = inf
 
     @property
     def refusal(self) -> str:
@@ -51,8 +60,12 @@ class Smoothed(NamedTuple):
         return refusal(self.k, self.rows)
 
 
-def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
-    """Return Pareto-smoothed weights.
+def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) -> Smoothed:
+    """Return Pareto-smoothed weights [1]_.
+
+    Weights that are known to be bounded, so that no row can carry more than a hundredth of all,
+    stay as they are: the variance of their mean is below a hundredth of its square, and their k not
+    above 0, whatever the largest look like.
 
     Parameters
     ----------
@@ -60,6 +73,8 @@ def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
         Not all -inf.
     part : ndarray of int, shape (n,), optional
         The independent part of each row (`uq.intervals`).
+    most : float, optional
+        The largest weight that a row can have, of weights of mean 1.
 
     Returns
     -------
@@ -67,18 +82,24 @@ def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
 
     References
     ----------
-    A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance sampling", J.
-    Mach. Learn. Res. 25, 72 (2024).
+    .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
+       sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
     raw = np.exp(log_weights - log_weights.max())
     of_samples = per_sample(raw, part)
     k = tail_shape(of_samples)
     weights = raw
-    if np.isfinite(k):
+    if carries_little(most, len(of_samples)):
+        k = min(k, 0.0)
+    elif np.isfinite(k):
         weights = _with_smooth_tail(raw)
-    return Smoothed(
-        weights / weights.mean(), k, len(of_samples), effective_rows(per_sample(weights, part))
-    )
+    effective = effective_rows(per_sample(weights, part))
+    return Smoothed(weights / weights.mean(), k, len(of_samples), effective, most)
+
+
+def carries_little(most: float, rows: int) -> bool:
+    """Whether no row of so many can carry more than a hundredth of what all carry."""
+    return most <= _LITTLE * rows
 
 
 def weights_of(rows: xr.Dataset) -> Smoothed | None:
@@ -93,15 +114,21 @@ def weights_of(rows: xr.Dataset) -> Smoothed | None:
     if weights is None:
         return None
     of_samples = per_sample(weights, replicates_of(rows))
-    k, effective = tail_shape(of_samples), effective_rows(of_samples)
-    return Smoothed(weights, k, len(of_samples), effective)
+    k, most = tail_shape(of_samples), largest_weight(rows)
+    k = min(k, 0.0) if carries_little(most, len(of_samples)) else k
+    return Smoothed(weights, k, len(of_samples), effective_rows(of_samples), most)
 
 
 def tail_shape(numbers: Floats) -> float:
-    """Return the shape of the law of the largest of some numbers, not negative.
+    """Return the shape of the law of the largest of some numbers [1]_, not negative.
 
     Numbers below a thousandth of the largest count as zero: not as a tail, but as none. -inf
     where all others are equal, infinite where there are too few.
+
+    References
+    ----------
+    .. [1] A. Vehtari, D. Simpson, A. Gelman, Y. Yao, J. Gabry, "Pareto smoothed importance
+       sampling", J. Mach. Learn. Res. 25, 72 (2024).
     """
     ascending = np.sort(numbers)
     counted = ascending[ascending > _NEGLIGIBLE * ascending[-1]]
@@ -134,8 +161,12 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
     most = largest_shape(rows)
     if k <= most or k == -inf:
         return ""
+    if most == -inf:
+        return f"weights rest on {rows} independent parts, and more than 10 are needed"
     if k < _HOPELESS:
         more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
+        if rows <= 10:
+            return f"{rows} samples are too few: add {more}"
         return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
     if k == inf:
         return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"

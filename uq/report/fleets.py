@@ -10,8 +10,8 @@ from uq.analysis.fleet_numbers import Banded
 from uq.estimate import Estimate
 from uq.keys import key_of
 from uq.report.cells import Cell, Table
-from uq.units import time_unit
-from uq.wording import interval, known, number
+from uq.units import typical, unit_of
+from uq.wording import in_brackets, interval, known, threshold
 
 HEADER = ("life", "quantity", "all samples", "5 % of samples", "95 % of samples")
 
@@ -34,17 +34,15 @@ def fleet_notes(findings: Findings) -> list[str]:
 def _rows(one: Fleet) -> Iterator[tuple[Cell, ...]]:
     options = {"size": str(one.size), "output": one.output}
     traced = partial(key_of, verb="fleet", options=options)
+    unit = unit_of("s", typical(banded.estimate.value for banded in one.first.values()))
     for p, banded in one.first.items():
-        value = banded.estimate.value
-        unit = time_unit(value if isfinite(value) else 0.0)
-        words = f"{100 * p:g} % quantile of the first [{unit.name}]"
-        yield _row(one.output, words, banded, traced("first", "quantiles", repr(p)), unit.seconds)
+        words = f"{100 * p:g} % quantile of the first{in_brackets(unit)}"
+        yield _row(one.output, words, banded, traced("first", "quantiles", repr(p)), unit.size)
     for time, (failed, at_most) in one.by.items():
-        unit = time_unit(time)
-        by = f"by {number(time / unit.seconds)} {unit.name}"
+        by = f"{one.ended} by {threshold(time, 's')}"
         of = ("by", repr(time))
-        yield _row(one.output, f"number ended {by}", failed, traced(*of, "failed"))
-        yield _row(one.output, f"P(none ended {by})", at_most, traced(*of, "at_most_allowed"))
+        yield _row(one.output, f"number {by}", failed, traced(*of, "failed"))
+        yield _row(one.output, f"P(none {by})", at_most, traced(*of, "at_most_allowed"))
 
 
 def _row(name: str, quantity: str, one: Banded, traced: str, per: float = 1.0) -> tuple[Cell, ...]:

@@ -39,6 +39,11 @@ class Subject(NamedTuple):
     notes: tuple[str, ...] = ()
 
     @property
+    def columns(self) -> int:
+        """Of its widest table."""
+        return max((len(one.header) for one in self.tables), default=0)
+
+    @property
     def output(self) -> str:
         """The output that it is about."""
         return output_of(self.name)

@@ -6,8 +6,9 @@ common period, it ends when the tangent flow has contracted the start to a milli
 
 import numpy as np
 
-from models.mole.lanes.block import LONGEST_PERIOD, MEASURED, TO_REPEAT
+from models.mole.lanes.block import MEASURED, TO_REPEAT
 from models.mole.lanes.rows import GROWTH, OUTCOME, REPEATING
+from models.mole.parameters import LONGEST_PERIOD
 from models.mole.response.machines import Machines
 from models.mole.response.measured import Counts, Response
 from models.mole.response.verdict import SURE

@@ -114,17 +114,18 @@ def summary(
     from uq.rows.results import open_result
 
     ds = open_result(result)
-    if not (fits or json or plain) and regime is None:
-        tables.show_findings(Findings(ds))
+    findings = Findings(ds)
+    answered = regime is None and not plain  # the answer is that of all rows
+    if answered and not (fits or json):
+        tables.show_findings(findings)
         return
-    found = summarise(ds, regime=regime, fits=fits, plain=plain)
+    asked = regime is not None or fits or plain
+    found = summarise(ds, regime=regime, fits=fits, plain=plain) if asked else findings.summary
     if not json:
         tables.show_summary(ds, found)
         return
-    whole = summary_json(found)
-    if regime is None and not plain:
-        whole["answer"] = answer_json(conclude(Findings(ds), weighed=False))
-    print_json(whole)
+    answer = {"answer": answer_json(conclude(findings, weighed=False))} if answered else {}
+    print_json(summary_json(found) | answer)
 
 
 def sensitivity(
@@ -260,6 +261,25 @@ def update(
         quiet or json,
         json,
     )
+
+
+def next_inspection(
+    result: given.ResultFile,
+    inspect: Annotated[
+        str, typer.Option(metavar="OUTPUT", help="What to inspect, such as 'depth'.")
+    ],
+    at: Annotated[list[float] | None, typer.Option(metavar="T", help="When [s].")] = None,
+    units: Annotated[
+        list[int] | None, typer.Option(min=1, metavar="N", help="How many more units.")
+    ] = None,
+    cv: Annotated[float, typer.Option(min=0.0, help="Error of the measurement.")] = 0.1,
+    life: Annotated[str | None, typer.Option(metavar="NAME", help="The life to narrow.")] = None,
+    json: given.Json = False,
+) -> None:
+    """Show what inspecting more units would be worth."""
+    from uq.cli import next_inspection as question
+
+    question.next_inspection(result, inspect, at or [], units or [1, 5, 20], cv, life, json)
 
 
 def twin(

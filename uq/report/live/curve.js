@@ -13,8 +13,12 @@ function curvesOf(column, lines, title) {
     parts.push(draw("line", {x1: LEFT, x2: wide - EDGE, y1: y(share), y2: y(share), class: "grid"}),
       draw("text", {x: LEFT - 6, y: y(share) + 4, "text-anchor": "end"}, percent(share).replace(".0", "")));
   }
+  let free = -Infinity;
   for (const value of scale.ticks(wide / 100)) {
-    parts.push(draw("text", {x: x(value), y: HIGH - 8, "text-anchor": "middle"}, number(value / column.per)));
+    const words = column.digits(value), half = LETTER * words.length / 2, at = Math.min(x(value), wide - half);
+    if (at - half < free) continue;
+    parts.push(draw("text", {x: at, y: HIGH - 8, "text-anchor": "middle"}, words));
+    free = at + half + 8;
   }
   for (const value of column.angle ? times.flatMap(time => [-time, time]) : times) {
     parts.push(draw("line", {x1: x(value), x2: x(value), y1: y(0), y2: y(1), class: "threshold"}));

@@ -47,7 +47,8 @@ class Found {
     this.column = column;
     const {selection, rows} = this, {isAll, mask, count} = selection;
     this.said.replaceChildren(...(isAll
-      ? [rows.count < rows.total ? `All ${rows.count} rows in this page, a random part of ${rows.total}.` : `All ${rows.count} rows.`]
+      ? [rows.count < rows.total ? `All ${rows.count} rows in this page, a random part of ${rows.total}.`
+        : rows.count === 1 ? "The only row." : `All ${rows.count} rows.`]
       : [data(count, `${count}`), ` of ${rows.count} rows, chosen after the fact: the intervals assume that the`
         + " choice was made before the rows were seen, and a difference from all rows need not be an effect of"
         + " what was chosen."]));
@@ -115,7 +116,7 @@ function quantileName(probability, column) {
 function quantileCell(column, {value, low, high, more}) {
   const words = one => one === Infinity && column.life ? "never" : column.words(one, 3);
   const ends = isNaN(low) && isNaN(high) ? "" : isNaN(low) ? `at most ${words(high)}` : isNaN(high)
-    ? `at least ${words(low)}` : `${words(low)} to ${words(high)}`;
+    ? `at least ${words(low)}` : `${words(low).replace(high < Infinity ? ` ${column.unit}` : "", "")} to ${words(high)}`;
   return intervalCell(isNaN(value) ? "\u2013" : data(value, words(value)), low, high, ends, more);
 }
 

@@ -95,8 +95,9 @@ function withSmoothTail(raw) {
 }
 
 function smoothed(logWeights, sample) {
-  const most = logWeights.reduce((a, b) => Math.max(a, b));
-  const raw = logWeights.map(one => Math.exp(one - most));
+  const most = logWeights.reduce((a, b) => b > a ? b : a, -Infinity);
+  if (most === -Infinity) return {refusal: "No row of this result is possible under these laws"};
+  const raw = logWeights.map(one => isNaN(one) ? 0 : Math.exp(one - most));
   const ofSamples = perSample(raw, sample), k = tailShape(ofSamples);
   const weights = isFinite(k) ? withSmoothTail(raw) : raw, mean = total(weights) / weights.length;
   return {
@@ -112,6 +113,7 @@ function refusal(k, rows) {
   if (k === Infinity) return `fewer than ${FEWEST} samples have weight there`;
   if (k < HOPELESS) {
     const more = Math.max(Math.ceil(10 ** (1 / (1 - Math.max(k, 0)))) - rows, 1);
+    if (rows <= 10) return `${rows} samples are too few: add ${more}`;
     return `Pareto k = ${k.toFixed(2)} is above ${most.toFixed(2)}: add ${more} samples`;
   }
   return `Pareto k = ${k.toFixed(2)}: the rows hardly visit what these laws would; run them as a study`;
