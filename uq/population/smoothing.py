@@ -165,8 +165,6 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
         return f"weights rest on {rows} independent parts, and more than 10 are needed"
     if k < _HOPELESS:
         more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
-        if rows <= 10:
-            return f"{rows} samples are too few: add {more}"
         return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
     if k == inf:
         return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"
