@@ -43,6 +43,11 @@ FIGURES: dict[str, Entry] = {
     "quantiles": Entry(
         quantile_table, of.outputs, "Quantiles of {name}", section="", needs=("summary",)
     ),
+    "events": Entry(
+        event_probability,
+        of.decided_events,
+        "{name} over the input that decides it",
+    ),
     "scatter": Entry(
         scatter,
         of.outputs,
@@ -63,11 +68,6 @@ FIGURES: dict[str, Entry] = {
         "Rows by regime, against the inputs that best separate the regimes",
         section="rows",
         applies=(of.in_regimes, of.has_several_inputs, of.has_plain_rows),
-    ),
-    "events": Entry(
-        event_probability,
-        of.decided_events,
-        "{name} over the input that decides it",
     ),
     "indices": Entry(
         index_bars,

@@ -147,4 +147,4 @@ def test_arguments_of_laws_keep_the_digits_of_their_change(asked):
 
 def test_a_law_that_leaves_no_row_is_refused(asked):
     assert "No row" in asked("smoothed(Float64Array.of(-Infinity, NaN), null).refusal")
-    assert asked("refusal(0.3, 7)") == refusal(0.3, 7) == "7 samples are too few: add 20"
+    assert asked("refusal(0.3, 7)") == refusal(0.3, 7)

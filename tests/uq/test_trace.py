@@ -4,6 +4,7 @@ import html
 import json
 import re
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,9 +15,11 @@ from nested_studies import nested
 
 import uq as api
 from uq.errors import InputError
+from uq.exploring.row_again import row
 from uq.exploring.updating import update
 from uq.keys import key_of, paths_of_numbers, value_at
 from uq.report import page
+from uq.store.files import write_result
 from uq.tracing.tracing import trace_json, traced
 from uq.tracing.verbs import VERBS
 
@@ -92,6 +95,7 @@ def test_options_are_part_of_a_key():
     check(ds, "sensitivity", {"method": "pawn"}, every=31)
     check(ds, "fleet", {"size": "1", "by": "0.7", "output": "life[side=left,depth=0.5]"}, every=3)
     check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
+    check(crossed(), "inputs", every=5)
 
 
 def keys_in(text):
@@ -125,6 +129,7 @@ def test_every_number_of_a_report_leads_to_itself(no_other_figures):
     assert "outputs/y/thresholds/5.0/above" in keys
     assert "sensitivity[method=sobol]/outputs/y/S1/x1" in keys
     assert {"status/ok", "outputs/y/mean", "outputs/y/failed"} <= set(keys)
+    assert {"answer/rows", "answer/failed", "inputs/x1/sampled/0.05"} <= set(keys)
 
 
 def test_the_rows_are_those_that_the_number_rests_on():
@@ -173,6 +178,27 @@ def test_numbers_of_weighted_rows_are_traced_too():
     assert traced(ds, "effective_rows").estimators[0].code.endswith("effective_rows")
     with pytest.raises(InputError, match="not with rows that inspections have weighted"):
         traced(ds, "sensitivity/rows_used")
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # their squares are 0 or infinite
+@pytest.mark.parametrize("size", [5e-324, 1e308])
+def test_numbers_at_the_ends_of_the_range_are_traced(size, no_other_figures):
+    ds = with_output(linear(), "v", np.random.default_rng(0).uniform(-1, 1, 64) * size)
+    check(ds, "summary", every=7)
+    check(ds, "answer", every=13)
+    assert "outputs/v/quantiles/0.5" in page(ds, "out.nc")
+    assert row(ds, lowest="v")["v"].item() == ds["v"].min().item()
+
+
+def test_neither_the_model_nor_its_code_is_needed(uq, write_study):
+    kind = "sample_models:KINDS"
+    uq("run", write_study(uncertain=("x1",)), "-o", "out.nc", "--model", kind, "--quiet")
+    ds = api.open_result("out.nc").assign_attrs(model="gone", code="0", numpy="0.9")
+    for key in ("outputs/angle/mean", "answer/quantities/angle/range", "status/ok"):
+        found = trace_json(traced(ds, key))
+        assert found["equal"] and found["code"] == "0" and "numpy" in found["versions_here"]
+    write_result(ds, Path("gone.nc"))
+    assert uq("report", "gone.nc", "--dossier").code == uq("report", "gone.nc").code == 0
 
 
 @pytest.mark.slow

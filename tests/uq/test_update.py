@@ -14,6 +14,7 @@ from uq.exploring.updating import update
 from uq.learning.answer import learnt, learnt_json
 from uq.learning.next_inspection import worth
 from uq.learning.result import as_unit, prior_of
+from uq.population.smoothing import smoothed
 from uq.rows.results import open_result
 from uq.store.files import write_result
 
@@ -206,3 +207,14 @@ def test_strange_inspections_come_with_a_warning():
     found = learnt(update(ds, measured(2.8e5, 3.4e6, 2.9e5, cv=0.2)))
     assert found.strangeness < 0.01
     assert any(note.startswith("Warning: inspections as strange as these") for note in found.notes)
+
+
+def test_bounded_weights_need_no_light_tail():
+    rng = np.random.default_rng(0)
+    above = np.abs(0.003 * rng.standard_cauchy(300)).clip(0, 0.9)
+    weights = 0.44 + np.concatenate([0.001 * rng.random(5700), above])
+    assert smoothed(np.log(weights)).k > 0.6  # although none is much larger than the others
+    known = smoothed(np.log(weights), most=2.5)
+    assert (known.k, known.refusal) == (0.0, "")
+    np.testing.assert_allclose(known.weights, weights / weights.mean())
+    assert smoothed(np.log(weights), most=100.0).k > 0.6  # a single row may carry too much

@@ -108,9 +108,8 @@ def _show_lives(lives: Sequence[Remaining]) -> None:
     ends = (f"P(by {number(time / unit.seconds)})" for time in times)
     header = ("unit", "from", "median", "5 % ends within", "rows", *ends)
     grid([_line(one, unit.seconds, times) for one in lives if one.life], header=header)
-    for one in lives:
-        if not one.life:
-            paragraph(f"unit {one.unit}: {one.runs.reason}", indent=2)
+    if gone := [one.unit for one in lives if not one.life and one.unit != ANY]:
+        paragraph(f"hardly a row in which it still runs: {', '.join(gone)}", indent=2)
 
 
 def _line(one: Remaining, per: float, times: Sequence[float]) -> tuple[str, ...]:

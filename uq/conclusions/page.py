@@ -82,7 +82,7 @@ def _verdict(answer: Answer) -> Markup:
     parts = [] if lead is None else list(_of_lead(lead, answer))
     parts += [_line(keyed.regime(one, with_cause)) for one, with_cause in answer.told_regimes]
     if answer.failed or lead is None:
-        parts.insert(0, _line(answer.rows_sentence))
+        parts.insert(0, _line(keyed.rows(answer)))
     return _block("verdict", parts)
 
 

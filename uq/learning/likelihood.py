@@ -103,3 +103,15 @@ def drawn_measurement(
     if inspection.cv is not None:
         return np.asarray(truth * np.exp(np.hypot(_sigma(inspection.cv), _sigma(model_cv)) * noise))
     return np.asarray(truth + np.hypot(inspection.sd or 0.0, np.abs(truth) * model_cv) * noise)
+
+
+def log_most(inspection: Inspection, model_cv: float = 0.0) -> float:
+    """Return a bound of the logarithm of the likelihood of an inspection, whatever the truth."""
+    if inspection.kind is not Kind.MEASURED:
+        return 0.0
+    assert inspection.value is not None
+    if inspection.cv is not None:
+        spread = inspection.value * np.hypot(_sigma(inspection.cv), _sigma(model_cv))
+    else:
+        spread = inspection.sd or 0.0
+    return float(-np.log(spread) - log(2 * np.pi) / 2)

@@ -7,6 +7,7 @@ from functools import cache, partial
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from scipy import special
 
 from uq.contract import Floats
 from uq.designs.levels import SHARED
@@ -24,6 +25,7 @@ from uq.rows.nesting import Nesting, levels_of, nesting_of
 Rows = NDArray[np.intp]
 
 _GOLDEN = (5**0.5 - 1) / 2
+_HUGE = 700.0
 
 
 @dataclass(frozen=True)
@@ -188,15 +190,26 @@ def _inspected(
     scale: Scale | None,
     part: Replicates,
 ) -> Weighted:
-    """Return the rows that stand for an inspected unit."""
+    """Return the rows that stand for an inspected unit.
+
+    Where units have no world in common but all rows, the likelihood bounds their weights: no value
+    of the integrated input that the grid leaves out makes all else more probable than it does.
+    """
     rows, grid = likelihoods.blocks[unit], found.grids[unit]
     size = np.bincount(world[rows], minlength=len(found.rest[unit]))
     joint = found.rest[unit][world[rows]] + likelihoods.of(unit, grid.values)
     joint -= np.log(size[world[rows]])[:, None]
-    worth = np.exp(joint - joint.max())
+    top = joint.max()
+    worth = np.exp(joint - top)
+    of_rows = worth.sum(axis=1)
+    most = np.inf
+    if len(found.rest[unit]) == 1:  # with several worlds, others make some rows count
+        all_else = special.logsumexp(found.rest[unit]) - np.log((grid.high - grid.low) * size[0])
+        log_most = likelihoods.log_most(unit) + all_else - top - np.log(of_rows.mean())
+        most = float(np.exp(min(log_most, _HUGE)))
     kept = np.isin(np.arange(len(world)), rows)
     with np.errstate(divide="ignore"):
-        weights = smoothed(np.log(worth.sum(axis=1)), replicates_of_some(part, kept))
+        weights = smoothed(np.log(of_rows), replicates_of_some(part, kept), most)
     return Weighted(rows, weights, _drawn(grid, worth, scale) if scale else None)
 
 

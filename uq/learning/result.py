@@ -16,10 +16,11 @@ from uq.learning.posterior import Posterior, Weighted
 from uq.population.scaling import inputs_of
 from uq.population.smoothing import Smoothed, weights_of
 from uq.rows.variables import error_name, outputs_of
-from uq.rows.weights import WEIGHT, has_weights
+from uq.rows.weights import MOST, WEIGHT, has_weights
 
 PRIOR = "prior_"
-UNIT_WEIGHT, UNIT_SCALE = "unit_weight", "unit_scale"
+UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST = "unit_weight", "unit_scale", "unit_largest_weight"
+_WEIGHTS = (WEIGHT, UNIT_WEIGHT, UNIT_SCALE, UNIT_MOST)
 INTEGRATED, INSPECTIONS, LEDGER = "integrated_input", "inspections", "ledger"
 MODEL_ERROR = "model_error"
 
@@ -47,7 +48,7 @@ def as_result(
         with the prefix ``prior_``. ``unit_scale`` (inspected, sample): the integrated input as that
         of each inspected unit. Attributes: ``inspections``, and ``ledger``, a digest of each.
     """
-    if taken := [name for name in (WEIGHT, UNIT_WEIGHT, UNIT_SCALE) if name in rows.variables]:
+    if taken := [name for name in _WEIGHTS if name in rows.variables]:
         raise InputError(f"the model has a '{taken[0]}', which is what weights are called here")
     ds = rows
     if found.scale is not None:
@@ -59,10 +60,12 @@ def as_result(
     meaning = "how much the row counts, given the inspections"
     attrs = {"role": WEIGHT, "units": "1", "long_name": meaning}
     both = ("inspected", "sample")
+    most = [one.weights.most for one in _units(found)]
     of_units = np.stack([_spread_out(one, one.weights.weights, n, 0.0) for one in _units(found)])
     variables = {
         WEIGHT: ("sample", found.any_unit.weights.weights, attrs),
         UNIT_WEIGHT: (both, of_units, attrs | {"long_name": f"{meaning} of the unit"}),
+        UNIT_MOST: ("inspected", most, attrs | {"long_name": "the largest possible unit_weight"}),
     }
     if found.scale is not None:
         scales = [_spread_out(one, one.scale, n, np.nan) for one in _units(found)]
@@ -94,7 +97,7 @@ def prior_of(ds: xr.Dataset) -> xr.Dataset:
     for name in kept:
         own = name.removeprefix(PRIOR)
         back[own] = ds[own].copy(data=ds[name].values)
-    gone = [*kept, *(one for one in (WEIGHT, UNIT_WEIGHT, UNIT_SCALE, "inspected") if one in ds)]
+    gone = [*kept, *(one for one in (*_WEIGHTS, "inspected") if one in ds)]
     found = ds.assign(back).drop_vars(gone)
     attrs = {name: value for name, value in ds.attrs.items() if name not in _OF_POSTERIOR}
     found.attrs = attrs | {"title": _prior_title(ds)}
@@ -138,6 +141,7 @@ def as_unit(ds: xr.Dataset, label: str) -> xr.Dataset:
         drawn = rows[name].values
         rows = rows.assign(_rescaled(rows, name, np.where(np.isnan(scale), drawn, scale)))
     weight = ds[WEIGHT].copy(data=ds[UNIT_WEIGHT].values[place])
+    weight.attrs[MOST] = float(ds[UNIT_MOST].values[place])
     return rows.assign({WEIGHT: weight}).assign_attrs(title=f"{_prior_title(ds)}, unit {label}")
 
 

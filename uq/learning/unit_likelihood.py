@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from uq.contract import Floats
 from uq.learning.inspections import Inspection
 from uq.learning.integrated import Scale
+from uq.learning.likelihood import log_most
 from uq.learning.looks import Look
 
 
@@ -53,6 +54,10 @@ class UnitLikelihoods:
         """Return that of a single inspection, shape (rows, g)."""
         truth = self._truth(self._looks[one], one.time, self.blocks[unit], values)
         return self._looks[one].log_likelihood(one, truth, self._cv)
+
+    def log_most(self, unit: int) -> float:
+        """Return a bound of the logarithm of the likelihood in any row."""
+        return sum(log_most(one, self._cv) for one in self.of_unit[unit])
 
     def bounded(self, unit: int, scale: Floats | None) -> NDArray[np.bool_]:
         """Return in which rows a censored life leaves open what was seen, shape (rows,).

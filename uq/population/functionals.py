@@ -101,7 +101,7 @@ class Population:
             return found
         rarer = numbers if np.average(numbers[kept], weights=weights[kept]) <= 0.5 else 1 - numbers
         part = replicates_of_some(self.part, kept)
-        return trusted(found, rarer[kept], weights[kept], part)
+        return trusted(found, rarer[kept], weights[kept], part, self.element.most)
 
     def _near(self, value: float) -> Callable[[float], Estimate]:
         """Return a function that estimates P(Y < y) among the rows that have a value.

@@ -4,6 +4,8 @@ Rows are independent, or belong to independent parts: the replicates of a design
 several rows (`uq.intervals`).
 """
 
+from math import inf
+
 import numpy as np
 from scipy import special
 
@@ -18,7 +20,7 @@ from uq.intervals import (
     upper_probability,
     wilson_interval,
 )
-from uq.population.smoothing import effective_rows, per_sample, refusal, tail_shape
+from uq.population.smoothing import carries_little, effective_rows, per_sample, refusal, tail_shape
 from uq.quantile_functions import student
 
 FEW = 20
@@ -164,8 +166,22 @@ def weighted_moments(
     return trusted(found, values, weights, part), trusted(spread, squares, weights, part)
 
 
-def trusted(found: Estimate, numbers: Floats, weights: Floats, part: Replicates) -> Estimate:
-    """Return an estimate, or why weights times numbers do not allow one."""
+def trusted(
+    found: Estimate, numbers: Floats, weights: Floats, part: Replicates, most: float = inf
+) -> Estimate:
+    """Return an estimate, or why weights times numbers do not allow one.
+
+    Parameters
+    ----------
+    found : Estimate
+    numbers, weights : ndarray, shape (n,)
+    part : ndarray of int, shape (n,), or None
+    most : float, optional
+        The largest weight that a row can have, where numbers are at most 1.
+    """
     of_samples = per_sample(np.abs(weights * numbers), part)
+    mean = float(np.average(numbers, weights=weights))
+    if mean > 0 and carries_little(most / mean, len(of_samples)):
+        return found
     why = refusal(tail_shape(of_samples), len(of_samples))
     return Estimate(reason=why) if why else found

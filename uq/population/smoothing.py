@@ -10,12 +10,13 @@ from uq.clusters import Clusters
 from uq.contract import Floats
 from uq.intervals import Replicates, is_constant
 from uq.rows.elements import replicates_of
-from uq.rows.weights import row_weights
+from uq.rows.weights import largest_weight, row_weights
 from uq.tails import generalised_pareto, shrunk
 
 _FEWEST = 5  # values in a tail
 _HOPELESS = 0.7
 _NEGLIGIBLE = 1e-3
+_LITTLE = 0.01
 
 
 def effective_rows(numbers: Floats) -> float:
@@ -43,12 +44,15 @@ class Smoothed(NamedTuple):
         Number of independent rows, or of samples of several rows.
     effective : float
         Kish's number of equal ones that are worth as much.
+    most : float
+        The largest weight that a row can have.
     """
 
     weights: Floats
     k: float
     rows: int
     effective: float
+    most: float = inf
 
     @property
     def refusal(self) -> str:
@@ -56,8 +60,12 @@ class Smoothed(NamedTuple):
         return refusal(self.k, self.rows)
 
 
-def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
+def smoothed(log_weights: Floats, part: Replicates = None, most: float = inf) -> Smoothed:
     """Return Pareto-smoothed weights [1]_.
+
+    Weights that are known to be bounded, so that no row can carry more than a hundredth of all,
+    stay as they are: the variance of their mean is below a hundredth of its square, and their k not
+    above 0, whatever the largest look like.
 
     Parameters
     ----------
@@ -65,6 +73,8 @@ def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
         Not all -inf.
     part : ndarray of int, shape (n,), optional
         The independent part of each row (`uq.intervals`).
+    most : float, optional
+        The largest weight that a row can have, of weights of mean 1.
 
     Returns
     -------
@@ -79,11 +89,17 @@ def smoothed(log_weights: Floats, part: Replicates = None) -> Smoothed:
     of_samples = per_sample(raw, part)
     k = tail_shape(of_samples)
     weights = raw
-    if np.isfinite(k):
+    if carries_little(most, len(of_samples)):
+        k = min(k, 0.0)
+    elif np.isfinite(k):
         weights = _with_smooth_tail(raw)
-    return Smoothed(
-        weights / weights.mean(), k, len(of_samples), effective_rows(per_sample(weights, part))
-    )
+    effective = effective_rows(per_sample(weights, part))
+    return Smoothed(weights / weights.mean(), k, len(of_samples), effective, most)
+
+
+def carries_little(most: float, rows: int) -> bool:
+    """Whether no row of so many can carry more than a hundredth of what all carry."""
+    return most <= _LITTLE * rows
 
 
 def weights_of(rows: xr.Dataset) -> Smoothed | None:
@@ -98,8 +114,9 @@ def weights_of(rows: xr.Dataset) -> Smoothed | None:
     if weights is None:
         return None
     of_samples = per_sample(weights, replicates_of(rows))
-    k, effective = tail_shape(of_samples), effective_rows(of_samples)
-    return Smoothed(weights, k, len(of_samples), effective)
+    k, most = tail_shape(of_samples), largest_weight(rows)
+    k = min(k, 0.0) if carries_little(most, len(of_samples)) else k
+    return Smoothed(weights, k, len(of_samples), effective_rows(of_samples), most)
 
 
 def tail_shape(numbers: Floats) -> float:
@@ -148,8 +165,6 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
         return f"weights rest on {rows} independent parts, and more than 10 are needed"
     if k < _HOPELESS:
         more = max(ceil(10 ** (1 / (1 - max(k, 0.0)))) - rows, 1)
-        if rows <= 10:
-            return f"{rows} samples are too few: add {more}"
         return f"Pareto k = {k:.2f} is above {most:.2f}: add {more} samples"
     if k == inf:
         return f"fewer than {_FEWEST} samples have weight there: add {rows} or more"

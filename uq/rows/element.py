@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any, Protocol
 
 import numpy as np
@@ -48,6 +49,8 @@ class Element:
         Of what scales a life, given all that does not: each row then is the law of a life.
     weights : ndarray, shape (n,), optional
         Of the rows, where they stand for another study or for what inspections left of theirs.
+    most : float
+        The largest weight that a row can have.
     """
 
     name: str
@@ -59,6 +62,7 @@ class Element:
     failed: Mask
     law: RowLaw | None = None
     weights: Floats | None = None
+    most: float = inf
 
     @property
     def units(self) -> str:
@@ -171,6 +175,7 @@ def elements_in(
     coordinates: Mapping[str, Any],
     failed: Mask,
     weights: Floats | None = None,
+    most: float = inf,
 ) -> Iterator[Element]:
     """Yield the elements of one output, in order.
 
@@ -189,6 +194,8 @@ def elements_in(
         The rows that failed.
     weights : ndarray, shape (n,), optional
         Of the rows.
+    most : float
+        The largest weight that a row can have.
 
     Yields
     ------
@@ -209,4 +216,5 @@ def elements_in(
             cut,
             absent & failed,
             weights=weights,
+            most=most,
         )

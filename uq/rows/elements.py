@@ -18,7 +18,7 @@ from uq.rows.element import elements_in
 from uq.rows.nesting import is_nested, nesting_of
 from uq.rows.results import failed
 from uq.rows.variables import outputs_of
-from uq.rows.weights import row_weights
+from uq.rows.weights import largest_weight, row_weights
 from uq.study.file import AnalysisTable, StudyFile
 from uq.study.reading import read_study_text
 
@@ -156,7 +156,9 @@ def elements_of(ds: xr.Dataset, outputs: Sequence[str]) -> Iterator[Element]:
             censored = ds.variables[flag] if flag in ds else None
             axes = {dim: ds[dim].values for dim in declared.dims}
             values = ds.variables[output]
-            yield from elements_in(output, declared, values, censored, axes, unsound, weights)
+            yield from elements_in(
+                output, declared, values, censored, axes, unsound, weights, largest_weight(ds)
+            )
 
 
 def named_elements(ds: xr.Dataset, name: str) -> list[Element]:

@@ -9,6 +9,9 @@ from uq.errors import InputError
 WEIGHT = "weight"
 """The variable with the weight of each row."""
 
+MOST = "largest_possible"
+"""Its attribute: the largest weight that a row can have, where that is known."""
+
 
 def has_weights(ds: xr.Dataset) -> bool:
     """Whether inspections have weighted the rows of a result."""
@@ -29,6 +32,11 @@ def row_weights(ds: xr.Dataset) -> Floats | None:
     if not weights.sum() > 0:
         raise InputError("the inspections rule these rows out: all have weight 0")
     return np.asarray(weights / weights.mean())
+
+
+def largest_weight(ds: xr.Dataset) -> float:
+    """Return the largest weight that a row can have, infinite where that is not known."""
+    return float(ds[WEIGHT].attrs.get(MOST, np.inf)) if has_weights(ds) else np.inf
 
 
 def refuse_weights(ds: xr.Dataset, what: str) -> None:

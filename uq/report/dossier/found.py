@@ -6,6 +6,7 @@ from math import isfinite
 from uq.analysis.findings import Findings
 from uq.analysis.statistics.statistic import Reader
 from uq.analysis.statistics.table import STATISTICS
+from uq.analysis.summary import REGIME
 from uq.conclusions.advice import verdict
 from uq.conclusions.answer import conclude
 from uq.conclusions.page import fragment
@@ -17,7 +18,6 @@ from uq.report.cells import Cell, Table
 from uq.report.convergence import convergence_of
 from uq.report.dossier.items import Item
 from uq.report.fleets import fleet_notes, fleet_table
-from uq.report.groups import REGIME
 from uq.report.indices import of_output, output_of, sensitivity_of
 from uq.report.levels import levels_of
 from uq.report.outcomes import category_table, outcomes, result_tables, status_table

@@ -60,5 +60,6 @@ function path(steps, x, y) {
 }
 
 function smoothPath(steps, x, y) {
-  return `M${steps.map(([value, share]) => `${x(value).toFixed(1)},${y(share).toFixed(1)}`).join("L")}`;
+  const points = steps.map(([value, share]) => `${x(value).toFixed(1)},${y(share).toFixed(1)}`);
+  return points.length ? `M${points.join("L")}` : "";
 }

@@ -110,10 +110,10 @@ function smoothed(logWeights, sample) {
 function refusal(k, rows) {
   const most = rows > 10 ? Math.min(HOPELESS, 1 - 1 / Math.log10(rows)) : -Infinity;
   if (k <= most || k === -Infinity) return "";
+  if (most === -Infinity) return `weights rest on ${rows} independent parts, and more than 10 are needed`;
   if (k === Infinity) return `fewer than ${FEWEST} samples have weight there`;
   if (k < HOPELESS) {
     const more = Math.max(Math.ceil(10 ** (1 / (1 - Math.max(k, 0)))) - rows, 1);
-    if (rows <= 10) return `${rows} samples are too few: add ${more}`;
     return `Pareto k = ${k.toFixed(2)} is above ${most.toFixed(2)}: add ${more} samples`;
   }
   return `Pareto k = ${k.toFixed(2)}: the rows hardly visit what these laws would; run them as a study`;

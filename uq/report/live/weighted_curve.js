@@ -1,6 +1,6 @@
 // The share of weighted rows above each value, or of lives with laws outliving each time.
 
-const BINS = 500, PLACES = 200;
+const BINS = 500, PLACES = 200, SKETCHED = 1000;
 
 class WeightedCurve {
   constructor(reweighting, column) {
@@ -15,7 +15,7 @@ class WeightedCurve {
   get curve() {
     if (this.refusal) return null;
     if (!this.law) return this.steps();
-    return this.law.term ? this.smooth() : this.averaged();
+    return this.law.term ? this.smooth() : this.sketch();
   }
 
   steps() {
@@ -64,10 +64,13 @@ class WeightedCurve {
     return {isSmooth: true, at, share};
   }
 
-  averaged() {
-    const at = this.places(), {column, weights, law} = this;
-    const worth = column.values.map((life, row) => isNaN(life) ? 0 : weights ? weights[row] : 1), sum = total(worth);
-    return {isSmooth: true, at, share: at.map(time => 1 - total(law.below(column, time).map((one, row) => one * worth[row])) / sum)};
+  // A first sketch, from some of the rows.
+  sketch() {
+    const at = this.places(), {column: {values}, weights, law} = this, every = Math.ceil(values.length / SKETCHED);
+    const rows = [...values.keys()].filter(row => row % every === 0 && !isNaN(values[row]));
+    const worth = rows.map(row => weights ? weights[row] : 1), sum = total(worth);
+    return {isSmooth: true, isSketch: true, at, share: at.map(time =>
+      1 - total(rows.map((row, i) => worth[i] * law.belowIn(row, values[row], time))) / sum)};
   }
 
   // Where intervals are computed.
@@ -83,12 +86,22 @@ class WeightedCurve {
     if (!law && !weights) return yield* bandOfShares(rows, column, this.steps(), new Uint8Array(rows.count).fill(1));
     const weighed = new Weighed(rows, weights, takesPart);
     if (!law) return yield* heldBand(column, this.steps(), at => weighed.share(aboveOf(column, at)));
-    const found = {at: this.places(), low: [], high: []};
+    const found = {at: this.places(), share: [], low: [], high: []};
     for (const at of found.at) {
-      const {low, high} = weighed.share(law.below(column, at).map(one => 1 - one));
+      const {share, low, high} = weighed.share(law.below(column, at).map(one => 1 - one));
+      found.share.push(share);
       found.low.push(low);
       found.high.push(high);
       yield found;
     }
   }
+}
+
+// A curve where its shares can be trusted, from the ends of their intervals.
+function trusted(curve, {at, share, low}) {
+  const known = at.filter((_, i) => isFinite(low[i]));
+  if (share) return {isSmooth: true, at: known, share: share.filter((_, i) => isFinite(low[i]))};
+  const inside = curve.at.map((_, i) => i).filter(i => curve.at[i] >= known[0] && curve.at[i] <= known.at(-1));
+  const corners = inside.flatMap((i, nth) => nth ? [[i, i - 1], [i, i]] : [[i, i]]);
+  return {isSmooth: true, at: corners.map(([i]) => curve.at[i]), share: corners.map(([, i]) => curve.share[i])};
 }
