@@ -42,8 +42,8 @@ SOURCES["docs/gallery.md"] = pages.expanded(SOURCES["docs/gallery.md"])
 every_source = pytest.mark.parametrize("name", SOURCES)
 
 ROOT_OPTIONS = ("--help", "--version", "--install-completion", "--show-completion")
-ELSEWHERE = ("docs/clusters.md", "docs/gallery.md")
-"""Pages whose Python needs a cluster, or is run by a test of its own."""
+ELSEWHERE = ("docs/clusters.md", "docs/gallery.md", "docs/guide/learning.md")
+"""Pages whose Python needs a cluster or inspections, or is run by a test of its own."""
 EXAMPLES = sorted(
     {found.__module__ for name in public.__all__ if isfunction(found := getattr(public, name))}
 )
