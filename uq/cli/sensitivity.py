@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 import xarray as xr
 
 from uq.cli.printing import grid, heading, paragraph
-from uq.cli.targets import Target
+from uq.conclusions.targets import Target
 from uq.indices.ranked import Values, lines
 from uq.indices.sensitivities import Sensitivities
 from uq.methods.indices import S1, IndexKind, Null

@@ -4,6 +4,7 @@ Reading order; a module imports only those above it:
 
     sources         how well a number is known
     words           inputs and elements by their names, numbers in a person's units
+    targets         what a number of a result is about, by the name that a person reads
     promises        what can be promised of an output, and its likely range
     contributions   what inputs contribute, with direction and size
     parts           what the answer consists of; each part writes its sentence from its numbers
