@@ -42,8 +42,8 @@ SOURCES["docs/gallery.md"] = pages.expanded(SOURCES["docs/gallery.md"])
 every_source = pytest.mark.parametrize("name", SOURCES)
 
 ROOT_OPTIONS = ("--help", "--version", "--install-completion", "--show-completion")
-ELSEWHERE = ("docs/clusters.md", "docs/gallery.md")
-"""Pages whose Python needs a cluster, or is run by a test of its own."""
+ELSEWHERE = ("docs/clusters.md", "docs/gallery.md", "docs/guide/learning.md")
+"""Pages whose Python needs a cluster or inspections, or is run by a test of its own."""
 EXAMPLES = sorted(
     {found.__module__ for name in public.__all__ if isfunction(found := getattr(public, name))}
 )
@@ -309,6 +309,12 @@ def test_what_is_quoted_is_what_is_printed(module, kept, capsys):
     importlib.import_module(module).main()
     printed = capsys.readouterr().out
     assert comparable(printed) == comparable((HOUSE / kept).read_text())
+
+
+@pytest.mark.slow
+def test_the_facts_of_the_beam_are_those_that_are_printed(capsys):
+    importlib.import_module("models.beam.paper.facts").main()
+    assert capsys.readouterr().out in SOURCES["docs/beam-facts.md"]
 
 
 def comparable(text):

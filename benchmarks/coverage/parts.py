@@ -87,4 +87,5 @@ PARTS = {
     "scaled": Part(scaled.scaled, 1000),
     "what-if": Part(scaled.what_if, 1000),
     **{f"fleet-{name}": Part(partial(fleets.fleets, name), 1000) for name in fleets.CASES},
+    "fleet-shared": Part(fleets.shared_scale, 1000),
 }

@@ -95,6 +95,7 @@ def test_options_are_part_of_a_key():
     check(ds, "sensitivity", {"method": "pawn"}, every=31)
     check(ds, "fleet", {"size": "1", "by": "0.7", "output": "life[side=left,depth=0.5]"}, every=3)
     check(linear(), "what-if", {"uncertain.x1.upper": "0.9"}, every=9)
+    check(crossed(), "inputs", every=5)
 
 
 def keys_in(text):
@@ -128,6 +129,7 @@ def test_every_number_of_a_report_leads_to_itself(no_other_figures):
     assert "outputs/y/thresholds/5.0/above" in keys
     assert "sensitivity[method=sobol]/outputs/y/S1/x1" in keys
     assert {"status/ok", "outputs/y/mean", "outputs/y/failed"} <= set(keys)
+    assert {"answer/rows", "answer/failed", "inputs/x1/sampled/0.05"} <= set(keys)
 
 
 def test_the_rows_are_those_that_the_number_rests_on():

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 import xarray as xr
@@ -80,6 +81,8 @@ def fleet(
     by: float | Sequence[float] = (),
     allow: int = 0,
     output: str | None = None,
+    *,
+    plain: bool = False,
 ) -> "pd.DataFrame":
     """Estimate when the first unit of a fleet ends, and how many have ended by a time.
 
@@ -96,6 +99,8 @@ def fleet(
         Number of units that may have ended.
     output : str, optional
         A life, or one element of it; needed where the study shows several.
+    plain : bool, optional
+        Whether to take lives as computed; by default what only scales them is integrated.
 
     Returns
     -------
@@ -121,7 +126,7 @@ def fleet(
     ['first', 'failed', 'at_most_allowed']
     """
     times = [float(by)] if isinstance(by, int | float) else [float(one) for one in by]
-    found = fleet_of(ds, size, times, allow, output)
+    found = fleet_of(ds, size, times, allow, output, plain=plain)
     lines = [("first", p, one) for p, one in found.first.items()]
     for time, (failed, at_most) in found.by.items():
         lines += [("failed", time, failed), ("at_most_allowed", time, at_most)]
@@ -155,6 +160,8 @@ def fleet_of(
     by: Sequence[float] = (),
     allow: int = 0,
     output: str | None = None,
+    *,
+    plain: bool = False,
 ) -> Fleet:
     """Return what `fleet` tabulates."""
     refuse_weights(ds, "fleets")
@@ -162,11 +169,11 @@ def fleet_of(
         raise InputError(f"no fleet: the rows of a '{ds.attrs['design']}' design {why}")
     if size < 1 or allow < 0:
         raise InputError("uq fleet: the size must be at least 1, and what is allowed at least 0")
-    if bad := [time for time in by if not time > 0]:
+    if bad := [time for time in by if not 0 < time < inf]:
         raise InputError(f"uq fleet: {bad[0]!r} is not a time after the start")
     rows = independent_rows(ds)
     element = the_life(rows, output)
-    units = units_of(rows, element)
+    units = units_of(rows, element, plain=plain)
     _refuse(units, size)
     analysis = analysis_of(ds)
     times = list(by) or list(analysis.thresholds.get(element.output, ()))

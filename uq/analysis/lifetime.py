@@ -45,7 +45,8 @@ def survival(ds: xr.Dataset, output: str, *, plain: bool = False) -> xr.Dataset:
         plus the share that never does. ``low``, ``high``: its pointwise 95 % interval, for
         independent rows by the exponential Greenwood formula [1]_, else from the replicates; NaN
         where unknown. Where rows are laws of lives (attribute ``integrated``), the mean of their
-        probabilities at up to 500 of these times, between which to interpolate. ``band_low``,
+        probabilities at up to 500 of these times, between which to interpolate; so where rows have
+        weights. ``band_low``,
         ``band_high``: a simultaneous 95 % band, for independent rows only; see the attribute
         ``band``. ``never``: the share of rows known never to end. Counts: ``rows``,
         ``censored``, and ``undefined`` and ``failed``, which are excluded.
@@ -127,14 +128,29 @@ _MEANINGS = {
 
 
 _MOST_TIMES = 500
+_RARE = 1e-4  # share of the weight that ends before the first time, and after the last
 
 
 def _times(chosen: list[Element]) -> Floats:
-    """Return every time at which a row ended, or some of these for laws of lives."""
+    """Return every time at which a row ended, or some of these for laws of lives or weights."""
+    if all(element.weights is not None for element in chosen):
+        return np.unique(np.concatenate([_weighted_times(element) for element in chosen]))
     time = np.unique(np.concatenate([e.values[np.isfinite(e.values)] for e in chosen]))
     if all(element.is_plain for element in chosen) or len(time) <= _MOST_TIMES:
         return time
     return time[np.linspace(0, len(time) - 1, _MOST_TIMES).round().astype(int)]
+
+
+def _weighted_times(element: Element) -> Floats:
+    """Return times between which equal shares of the weight have ended."""
+    assert element.weights is not None
+    ended = np.isfinite(element.values)
+    order = np.argsort(element.values[ended], kind="stable")
+    time, share = element.values[ended][order], np.cumsum(element.weights[ended][order])
+    if not len(time):
+        return time
+    wanted = np.linspace(_RARE, 1 - _RARE, min(_MOST_TIMES, len(time))) * share[-1]
+    return np.asarray(time[np.searchsorted(share, wanted)])
 
 
 class Curve(NamedTuple):

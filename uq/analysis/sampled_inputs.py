@@ -85,7 +85,7 @@ def sampled_ranks(study: Study) -> Floats:
 
 
 def compare(law: Law, values: Floats, weights: Floats | None = None) -> SampledInput:
-    """Compare a law with values that should follow it.
+    """Compare a law with values that should follow it: quantiles of both [1]_, their distance.
 
     Parameters
     ----------
@@ -96,6 +96,11 @@ def compare(law: Law, values: Floats, weights: Floats | None = None) -> SampledI
     Returns
     -------
     SampledInput
+
+    References
+    ----------
+    .. [1] R. J. Hyndman, Y. Fan, "Sample quantiles in statistical packages", The American
+       Statistician 50 (1996) 361, definition 1.
     """
     probabilities = np.array(PROBABILITIES)
     worth = np.ones(len(values)) if weights is None else weights

@@ -14,12 +14,18 @@ from uq.written import read_threshold
 
 
 def fleet(
-    result: Path, size: int, by: Sequence[str], allow: int, output: str | None, json: bool
+    result: Path,
+    size: int,
+    by: Sequence[str],
+    allow: int,
+    output: str | None,
+    plain: bool,
+    json: bool,
 ) -> None:
     """Show when the first of some units ends, and how many have ended by a time."""
     ds = open_result(result)
     times = [read_threshold("--by", text, "a life", "s") for text in by]
-    found = fleet_of(ds, size, times, allow, output)
+    found = fleet_of(ds, size, times, allow, output, plain=plain)
     if json:
         print_json(fleet_json(found))
         return

@@ -3,7 +3,7 @@
 from markupsafe import Markup, escape
 
 from uq.conclusions.contributions import Contribution
-from uq.conclusions.parts import Advice, Event, Quantity
+from uq.conclusions.parts import Advice, Answer, Event, Quantity
 from uq.conclusions.words import sentence
 from uq.keys import key_of
 from uq.literals import plain
@@ -19,6 +19,11 @@ def keyed(text: str, *keys: str) -> Markup:
     return Markup('<span data-trace="{0}" title="uq trace: {0}">{1}</span>').format(
         plain(found), plain(text)
     )
+
+
+def rows(one: Answer) -> Markup:
+    """Return how many rows were computed."""
+    return keyed(one.rows_sentence, _answer("rows"), _answer("failed"))
 
 
 def promise(one: Quantity) -> Markup:

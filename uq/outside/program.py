@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,10 +20,16 @@ from uq.outside.returned import Returned
 from uq.outside.row_by_row import SEED, RowByRow, model_from
 
 _LAST = 300  # characters of what a failed program said
+_TRIES = 3  # of a program that is killed, before it is blamed
+_KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # itself, or what a shell ran last
 
 
 class ProgramError(Exception):
     """A program that failed, in a sentence."""
+
+
+class _KilledError(ProgramError):
+    """A program that was killed, perhaps from outside."""
 
 
 def program_of(path: Path) -> Model:
@@ -103,7 +110,12 @@ class _Program:
         kept = self.folders.kept(list(row.values()))
         with self.folders.row(list(row.values())) as folder:
             try:
-                self._run(folder, row)
+                for _ in range(_TRIES - 1):
+                    with suppress(_KilledError):
+                        self._run(folder, row)
+                        break
+                else:
+                    self._run(folder, row)
                 return {
                     name: value_in(folder, name, output)
                     for name, output in self.read.outputs.items()
@@ -139,7 +151,8 @@ class _Program:
             finally:
                 end_descendants()
         if code:
-            raise ProgramError(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
+            kind = _KilledError if code in _KILLED else ProgramError
+            raise kind(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
 
 
 def _how_it_ended(code: int, meanings: Mapping[str, str], said: Path) -> str:

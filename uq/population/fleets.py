@@ -175,7 +175,7 @@ class _MoreThan:
         return np.where(np.isnan(lives), 0.0, np.clip(found, 0.0, 1.0))
 
 
-def units_of(rows: xr.Dataset, element: Element) -> Units:
+def units_of(rows: xr.Dataset, element: Element, *, plain: bool = False) -> Units:
     """Return the units of the worlds of a result.
 
     Parameters
@@ -184,13 +184,16 @@ def units_of(rows: xr.Dataset, element: Element) -> Units:
         Samples of a result.
     element : Element
         A life of these rows.
+    plain : bool
+        Whether lives are taken as computed.
     """
     place, levels = nesting_of(rows), levels_of(rows)
     own = shared = None
     inputs, why = inputs_of(rows), ""
-    if element.declared.scales and element.censored.any():
+    scales = element.declared.scales and not plain
+    if scales and element.censored.any():
         why = why_not_integrated(rows, element)
-    elif element.declared.scales:
+    elif scales:
         inside = integrated(rows, element.declared, inputs, {OWN, CHANCE})
         outside = integrated(rows, element.declared, inputs, {SHARED})
         own, shared, kept = inside.law, outside.law, {**inside.kept, **outside.kept}

@@ -173,12 +173,13 @@ def fleet(
     ] = None,
     allow: Annotated[int, typer.Option(min=0, metavar="K", help="Number that may have ended.")] = 0,
     output: Annotated[str | None, typer.Option(metavar="NAME", help="The life.")] = None,
+    plain: given.Plain = False,
     json: given.Json = False,
 ) -> None:
     """Show when the first of many units ends."""
     from uq.cli import fleet as fleets
 
-    fleets.fleet(result, size, by or [], allow, output, json)
+    fleets.fleet(result, size, by or [], allow, output, plain, json)
 
 
 def convergence(
