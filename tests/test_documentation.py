@@ -311,6 +311,12 @@ def test_what_is_quoted_is_what_is_printed(module, kept, capsys):
     assert comparable(printed) == comparable((HOUSE / kept).read_text())
 
 
+@pytest.mark.slow
+def test_the_facts_of_the_beam_are_those_that_are_printed(capsys):
+    importlib.import_module("models.beam.paper.facts").main()
+    assert capsys.readouterr().out in SOURCES["docs/beam-facts.md"]
+
+
 def comparable(text):
     """Return what does not depend on the processor: no chaos, no rounding errors."""
     lines = [line for line in text.splitlines() if "chaotic" not in line]

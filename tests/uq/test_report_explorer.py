@@ -120,15 +120,17 @@ def test_lives_that_never_end_or_are_censored_lie_beyond_the_brush(shown):
     assert ended.sum() == browser.value(count)
 
 
-def test_censored_lives_have_the_numbers_of_python(shown):
-    ds = kinds(samples=400, analysis={"thresholds": {"life": [1.4, 9.0]}})
+@pytest.mark.parametrize("design", [("monte-carlo", 400, 1), ("sobol", 64, 8)], ids=str)
+def test_censored_lives_have_the_numbers_of_python(shown, design):
+    ds = kinds(*design, analysis={"thresholds": {"life": [1.4, 9.0]}})
+    part = replicates_of(ds)
     found = cells(shown(ds))
     first = next(elements_of(ds, ["life"]))
     for time in (1.4, 9.0):
         assert first.unknown_sides(time).any()
         (here,) = found[f"{first.name}/{time:g}"]
-        assert here == pytest.approx(ended_by(first, time, None)[1].numbers, nan_ok=True)
-    for name, one in life_quantiles(first, {"0.1": 0.1, "0.5": 0.5}, None).items():
+        assert here == pytest.approx(ended_by(first, time, part)[1].numbers, nan_ok=True)
+    for name, one in life_quantiles(first, {"0.1": 0.1, "0.5": 0.5}, part).items():
         (here,) = found[f"quantile/{name}"]
         assert here == pytest.approx(one.numbers, nan_ok=True)
 

@@ -163,7 +163,7 @@ def test_inputs_are_given_as_stated_and_as_the_rows_have_them():
     ],
 )
 def test_quantiles_of_an_input_can_be_told_apart(units, found, texts):
-    cells = _quantiles(units, np.array(found))
+    cells = _quantiles("x", units, np.array(found))
     assert [cell.text.replace("\u00a0", " ") for cell in cells][:2] == texts
 
 

@@ -159,15 +159,16 @@ def _failed(one: Statistic, block: Block) -> Iterator[Line]:
 
 
 def _reasons(output: Described, block: Block) -> Iterator[str]:
-    """Yield why numbers are missing, each reason once, with what lacks them."""
+    """Yield why numbers are missing, each reason once, unless a note says it."""
     lacking: dict[str, list[str]] = {}
+    said = {text for one in output.statistics for text in one.notes}
     for one in output.statistics:
         if not (one.is_read_by(Reader.TERMINAL) and one.words()):
             continue
         both = [one, *([one.otherwise] if one.otherwise and one.otherwise.label else [])]
         alone = isnan(one.estimate.value) and one.rows_needed is None and not one.otherwise
         for each in both if len(both) > 1 else both * alone:
-            if each.estimate.reason:
+            if each.estimate.reason and each.estimate.reason not in said:
                 lacking.setdefault(each.estimate.reason, []).append(block.label(each))
     for reason, labels in lacking.items():
         yield f"{', '.join(labels)}: {reason}"

@@ -24,20 +24,20 @@ _STYLE = """
 .answer ul { padding-left: 1.2rem; }
 .answer h3 { margin: .5rem 0 .1rem; font-size: 1rem; }
 .answer .answer-promise { font-size: 1.35rem; line-height: 1.3; font-weight: 600; }
-.answer-why { opacity: .75; font-size: .875rem; }
+.answer-why { opacity: .75; font-size: .875em; }
 .answer-bar { display: grid; grid-template-columns: 11rem minmax(0, 1fr) 8.5rem; gap: 0 .7rem;
   align-items: center; margin: .3rem 0; }
 .answer-bar .answer-why { grid-column: 1 / -1; }
-.answer-size { font-size: .875rem; }
+.answer-size { font-size: .875em; }
+@media (max-width: 40rem) { .answer { font-size: .875rem; line-height: 1.4; } }
 @media (max-width: 40rem), print {
   .answer-bar { grid-template-columns: 8rem minmax(0, 1fr) 7rem; }
-  .answer-size { font-size: .8rem; }
 }
 @media print { .answer > * { break-inside: avoid; } }
 """
 STYLE = Markup(_STYLE) + bars.STYLE
 
-_MOST_BARS = 6
+_MOST_BARS = 4
 
 
 def fragment(answer: Answer, picture: str = "") -> Markup:

@@ -152,7 +152,7 @@ def _promise(
     ]
     reason = ""
     if not any(map(isfinite, bounds)):
-        reason = _why_no_bound(ds, both, bounds)
+        reason = _why_no_bound(ds, element, both, bounds)
     elif isfinite(wrong := _contradicted(bounds, ends)):
         reason = f"that of the rows, {unit.text(wrong)}, lies beyond the quantile that it bounds"
         bounds = [nan, nan]
@@ -201,12 +201,14 @@ def _sides(
     return True, True
 
 
-def _why_no_bound(ds: xr.Dataset, both: list[Statistic | None], bounds: list[float]) -> str:
+def _why_no_bound(
+    ds: xr.Dataset, element: Element, both: list[Statistic | None], bounds: list[float]
+) -> str:
     needed = next((one.rows_needed for one in both if one and one.rows_needed), None)
     if needed:
         return f"it needs {needed} rows"
     if any(not isnan(one) for one in bounds):
-        return "too few lives end"
+        return f"too few {_end_of(element)}"
     if has_weights(ds):
         return "inspections have weighted the rows"
     if is_nested(ds):

@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,16 +14,22 @@ from typing import Any
 from uq.contract import Model, Parameter
 from uq.outside.descendants import LARGEST, end_descendants
 from uq.outside.folders import Folders
-from uq.outside.machine_file import MachineFile, filled, read_machine
+from uq.outside.machine_file import FOLDER, MachineFile, filled, read_machine
 from uq.outside.results_of_programs import STDERR_FILE, STDOUT_FILE, value_in
 from uq.outside.returned import Returned
 from uq.outside.row_by_row import SEED, RowByRow, model_from
 
 _LAST = 300  # characters of what a failed program said
+_TRIES = 3  # of a program that is killed, before it is blamed
+_KILLED = (-signal.SIGKILL, 128 + signal.SIGKILL)  # itself, or what a shell ran last
 
 
 class ProgramError(Exception):
     """A program that failed, in a sentence."""
+
+
+class _KilledError(ProgramError):
+    """A program that was killed, perhaps from outside."""
 
 
 def program_of(path: Path) -> Model:
@@ -103,7 +110,12 @@ class _Program:
         kept = self.folders.kept(list(row.values()))
         with self.folders.row(list(row.values())) as folder:
             try:
-                self._run(folder, row)
+                for _ in range(_TRIES - 1):
+                    with suppress(_KilledError):
+                        self._run(folder, row)
+                        break
+                else:
+                    self._run(folder, row)
                 return {
                     name: value_in(folder, name, output)
                     for name, output in self.read.outputs.items()
@@ -114,10 +126,11 @@ class _Program:
 
     def _run(self, folder: Path, row: Mapping[str, float | int]) -> None:
         machine = self.read.machine
+        places = {**row, FOLDER: str(self.folder)}
         if machine.template:
-            (folder / machine.input).write_text(filled(self.template, row), encoding="utf-8")
-        program, *arguments = (filled(part, row) for part in machine.command)
-        environment = dict(os.environ) | machine.environment | {"MACHINE_FOLDER": str(self.folder)}
+            (folder / machine.input).write_text(filled(self.template, places), encoding="utf-8")
+        program, *arguments = (filled(part, places) for part in machine.command)
+        environment = dict(os.environ) | machine.environment
         path = _found(program, self.folder) or program
         with (
             (folder / STDOUT_FILE).open("wb") as out,
@@ -139,7 +152,8 @@ class _Program:
             finally:
                 end_descendants()
         if code:
-            raise ProgramError(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
+            kind = _KilledError if code in _KILLED else ProgramError
+            raise kind(_how_it_ended(code, machine.exit_codes, folder / STDERR_FILE))
 
 
 def _how_it_ended(code: int, meanings: Mapping[str, str], said: Path) -> str:

@@ -210,20 +210,21 @@ def _design(rows: xr.Dataset) -> dict[str, Any]:
         "samples": None,
         "parts": "rows",
     }
+    several = "samples" if has_independent_samples(rows) else "replicates"
+    count = 0 if part is None else len(np.unique(part))
+    if isinstance(part, Clusters):
+        found |= {"sample": encoded(part, "<i4"), "samples": part.samples, "parts": several}
+    elif part is not None and count > 1:
+        found |= {"replicate": encoded(part, "<i4")}
     if part is None:
         words = (
             "95 % intervals of shares are Wilson's, or those of Clopper and Pearson where hits or"
-            " misses are fewer than 20; the band is Kolmogorov's."
+            " misses are fewer than 20, and those of quantiles come from order statistics; where"
+            " lives are censored, both rest on Greenwood's formula. The band is Kolmogorov's."
         )
-    elif (count := len(np.unique(part))) < 2:
-        several = "samples" if has_independent_samples(rows) else "replicates"
+    elif count < 2:
         words = f"No intervals: they rest on the scatter between {several}, of which there is one."
-    elif isinstance(part, Clusters):
-        several = "samples" if has_independent_samples(rows) else "replicates"
-        words = f"95 % intervals of shares rest on the scatter between {count} {several}."
-        found |= {"sample": encoded(part, "<i4"), "samples": part.samples, "parts": several}
     else:
-        words = f"95 % intervals of shares rest on the scatter between {count} replicates."
-        found |= {"replicate": encoded(part, "<i4")}
+        words = f"95 % intervals rest on the scatter between {count} {several}."
     students = (student(upper_probability(), parts - 1) for parts in range(2, _STUDENTS))
     return found | {"students": [None, None, *students], "intervals": words}

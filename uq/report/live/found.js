@@ -82,7 +82,7 @@ class Found {
     const what = column.life ? "Share that outlives each time" : "Share of rows above each value";
     const lines = [{curve: everything, name: "all"}];
     if (!isAll) lines.push({curve: some, name: "chosen"});
-    const half = bandOf(this.rows, some), band = pointwise ?? this.censoredBand(some);
+    const half = bandOf(this.rows, some), band = pointwise ?? this.censoredBand(column, some, isAll ? this.one : this.selection.mask);
     Object.assign(lines.at(-1), {half, band});
     const title = `${what}: ${column.title}`;
     const words = isFinite(half) ? ", 95 % band" : band ? ", pointwise 95 % intervals" : "";
@@ -90,8 +90,8 @@ class Found {
       isAll ? `${title}${words}.` : `${title}: chosen rows (bold${words}) and all rows (thin).`));
   }
 
-  censoredBand(curve) {
-    return this.rows.independent && curve.censored ? {at: curve.at, ...greenwood(curve)} : undefined;
+  censoredBand(column, curve, mask) {
+    return curve.censored ? {at: curve.at, ...endsOf(this.rows, column, mask)} : undefined;
   }
 
   // The intervals of rows that are not independent take some time.
@@ -115,8 +115,8 @@ function quantileName(probability, column) {
 
 function quantileCell(column, {value, low, high, more}) {
   const words = one => one === Infinity && column.life ? "never" : column.words(one, 3);
-  const ends = isNaN(low) && isNaN(high) ? "" : isNaN(low) ? `at most ${words(high)}` : isNaN(high)
-    ? `at least ${words(low)}` : `${words(low).replace(high < Infinity ? ` ${column.unit}` : "", "")} to ${words(high)}`;
+  const ends = isNaN(low) && !(high < Infinity) ? "" : isNaN(low) ? `at most ${words(high)}` : isNaN(high)
+    ? `at least ${words(low)}` : `${high < Infinity ? column.digits(low, 3) : words(low)} to ${words(high)}`;
   return intervalCell(isNaN(value) ? "\u2013" : data(value, words(value)), low, high, ends, more);
 }
 

@@ -43,9 +43,12 @@ function quantilesAmong(rows, column, mask, probabilities) {
   if (order.some(isCut)) last.values.fill(Infinity, last.values.length - order.filter(isCut).length);
   return probabilities.map(probability => {
     const value = quantileOf(first.values, probability);
-    if (isNaN(value)) return {value, low: NaN, high: NaN, more: "too few rows"};
-    if (value < quantileOf(last.values, probability)) return lifeBy(rows, column, mask, probability);
     const [early, late] = [first, last].map(one => quantileEnds(rows, one.values, one.parts, probability));
-    return {value, low: early[0], high: early[1] === Infinity ? Infinity : late[1]};
+    const isOpen = early[1] < Infinity && late[1] === Infinity; // as nobody knows when censored rows end
+    const found = {value, low: early[0], high: early[1] === Infinity ? Infinity : isOpen ? NaN : late[1]};
+    if (isNaN(value)) return {...found, more: first.values.length ? "too few rows" : ""};
+    if (!(value < quantileOf(last.values, probability))) return found;
+    const guess = lifeBy(rows, column, mask, probability);
+    return isNaN(guess.value) ? {...found, value: NaN, more: "beyond the horizon"} : guess;
   });
 }

@@ -47,21 +47,64 @@ function greenwood({share, variance}) {
   return {low: ends.map(one => one[0]), high: ends.map(one => one[1])};
 }
 
+// The same from independent parts: replicates, or samples dealt into groups.
+function scatteredEnds(rows, column, mask, {at, share}) {
+  const some = [...mask.keys()].filter(row => mask[row] && column.states[row] < UNDEFINED);
+  const group = groupsOf(rows, some), groups = new Map();
+  some.forEach((row, i) => {
+    if (!groups.has(group[i])) groups.set(group[i], new Uint8Array(mask.length));
+    groups.get(group[i])[row] = 1;
+  });
+  const curves = [...groups.values()].map(own => ({...outliving(column, own), place: 0}));
+  const cut = Float64Array.from(some.filter(row => column.states[row] === CENSORED), row => column.values[row]).sort();
+  let gone = 0;
+  const ends = at.map((time, i) => {
+    while (gone < cut.length && cut[gone] <= time) gone++;
+    const estimates = curves.map(one => {
+      while (one.place < one.at.length && one.at[one.place] <= time) one.place++;
+      return one.place ? one.share[one.place - 1] : 1;
+    });
+    const known = share[i] > 0 && share[i] < 1;
+    return known ? scattered(share[i], some.length - gone, estimates, rows.students, rows.samples) : NONE;
+  });
+  return {low: ends.map(one => one[0]), high: ends.map(one => one[1])};
+}
+
+// As uq/clusters.py deals samples, for what is not a mean.
+function groupsOf({replicate, sample}, some) {
+  if (replicate) return some.map(row => replicate[row]);
+  const names = [...new Set(some.map(row => sample[row]))].sort((a, b) => a - b), parts = names.length;
+  const place = new Map(names.map((name, i) => [name, i]));
+  const groups = Math.min(parts, Math.max(8, Math.min(32, Math.floor(parts / 8))));
+  return some.map(row => Math.floor(place.get(sample[row]) * groups / parts));
+}
+
+const KNOWN_ENDS = new WeakMap(); // of chosen rows, by column
+
+function endsOf(rows, column, mask) {
+  if (!KNOWN_ENDS.has(mask)) KNOWN_ENDS.set(mask, new Map());
+  const known = KNOWN_ENDS.get(mask), curve = outliving(column, mask);
+  if (!known.has(column)) {
+    known.set(column, rows.independent ? greenwood(curve) : rows.replicate || rows.sample
+      ? scatteredEnds(rows, column, mask, curve) : {low: [], high: []});
+  }
+  return known.get(column);
+}
+
 // The share that has ended by a time, assuming that censoring is non-informative.
 function endedBy(rows, column, mask, time) {
   const curve = outliving(column, mask), place = curve.at.findLastIndex(one => one < time);
   if (time > curve.last) return {share: NaN, low: NaN, high: NaN, more: "it is after the last observation"};
-  const {low, high} = rows.independent && place >= 0 ? greenwood(curve) : {low: [], high: []};
+  const {low, high} = endsOf(rows, column, mask);
   return {share: place < 0 ? 0 : 1 - curve.share[place], low: 1 - (high[place] ?? NaN), high: 1 - (low[place] ?? NaN),
     more: KAPLAN_MEIER};
 }
 
 // The time by which a share has ended, likewise.
 function lifeBy(rows, column, mask, probability) {
-  const curve = outliving(column, mask), {low, high} = rows.independent ? greenwood(curve) : {low: [], high: []};
+  const curve = outliving(column, mask), {low, high} = endsOf(rows, column, mask);
   const first = shares => curve.at[shares.findIndex(one => one <= 1 - probability)] ?? NaN;
   const value = first(curve.share), least = first(low);
-  if (isNaN(value)) return {value, low: NaN, high: NaN, more: "beyond the horizon"};
   return {value, low: least === curve.at[0] ? NaN : least, high: first(high), more: KAPLAN_MEIER};
 }
 
