@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from uq.errors import InputError
+from uq.learning import ledger
 from uq.learning.inspections import Inspection, Kind, read_inspections
 
 HEAD = "unit,time,output,kind,value,sd,cv,detection_50,detection_90\n"
@@ -122,3 +123,20 @@ def test_files_that_are_none():
     FILE.write_bytes(b"\xff\xfe")
     with pytest.raises(InputError, match=r"found.csv: not CSV in UTF-8"):
         read_inspections(FILE)
+
+
+def test_tables_of_a_toml_file():
+    FILE.with_suffix(".toml").write_text(
+        '[[inspection]]\nunit = "A"\noutput = "life"\nkind = "survived"\ntime = 3.15e7\n'
+    )
+    assert ledger.read("found.toml") == [Inspection("A", "life", Kind.SURVIVED, 3.15e7)]
+    FILE.with_suffix(".toml").write_text('[[inspection]]\nunit = "A"\nkind = "lived"\n')
+    with pytest.raises(InputError) as refused:
+        ledger.read("found.toml")
+    assert refused.value.lines[0].startswith("found.toml: [[inspection]] 1: output is missing")
+    for text, why in (("x = 1", "must consist of tables"), ("x = ", "not TOML")):
+        FILE.with_suffix(".toml").write_text(text)
+        with pytest.raises(InputError, match=f"^found.toml: {why}"):
+            ledger.read("found.toml")
+    with pytest.raises(InputError, match="^lost.toml: cannot be read"):
+        ledger.read("lost.toml")

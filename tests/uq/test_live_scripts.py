@@ -134,6 +134,15 @@ def test_different_values_are_written_differently(asked, values, wide):
     assert len(ticks) == len(set(ticks)) < 30
 
 
+@pytest.mark.parametrize(
+    ("unit", "words"),
+    [("\u00b0", "3\u00b0"), ("", "3"), ("kN", "3 kN"), ("10\u00b3 m", "3\u00b710\u00b3 m")],
+)
+def test_units_stand_beside_numbers(asked, unit, words):
+    plain = json.dumps({"unit": unit, "per": 1, "values": ""})
+    assert asked(f"new Column({plain}, []).words(3)") == words
+
+
 def test_arguments_of_laws_keep_the_digits_of_their_change(asked):
     assert asked("rounded(1e8 + 3.4567891e-4, 1e8)") == 1e8 + 3.456789e-4
     assert asked("rounded(0.8000000001, 1)") == 0.8

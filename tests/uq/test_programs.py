@@ -1,5 +1,6 @@
 """A program as a machine: what a study makes of it, what goes wrong, what it leaves behind."""
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -120,6 +121,14 @@ def test_other_code_of_the_program_is_noticed(uq, machine):
     assert "other code" in run(uq)[0].err
 
 
+def running_in(folder):
+    """Yield the processes whose current folder is that of a row, or was."""
+    for one in psutil.process_iter():
+        with suppress(psutil.NoSuchProcess, psutil.AccessDenied):
+            if one.cwd().startswith(f"{folder}/pad.rows/") and one.status() != "zombie":
+                yield one
+
+
 HOSTILE = {
     "sleep 300 &": ("ok", ""),
     "setsid sleep 300 &": ("ok", ""),
@@ -135,10 +144,9 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("line", HOSTILE)
-def test_a_hostile_program_costs_its_rows_only(uq, machine, line):
+def test_a_hostile_program_costs_its_rows_only(uq, machine, folder, line):
     hostile = f"#!/bin/sh\ncase $(head -n 1 input.txt) in load=1*) {line}\nesac\n"
     machine(PROGRAM.replace("#!/bin/sh\n", hostile).replace("1.5", "2.5"))
-    before = {one.pid for one in psutil.process_iter()}
     ended, ds = run(uq, "--row-limit", "1", "--samples", "4")
     label, words = HOSTILE[line]
     struck = {Status(code).label for code in ds["status"].values[ds["load"].values >= 1]}
@@ -146,9 +154,7 @@ def test_a_hostile_program_costs_its_rows_only(uq, machine, line):
     assert (ds["status"].values[ds["load"].values < 1] == Status.OK).all()
     if words:
         assert words in ds["status"].attrs[f"example_{label.replace('-', '_')}"]
-    left = [one for one in psutil.process_iter(["name", "status"]) if one.pid not in before]
-    running = [one for one in left if one.info["status"] != psutil.STATUS_ZOMBIE]
-    assert not [one for one in running if one.info["name"] in ("sleep", "yes", "program")]
+    assert not list(running_in(folder))
 
 
 MISTAKES = {

@@ -65,12 +65,13 @@ def update(
 
 def _show(ds: xr.Dataset, found: Learnt) -> None:
     heading(str(ds.attrs["title"]), str(ds.attrs["source"]))
-    shared = [one for one in found.inputs if "[unit=" not in one.name]
-    own = [one for one in found.inputs if "[unit=" in one.name]
-    few = own if len({one.name.partition("[")[2] for one in own}) <= MOST_UNITS else []
-    if lines := list(_inputs([*shared, *few])):
-        heading("\nInputs", "mean and standard deviation before and after, quantiles after")
-        grid(lines, header=("", "before", "sd", "after", "sd", "5 %", "95 %"))
+    of_unit: dict[str, list[InputLearnt]] = {}
+    for one in found.inputs:
+        of_unit.setdefault(one.unit, []).append(one)
+    for unit, inputs in of_unit.items():
+        if not unit or len(of_unit) <= MOST_UNITS:
+            heading(f"\nInputs of unit {unit}" if unit else "\nInputs that units share")
+            grid(_inputs(inputs), header=("", "before", "sd", "after", "sd", ""))
     if found.confounded:
         heading("\nConfounded by the inspections", "rank correlation")
         grid([(f"{p.first}, {p.second}", f"{p.correlation:.2f}") for p in found.confounded[:5]])
@@ -96,8 +97,8 @@ def _what(one: Inspection) -> str:
 def _inputs(shown: Sequence[InputLearnt]) -> Iterator[tuple[str, ...]]:
     for one in shown:
         moments = (x for spread in (one.prior, one.posterior) for x in (spread.mean, spread.sd))
-        ends = (one.posterior.quantiles[p] for p in (0.05, 0.95))
-        yield one.name, *(f"{x:.4g}" for x in (*moments, *ends))
+        unit = "" if one.units == "1" else one.units
+        yield one.name.partition("[")[0], *(f"{x:.4g}" for x in moments), unit
 
 
 def _show_lives(lives: Sequence[Remaining]) -> None:

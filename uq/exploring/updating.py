@@ -42,8 +42,8 @@ def update(
         `update` is updated with all its inspections and the new ones.
     inspections : path-like, or sequence of dict
         A CSV file with the columns ``unit``, ``output``, ``kind``, and those of ``time`` [s],
-        ``value``, ``sd``, ``cv``, ``detection_50`` and ``detection_90`` that are needed; or tables
-        with these entries.
+        ``value``, ``sd``, ``cv``, ``detection_50`` and ``detection_90`` that are needed; a TOML
+        file with tables ``[[inspection]]`` of these entries; or the tables themselves.
     output : path-like, optional
         Where to write the posterior; by default it is not written.
     rows : int, optional

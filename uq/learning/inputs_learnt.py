@@ -52,6 +52,11 @@ class InputLearnt:
     prior: Spread
     posterior: Spread
 
+    @property
+    def unit(self) -> str:
+        """The label of the unit that has it, "" for one that is shared."""
+        return self.name.partition("[unit=")[2].removesuffix("]")
+
 
 @dataclass(frozen=True)
 class Confounded:

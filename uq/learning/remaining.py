@@ -81,7 +81,7 @@ def _of_unit(rows: xr.Dataset, label: str, seen: float, by: Sequence[float]) -> 
     rows = rows.isel(sample=rows[WEIGHT].values > 0)
     part = replicates_of(rows)
     for element in elements_of(rows, shown_outputs(rows, analysis)):
-        if element.is_lifetime:
+        if element.is_lifetime and not element.declared.success:
             times = [*by] or [t for t in analysis.thresholds.get(element.output, ()) if t > seen]
             yield _of_life(element, part, label, seen, times)
 

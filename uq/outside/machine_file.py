@@ -20,6 +20,9 @@ _PLACE = r"\{(%s)(:[^{}]*)?\}"
 
 STDOUT = "stdout"
 
+FOLDER = "machine_folder"
+"""The place of the folder of the machine file, in a command or template."""
+
 
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
@@ -153,8 +156,8 @@ def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
             return
         texts.append(template.read_text(encoding="utf-8", errors="replace"))
     for name in found.parameters:
-        if name == SEED:
-            yield Fault(("parameters", name), "is the name of the row's seed; choose another")
+        if name in (SEED, FOLDER):
+            yield Fault(("parameters", name), "is the name of another place; choose another")
         if not any(re.search(_PLACE % name, text) for text in texts):
             problem = f"has no place {{{name}}} in command{' or template' * bool(machine.template)}"
             yield Fault(("parameters", name), problem)
@@ -170,8 +173,8 @@ def _faults(found: MachineFile, folder: Path) -> Iterator[Fault]:
             yield Fault(("machine", "exit_codes", code), "must be a number between 1 and 255")
 
 
-def filled(text: str, values: Mapping[str, float | int]) -> str:
-    """Return a text with numbers in its places: ``{load}``, or ``{load:.6e}`` in a format.
+def filled(text: str, values: Mapping[str, float | int | str]) -> str:
+    """Return a text with values in its places: ``{load}``, or ``{load:.6e}`` in a format.
 
     Other braces stay as they are. Without a format a number has all its digits.
 
@@ -182,7 +185,7 @@ def filled(text: str, values: Mapping[str, float | int]) -> str:
     """
 
     def value(found: re.Match[str]) -> str:
-        number = values[found[1]]
-        return format(number, found[2][1:]) if found[2] else repr(number)
+        one = values[found[1]]
+        return format(one, found[2][1:] if found[2] else "")
 
     return re.sub(_PLACE % "|".join(map(re.escape, values)), value, text)

@@ -14,7 +14,7 @@ from typing import Any
 from uq.contract import Model, Parameter
 from uq.outside.descendants import LARGEST, end_descendants
 from uq.outside.folders import Folders
-from uq.outside.machine_file import MachineFile, filled, read_machine
+from uq.outside.machine_file import FOLDER, MachineFile, filled, read_machine
 from uq.outside.results_of_programs import STDERR_FILE, STDOUT_FILE, value_in
 from uq.outside.returned import Returned
 from uq.outside.row_by_row import SEED, RowByRow, model_from
@@ -126,10 +126,11 @@ class _Program:
 
     def _run(self, folder: Path, row: Mapping[str, float | int]) -> None:
         machine = self.read.machine
+        places = {**row, FOLDER: str(self.folder)}
         if machine.template:
-            (folder / machine.input).write_text(filled(self.template, row), encoding="utf-8")
-        program, *arguments = (filled(part, row) for part in machine.command)
-        environment = dict(os.environ) | machine.environment | {"MACHINE_FOLDER": str(self.folder)}
+            (folder / machine.input).write_text(filled(self.template, places), encoding="utf-8")
+        program, *arguments = (filled(part, places) for part in machine.command)
+        environment = dict(os.environ) | machine.environment
         path = _found(program, self.folder) or program
         with (
             (folder / STDOUT_FILE).open("wb") as out,

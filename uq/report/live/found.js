@@ -116,7 +116,7 @@ function quantileName(probability, column) {
 function quantileCell(column, {value, low, high, more}) {
   const words = one => one === Infinity && column.life ? "never" : column.words(one, 3);
   const ends = isNaN(low) && !(high < Infinity) ? "" : isNaN(low) ? `at most ${words(high)}` : isNaN(high)
-    ? `at least ${words(low)}` : `${words(low).replace(high < Infinity ? ` ${column.unit}` : "", "")} to ${words(high)}`;
+    ? `at least ${words(low)}` : `${high < Infinity ? column.digits(low, 3) : words(low)} to ${words(high)}`;
   return intervalCell(isNaN(value) ? "\u2013" : data(value, words(value)), low, high, ends, more);
 }
 

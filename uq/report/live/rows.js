@@ -44,8 +44,12 @@ class Column {
 
   // The same with it, such as "12.3 kN".
   words(value, digits = 4) {
-    const between = this.unit.startsWith("10") ? "\u00b7" : " "; // a unit such as 10⁻¹⁵ m²
-    return `${this.digits(value, digits)}${between}${this.unit}`.trim();
+    return this.digits(value, digits) + this.afterNumber;
+  }
+
+  get afterNumber() {
+    if (!this.unit || this.unit === "\u00b0") return this.unit;
+    return `${this.unit.startsWith("10") ? "\u00b7" : " "}${this.unit}`; // a unit such as 10⁻¹⁵ m²
   }
 
   wordsOfRow(row) {
