@@ -19,7 +19,8 @@ from test_answer import numbers
 from uq.analysis.findings import Findings
 from uq.conclusions.advice import advise
 from uq.conclusions.answer import answer
-from uq.conclusions.parts import Answer, Event, Tightened
+from uq.conclusions.parts import Answer, Event
+from uq.conclusions.remedies import Tightened
 from uq.contract import Status
 from uq.estimate import Estimate
 

@@ -215,6 +215,12 @@ def test_failed_rows_still_give_bounds():
     assert below["failed_low"] < below["low"] < below["high"] < below["failed_high"]
 
 
+def test_few_replicates_of_nested_samples_are_not_few_rows():
+    design = {"method": "sobol", "replicates": 4, "units": 2}
+    found = populated(computed(scaled_study(WHOLE, design, samples=32)))[0].below(1.0)
+    assert found.low < 0.5 < found.high and found.high - found.low < 0.2
+
+
 def test_rows_that_all_failed_have_no_worth():
     ds = computed(scaled_study(WHOLE, samples=10, settings={"fail_above": -99.0}))
     assert summarised(ds)["outputs"]["life"]["failed"] == 10

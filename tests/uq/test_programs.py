@@ -124,7 +124,7 @@ def test_other_code_of_the_program_is_noticed(uq, machine):
 def running_in(folder):
     """Yield the processes whose current folder is that of a row, or was."""
     for one in psutil.process_iter():
-        with suppress(psutil.NoSuchProcess):
+        with suppress(psutil.NoSuchProcess, psutil.AccessDenied):
             if one.cwd().startswith(f"{folder}/pad.rows/") and one.status() != "zombie":
                 yield one
 

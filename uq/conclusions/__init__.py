@@ -7,6 +7,7 @@ Reading order; a module imports only those above it:
     targets         what a number of a result is about, by the name that a person reads
     promises        what can be promised of an output, and its likely range
     contributions   what inputs contribute, with direction and size
+    remedies        what a tighter tolerance would change, and each piece of advice
     parts           what the answer consists of; each part writes its sentence from its numbers
     rankings        which inputs contribute most, with direction and size
     quantities      what can be promised of an output, its range and its probabilities

@@ -6,8 +6,9 @@ import xarray as xr
 
 from uq.analysis.findings import Findings
 from uq.conclusions.contributions import Contribution
-from uq.conclusions.parts import Advice, Quantity
+from uq.conclusions.parts import Quantity
 from uq.conclusions.quantities import quantities
+from uq.conclusions.remedies import Advice
 from uq.conclusions.settling import MOST, Unsettled, unsettled
 from uq.conclusions.sources import ASSUMED, mark
 from uq.conclusions.tightening import changes_of, tightened

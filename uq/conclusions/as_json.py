@@ -6,8 +6,9 @@ from typing import Any
 from uq import json_form
 from uq.analysis.event_curve import EventCurve
 from uq.conclusions.contributions import Change, Contribution, Ranking
-from uq.conclusions.parts import Advice, Answer, Event, Quantity
+from uq.conclusions.parts import Answer, Event, Quantity
 from uq.conclusions.promises import Promise, Range
+from uq.conclusions.remedies import Advice
 
 
 def answer_json(found: Answer) -> dict[str, Any]:

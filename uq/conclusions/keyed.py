@@ -3,7 +3,8 @@
 from markupsafe import Markup, escape
 
 from uq.conclusions.contributions import Contribution
-from uq.conclusions.parts import Advice, Answer, Event, Quantity
+from uq.conclusions.parts import Answer, Event, Quantity
+from uq.conclusions.remedies import Advice
 from uq.conclusions.words import sentence
 from uq.keys import key_of
 from uq.literals import plain

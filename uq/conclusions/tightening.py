@@ -6,7 +6,8 @@ from math import isfinite, sqrt
 import xarray as xr
 
 from uq.analysis.what_if import answer as weighted
-from uq.conclusions.parts import Quantity, Tightened
+from uq.conclusions.parts import Quantity
+from uq.conclusions.remedies import Tightened
 from uq.conclusions.words import Unit
 from uq.errors import InputError, RunError
 from uq.estimate import Estimate

@@ -172,8 +172,8 @@ def refusal(k: float, rows: int, hopeless: str = HOPELESS) -> str:
 
 
 def per_sample(numbers: Floats, part: Replicates) -> Floats:
-    """Return the sum of each sample of several rows, else the numbers themselves."""
-    if not isinstance(part, Clusters):
+    """Return the sum of each independent sample of several rows, else the numbers themselves."""
+    if not (isinstance(part, Clusters) and part.are_samples):
         return numbers
     _, place = np.unique(np.asarray(part), return_inverse=True)
     return np.bincount(place, weights=numbers).astype(float)

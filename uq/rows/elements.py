@@ -66,8 +66,9 @@ def replicates_of(rows: xr.Dataset) -> Replicates:
     if not is_nested(rows):
         return None if are_independent(rows) else rows["replicate"].values
     place = nesting_of(rows)
-    of = place.sample if has_independent_samples(rows) else rows["replicate"].values
-    return Clusters(of, place.samples)
+    are_samples = has_independent_samples(rows)
+    of = place.sample if are_samples else rows["replicate"].values
+    return Clusters(of, place.samples, are_samples)
 
 
 def are_independent(ds: xr.Dataset) -> bool:
